@@ -6,18 +6,16 @@
 #include <stdexcept>
 #include <string>
 #include <sys/random.h>
-#include <sys/stat.h>
 #include <system_error>
 
-#include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/owner_only.hpp"
 #include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::runtime {
 namespace {
 
 constexpr std::size_t kLargestFile = 4096;  // bytes
-constexpr mode_t kRightsOfOthers = S_IRWXG | S_IRWXO;
 
 int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
@@ -38,17 +36,6 @@ NetworkKey parse_key(const std::string& file, int line, const std::string& text)
   return key;
 }
 
-void check_rights(const std::string& file) {
-  struct stat status {};
-  if (::stat(file.c_str(), &status) != 0)
-    throw ConfigError(file, 0, "", "cannot be read: " + std::generic_category().message(errno));
-  if ((status.st_mode & kRightsOfOthers) == 0) return;
-  char rights[8];
-  std::snprintf(rights, sizeof rights, "%04o", status.st_mode & 07777U);
-  throw ConfigError(file, 0, "",
-                    std::string("has rights ") + rights + ", must be 0600: others could read the key");
-}
-
 }  // namespace
 
 NetworkKey random_network_key() {
@@ -59,7 +46,7 @@ NetworkKey random_network_key() {
 }
 
 NetworkKeys read_network_keys(const std::filesystem::path& file) {
-  check_rights(file);
+  require_owner_only(file);
   const std::string text = read_text_file(file, kLargestFile);
   NetworkKeys keys;
   int line = 0;
@@ -87,14 +74,7 @@ void write_network_keys(const std::filesystem::path& file, const NetworkKeys& ke
     }
     text += "\n";
   }
-  const mode_t before = ::umask(kRightsOfOthers);
-  try {
-    write_atomically(file, text);
-  } catch (...) {
-    ::umask(before);
-    throw;
-  }
-  ::umask(before);
+  write_for_owner_only(file, text);
 }
 
 }  // namespace swiftlet::runtime

@@ -46,4 +46,14 @@ std::array<double, 6> flown_delay_margins(const ControlDesign& design, const Con
   return margins;
 }
 
+double least_flown_delay_margin(const ControlGains& gains, const ObservedRotors& rotors) {
+  for (double delay_s = 0.0; delay_s <= kLongestDelay_s; delay_s += kLeastDelayAccuracy_s) {
+    const std::array<FlownLoop, 6> loops = flown_loops(gains, rotors, delay_s);
+    const bool stable =
+        std::all_of(loops.begin(), loops.end(), [](const FlownLoop& flown) { return is_stable(flown.loop); });
+    if (!stable) return std::max(0.0, delay_s - kLeastDelayAccuracy_s);
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
 }  // namespace swiftlet::control

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "swiftlet/control/design/control_gains.hpp"
+
 namespace swiftlet::control {
 namespace {
 
@@ -32,11 +34,10 @@ void add_delay(Rotors& rotors, double lag_s, double delay_s) {
   rotors.b[Rotors::kResponse] = -1.0 / lag_s;
 }
 
-// correction: bandwidth of the observer's correction by measured speeds, rad/s.
-Rotors rotors_of(double lag_s, double delay_s, double correction) {
-  Rotors rotors{MatrixXd::Zero(2, 2), VectorXd::Constant(2, 1.0 / lag_s)};
-  rotors.a << -1.0 / lag_s, 0.0, correction, -1.0 / lag_s - correction;
-  if (delay_s > 0.0) add_delay(rotors, lag_s, delay_s);
+Rotors behind_delay(const ObservedRotors& of, double delay_s) {
+  Rotors rotors{MatrixXd::Zero(2, 2), VectorXd::Constant(2, 1.0 / of.lag_s)};
+  rotors.a << -1.0 / of.lag_s, 0.0, of.correction, -1.0 / of.lag_s - of.correction;
+  if (delay_s > 0.0) add_delay(rotors, of.lag_s, delay_s);
   return rotors;
 }
 
@@ -101,17 +102,30 @@ MatrixXd exponential(const MatrixXd& a) {
 
 }  // namespace
 
-std::array<FlownLoop, 6> flown_loops(const ControlDesign& design, const ControlSettings& settings,
+std::array<FlownLoop, 6> flown_loops(const ControlGains& gains, const ObservedRotors& observed,
                                      double delay_s) {
-  const Rotors rotors = rotors_of(design.rotor_lag_s, delay_s, settings.estimator.rotor_speed_bandwidth);
-  const FlownLoop roll = attitude(design.roll.k, rotors);
-  const FlownLoop pitch = attitude(design.pitch.k, rotors);
+  const Rotors rotors = behind_delay(observed, delay_s);
+  const auto attitude_k = [&](Index axis) {
+    return Eigen::Vector3d(gains.attitude_angle[axis], gains.attitude_rate[axis],
+                           gains.attitude_acceleration[axis]);
+  };
+  const auto position_k = [&](Index axis) {
+    return RptGains{gains.position_p[axis], gains.position_v[axis], gains.position_i[axis]};
+  };
+  const FlownLoop roll = attitude(attitude_k(0), rotors);
+  const FlownLoop pitch = attitude(attitude_k(1), rotors);
   return {roll,
           pitch,
-          attitude(design.yaw.k, rotors),
-          horizontal(design.x.gains, pitch),
-          horizontal(design.y.gains, roll),
-          vertical(design.z.gains, rotors, settings.disturbance.bandwidth)};
+          attitude(attitude_k(2), rotors),
+          horizontal(position_k(0), pitch),
+          horizontal(position_k(1), roll),
+          vertical(position_k(2), rotors, gains.disturbance_bandwidth)};
+}
+
+std::array<FlownLoop, 6> flown_loops(const ControlDesign& design, const ControlSettings& settings,
+                                     double delay_s) {
+  return flown_loops(control_gains(design, settings),
+                     {design.rotor_lag_s, settings.estimator.rotor_speed_bandwidth}, delay_s);
 }
 
 // The reference is one more state, which is constant.

@@ -17,6 +17,7 @@
 
 #include "swiftlet/control/design/control_design.hpp"
 #include "swiftlet/control/design/loop.hpp"
+#include "swiftlet/control/types/gains.hpp"
 #include "swiftlet/control/types/settings.hpp"
 
 namespace swiftlet::control {
@@ -28,9 +29,16 @@ struct FlownLoop {
   Eigen::RowVectorXd output;  // the angle or position
 };
 
+// The rotors with their observer.
+struct ObservedRotors {
+  double lag_s = 0.0;
+  double correction = 0.0;  // rad/s, bandwidth of the correction by measured speeds
+};
+
 constexpr std::array<const char*, 6> kFlownLoopNames = {"roll", "pitch", "yaw", "x", "y", "z"};
 
 // In the order of kFlownLoopNames. delay_s: at least 0, from the sample to the rotors.
+std::array<FlownLoop, 6> flown_loops(const ControlGains& gains, const ObservedRotors& rotors, double delay_s);
 std::array<FlownLoop, 6> flown_loops(const ControlDesign& design, const ControlSettings& settings,
                                      double delay_s);
 

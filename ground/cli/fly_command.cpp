@@ -17,16 +17,19 @@
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/flight/launch_configuration.hpp"
 #include "swiftlet/ground/flight/process_flight.hpp"
+#include "swiftlet/ground/flight/process_group.hpp"
 #include "swiftlet/ground/terminal/fleet_progress.hpp"
 #include "swiftlet/plant/model/airframe.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/discovery/flight_reservation.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
+#include "swiftlet/services/dds/vehicle_list.hpp"
+#include "swiftlet/services/runtime/split_text.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::size_t kMostVehicles = 12;  // three processes each; discovery covers 40 participants a host
+constexpr std::size_t kMostVehicles = 50;  // flown and tested
 
 void check(const FlyOptions& options, std::size_t vehicles) {
   const bool lockstep = options.clock == runtime::Clock::kLockstep;
@@ -63,15 +66,14 @@ void require_room(double spacing_m, const plant::Vehicle& vehicle) {
 // mission belongs to the i-th vehicle.
 std::vector<LaunchConfiguration> plan_flights(const FlyOptions& options,
                                               const std::vector<std::string>& vehicles) {
-  const std::vector<std::string> missions = split_list(options.mission);
+  const std::vector<std::string> missions = runtime::split_text(options.mission, ',');
   require_one_for_each(missions.size(), vehicles);
   std::vector<LaunchConfiguration> plans;
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     FlyOptions one = options;
     one.mission = missions[missions.size() == 1 ? 0 : i];
     one.seed = options.seed + i;
-    one.start_ned = {
-        0.0, options.spacing_m * (static_cast<double>(i) - 0.5 * static_cast<double>(vehicles.size() - 1))};
+    if (vehicles.size() > 1) one.start_ned = start_of(i, vehicles.size(), options.spacing_m, options.per_row);
     plans.push_back(plan_flight(one));
   }
   if (vehicles.size() > 1 && options.launch_mode == LaunchMode::kStarted)
@@ -97,32 +99,46 @@ std::unique_ptr<RecordFolder> make_record(const FlyOptions& options, const std::
   return folder;
 }
 
-// Flies all vehicles at the same time, each from its own thread.
-void fly_together(std::deque<ProcessFlight>& flights, const Interrupts& interrupts, ProgressLine& progress) {
+// Calls work(i) for each flight, each in a thread of its own. Throws the exception of the first that fails.
+template <class Work>
+void for_each_at_once(std::size_t flights, const Work& work) {
+  std::vector<std::future<void>> working;
+  for (std::size_t i = 0; i < flights; ++i)
+    working.push_back(std::async(std::launch::async, [&work, i] { work(i); }));
+  for (std::future<void>& one : working) one.wait();
+  for (std::future<void>& one : working) one.get();
+}
+
+// Flies all vehicles at the same time, ends the processes and writes the records.
+void fly_together(std::deque<ProcessFlight>& flights, ProcessGroup& processes, const Interrupts& interrupts,
+                  ProgressLine& progress) {
   std::vector<std::string> names;
   names.reserve(flights.size());
   for (const ProcessFlight& flight : flights) names.push_back(flight.vehicle_name());
   FleetProgress shares(progress, names);
   StartBarrier barrier(flights.size());
-  std::vector<std::future<void>> flying;
-  for (std::size_t i = 0; i < flights.size(); ++i) {
-    flying.push_back(std::async(std::launch::async, [&, i] {
-      try {
-        flights[i].fly(interrupts, &barrier, shares.of(i));
-      } catch (const std::exception& error) {
-        barrier.fail(names[i] + " failed: " + error.what());
-        throw;
-      }
-    }));
-  }
-  for (std::future<void>& flight : flying) flight.wait();
-  for (std::future<void>& flight : flying) flight.get();
+  for_each_at_once(flights.size(), [&](std::size_t i) {
+    try {
+      flights[i].fly(interrupts, &barrier, shares.of(i));
+    } catch (const std::exception& error) {
+      barrier.fail(names[i] + " failed: " + error.what());
+      throw;
+    }
+  });
+  const std::vector<std::string> errors = processes.stop();
+  for_each_at_once(flights.size(), [&](std::size_t i) { flights[i].finish(errors, shares.of(i)); });
+}
+
+std::vector<std::string> vehicles_of(const FlyOptions& options) {
+  return comms::vehicles_of_list(options.vehicles > 1 ? "kl1..kl" + std::to_string(options.vehicles)
+                                                      : options.network.vehicle);
 }
 
 int fly(const FlyOptions& options) {
-  const std::vector<std::string> vehicles = split_list(options.network.vehicle);
+  const std::vector<std::string> vehicles = vehicles_of(options);
   check(options, vehicles.size());
-  std::vector<LaunchConfiguration> plans = plan_flights(options, vehicles);
+  Fleet fleet{vehicles, plan_flights(options, vehicles), options.spacing_m, options.per_row, {}};
+  std::vector<LaunchConfiguration>& plans = fleet.plans;
 
   const bool attached = options.launch_mode == LaunchMode::kAttached;
   std::optional<comms::DomainLock> domain_lock;
@@ -136,9 +152,15 @@ int fly(const FlyOptions& options) {
   if (!domain_lock && !attached) reservation.emplace(network, vehicles);
   const std::unique_ptr<RecordFolder> record = make_record(options, vehicles, plans);
 
+  fleet.folder = record->path();
+
   ProgressLine progress;
-  std::deque<ProcessFlight> flights;
   const Interrupts interrupts;
+  ProcessGroup processes(ground::processes(fleet, network));
+  comms::NodeSettings own = network;
+  own.deadlines = options.clock != runtime::Clock::kLockstep;
+  const comms::Participant participant(own, vehicles);
+  std::deque<ProcessFlight> flights;
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     const LaunchConfiguration& plan = plans[i];
     for (const std::string& assumption : plan.mission.assumptions)
@@ -149,12 +171,14 @@ int fly(const FlyOptions& options) {
                  network.vehicle + " in domain " + std::to_string(network.domain) +
                  (network.localhost_only ? " (--localhost-only)" : "") + ", record in " +
                  plan.folder.string());
-    flights.emplace_back(std::move(plans[i]), network);
+    own.vehicle = vehicles[i];
+    flights.emplace_back(std::move(plans[i]), own, processes, participant);
   }
   if (flights.size() == 1) {
     flights.front().fly(interrupts, nullptr, progress);
+    flights.front().finish(processes.stop(), progress);
   } else {
-    fly_together(flights, interrupts, progress);
+    fly_together(flights, processes, interrupts, progress);
   }
   // A killed process leaves its shared memory segments behind.
   if (network.transport == comms::Transport::kSharedMemory) comms::remove_stale_shared_memory();
@@ -179,6 +203,12 @@ Command add_fly_command(runtime::CommandLine root) {
                  "the origin; each mission is shifted with its vehicle")
       .range(-100.0, 100.0)
       .show_default();
+  app.add_option("--per-row", options->per_row,
+                 "number of vehicles in a row; further rows stand to the north; default: all in one row")
+      .range(1, static_cast<int>(kMostVehicles));
+  app.add_option("--vehicles", options->vehicles, "number of vehicles, named kl1, kl2 and so on")
+      .range(1, static_cast<int>(kMostVehicles))
+      .excludes(app.option("--vehicle-name"));
   app.option("--localhost-only")
       .describe(
           "with --attach: use the loopback interface only, without multicast; always set without --attach");
@@ -208,7 +238,9 @@ Command add_fly_command(runtime::CommandLine root) {
       "Several vehicles (--vehicle-name kl1,kl2) start their missions at the same time. If one fails, the "
       "others land.\nThe paths are not checked for collisions between vehicles.\nCtrl-C lands; a second "
       "Ctrl-C ends the flight at once.\nexample: swiftlet fly square --record /tmp/square --json | jq "
-      ".rms_3d_m\nexample: swiftlet fly square,zigzag --vehicle-name kl1,kl2");
+      ".rms_3d_m\nexample: swiftlet fly square,zigzag --vehicle-name kl1,kl2\nexample: swiftlet fly hop.yaml "
+      "--vehicles 16 "
+      "--clock lockstep --spacing 0.4 --per-row 4");
   return {app, [options] { return fly(*options); }};
 }
 

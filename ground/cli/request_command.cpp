@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/services/dds/vehicle_list.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -213,7 +214,7 @@ runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std
 int run_request(const RequestOptions& options, const VehicleRequest& request) {
   const Context context(options.network);
   RequestOutcomes outcomes;
-  for (const std::string& name : split_list(options.network.vehicle)) {
+  for (const std::string& name : comms::vehicles_of_list(options.network.vehicle)) {
     RequestOutcome outcome;
     outcome.vehicle = std::make_unique<Vehicle>(context, name);
     outcomes.push_back(std::move(outcome));

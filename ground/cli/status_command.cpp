@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdio>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/client/controllers.hpp"
 #include "swiftlet/ground/client/silence.hpp"
+#include "swiftlet/ground/terminal/clock_text.hpp"
 #include "swiftlet/ground/terminal/state_lines.hpp"
 #include "swiftlet/math/euler.hpp"
 #include "swiftlet/services/messages/wire.hpp"
@@ -52,6 +54,10 @@ nlohmann::ordered_json to_json(const msg::ControlGains& gains) {
           {"integral_limit_m_s2", gains.integral_limit()},
           {"disturbance_bandwidth_rad_s", gains.disturbance_bandwidth()},
           {"disturbance_limit_m_s2", gains.disturbance_limit()}};
+}
+
+nlohmann::ordered_json measured_or_null(double value) {
+  return std::isfinite(value) && value >= 0.0 ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
 }
 
 template <class T>
@@ -164,6 +170,21 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Comma
                      {"deadline_misses", control.deadline_misses()},
                      {"step_time_max_us", control.step_time_max_us()},
                      {"realtime_scheduling", control.realtime_scheduling()}};
+  json["loop_delay_s"] = {{"p50", measured_or_null(control.loop_delay_p50_s())},
+                          {"p95", measured_or_null(control.loop_delay_p95_s())},
+                          {"margin", measured_or_null(control.delay_margin_s())},
+                          {"near_margin", control.delay_near_margin()}};
+  json["clock"] = nullptr;
+  if (view.clock.seen()) {
+    const msg::ClockStatus& clock = view.clock.message;
+    json["clock"] = {{"known", clock.known()},
+                     {"offset_s", 1e-9 * static_cast<double>(clock.offset_ns())},
+                     {"uncertainty_s", 1e-9 * clock.uncertainty_ns()},
+                     {"drift", clock.drift()},
+                     {"drift_uncertainty", clock.drift_uncertainty()},
+                     {"round_trip_s", 1e-9 * clock.round_trip_ns()},
+                     {"steps", clock.steps()}};
+  }
   json["settings"] = {{"name", control.settings().c_str()},
                       {"progress", control.gains_progress()},
                       {"gains", to_json(control.gains())}};
@@ -195,6 +216,16 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Comma
   return json;
 }
 
+// "loop delay p50 2 ms, p95 2 ms, unstable from 52 ms on".
+std::string delay_text(const msg::ControlStatus& control) {
+  const std::string margin = std::isfinite(control.delay_margin_s())
+                                 ? fmt::format("unstable from {:.0f} ms on", 1e3 * control.delay_margin_s())
+                                 : "stable with any";
+  if (control.loop_delay_p95_s() < 0.0) return "not measured, " + margin;
+  return fmt::format("p50 {:.0f} ms, p95 {:.0f} ms, {}", 1e3 * control.loop_delay_p50_s(),
+                     1e3 * control.loop_delay_p95_s(), margin);
+}
+
 template <class T>
 std::string age_text(const Latest<T>& latest, Clock::time_point now) {
   if (!latest.seen()) return "not received";
@@ -209,6 +240,8 @@ void print(const View& view, const Rates& rates, const CommandOptions& options) 
   for (const Silence& silence : silences)
     print_alarm(stdout, to_string(silence, std::chrono::system_clock::now()));
   if (control.source_conflict().size() > 0) print_alarm(stdout, control.source_conflict().c_str());
+  if (control.delay_near_margin())
+    print_alarm(stdout, "the delay of the loop is near what makes it unstable");
   std::printf("%s in domain %d: %s%s (%s), %s\n", options.network.vehicle.c_str(), options.network.domain,
               control_is_silent(silences) ? "last known: " : "", mode_name(control.mode()),
               control.reason().c_str(), control.airborne() ? "airborne" : "on the ground");
@@ -250,6 +283,12 @@ void print(const View& view, const Rates& rates, const CommandOptions& options) 
       control.rate_hz(), static_cast<unsigned long long>(control.deadline_misses()),
       static_cast<unsigned long long>(control.cycles()), control.step_time_max_us(),
       control.realtime_scheduling() ? "" : ", no real-time scheduling");
+  std::printf("  delay     %s\n", delay_text(control).c_str());
+  if (const msg::ClockStatus& clock = view.clock.message; view.clock.seen()) {
+    std::printf("  clock     frames %s (within %.3f ms, %.1f ppm)%s\n", clock_text(clock).c_str(),
+                1e-6 * clock.uncertainty_ns(), 1e6 * clock.drift_uncertainty(),
+                clock.known() ? "" : ", UNKNOWN: poses are withheld");
+  }
   if (control.settings().size() > 0) {
     std::printf("  settings  %s", control.settings().c_str());
     if (control.gains_progress() < 1.0)

@@ -8,6 +8,7 @@
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
+#include "swiftlet/services/dds/vehicle_list.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -39,7 +40,7 @@ void confirm(const StopOptions& options) {
   if (options.yes) return;
   if (isatty(STDIN_FILENO) == 0 || isatty(STDERR_FILENO) == 0)
     throw InputError("stop: requires --yes without a terminal: a vehicle in the air falls");
-  const bool one = split_list(options.network.vehicle).size() == 1;
+  const bool one = comms::vehicles_of_list(options.network.vehicle).size() == 1;
   std::fprintf(stderr, "The rotors turn off at once, also if %s %s in the air: %s.\nType stop to do it: ",
                options.network.vehicle.c_str(), one ? "is" : "are", one ? "it falls" : "they fall");
   std::string typed;
@@ -78,7 +79,7 @@ Command add_takeoff_command(runtime::CommandLine root) {
       add_request_subcommand(root, "takeoff", "Climb vertically and hold; the vehicle must be armed",
                              "swiftlet takeoff 1.2 --speed 0.5", options);
   const runtime::Option height =
-      app.add_option("height", options->height_m, "height above the ground, m").positive().show_default();
+      app.add_option("height_m", options->height_m, "height above the ground").positive().show_default();
   app.add_option("--height", options->height_m, "the same").positive().excludes(height);
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   return {app, [options] {

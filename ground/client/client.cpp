@@ -85,8 +85,9 @@ void keep_sample(const Message& message, Track<Sample>& track) {
 Client::Client(const comms::NodeSettings& settings, FlightRecord* record)
     : Client(nullptr, settings, record) {}
 
-Client::Client(const comms::Participant& participant, const comms::NodeSettings& settings)
-    : Client(&participant, settings, nullptr) {}
+Client::Client(const comms::Participant& participant, const comms::NodeSettings& settings,
+               FlightRecord* record)
+    : Client(&participant, settings, record) {}
 
 Client::Client(const comms::Participant* shared, const comms::NodeSettings& settings, FlightRecord* record)
     : settings_(settings),
@@ -190,6 +191,8 @@ void Client::subscribe_all() {
         if (record_ != nullptr && !again) record_->truth.append(row_of(truth));
         keep(&View::truth, truth);
       }));
+  subscriptions_.push_back(node_.subscribe<msg::ClockStatus>(
+      kClockStatus, [this](const msg::ClockStatus& status) { keep(&View::clock, status); }));
   node_.on_peer([this](const comms::PeerEvent& peer) {
     {
       const std::lock_guard lock(mutex_);

@@ -57,6 +57,7 @@ struct View {
   Latest<msg::Estimate> estimate;
   Latest<msg::Reference> reference;
   Latest<msg::GroundTruth> truth;
+  Latest<msg::ClockStatus> clock;  // of motion capture with a clock of its own
   HeardSamples samples;
   std::map<std::string, int> peers;  // number of live processes, by name
   std::map<std::uint64_t, Latest<msg::ControllerState>>
@@ -72,7 +73,8 @@ class Client {
   // network cannot be joined.
   explicit Client(const comms::NodeSettings& settings, FlightRecord* record = nullptr);
   // Shares the participant with other clients. settings.vehicle names the vehicle.
-  Client(const comms::Participant& participant, const comms::NodeSettings& settings);
+  Client(const comms::Participant& participant, const comms::NodeSettings& settings,
+         FlightRecord* record = nullptr);
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 

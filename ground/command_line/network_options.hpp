@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/runtime/command_line.hpp"
@@ -10,16 +9,13 @@
 namespace swiftlet::ground {
 
 // How many vehicles a command accepts. NodeSettings::vehicle holds several names as one list, see
-// split_list().
+// comms::vehicles_of_list().
 enum class Vehicles { kOne, kSeveral };
 
 // Adds the options of comms::add_node_options() and refuses invalid vehicle names as bad input. `network`
 // must outlive the parsing.
 void add_network_options(runtime::CommandLine app, comms::NodeSettings& network,
                          Vehicles vehicles = Vehicles::kOne);
-
-// Splits a list at its commas.
-std::vector<std::string> split_list(const std::string& list);
 
 std::string to_string(comms::Transport transport);  // as on the command line
 

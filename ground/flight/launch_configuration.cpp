@@ -1,8 +1,10 @@
 #include "swiftlet/ground/flight/launch_configuration.hpp"
 
+#include <algorithm>
 #include <ctime>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/ground/command_line/command.hpp"
@@ -164,22 +166,35 @@ FlightReport report_of(const LaunchConfiguration& plan) {
   return report;
 }
 
-std::vector<ProcessSettings> processes(const LaunchConfiguration& plan, const comms::NodeSettings& network) {
-  if (plan.launch_mode != LaunchMode::kStarted) return {};
-  std::vector<std::string> common = {
-      "--domain",    std::to_string(network.domain), "--vehicle-name", network.vehicle,
-      "--transport", to_string(network.transport),   "--clock",        runtime::to_string(plan.clock)};
+Eigen::Vector2d start_of(std::size_t i, std::size_t vehicles, double spacing_m, int per_row) {
+  const std::size_t columns =
+      per_row == 0 ? vehicles : std::min<std::size_t>(vehicles, static_cast<std::size_t>(per_row));
+  const std::size_t rows = (vehicles + columns - 1) / columns;
+  const auto offset = [spacing_m](std::size_t place, std::size_t places) {
+    return spacing_m * (static_cast<double>(place) - 0.5 * static_cast<double>(places - 1));
+  };
+  return {offset(i / columns, rows), offset(i % columns, columns)};
+}
+
+std::vector<ProcessSettings> processes(const Fleet& fleet, const comms::NodeSettings& network) {
+  const LaunchConfiguration& first = fleet.plans.front();
+  if (first.launch_mode != LaunchMode::kStarted) return {};
+  std::vector<std::string> common = {"--domain",       std::to_string(network.domain),
+                                     "--vehicle-name", fmt::format("{}", fmt::join(fleet.vehicles, ",")),
+                                     "--transport",    to_string(network.transport),
+                                     "--clock",        runtime::to_string(first.clock)};
   if (network.localhost_only) common.emplace_back("--localhost-only");
   if (!network.network_key_file.empty())
     common.insert(common.end(), {"--network-key", absolute_path(network.network_key_file)});
+  if (!network.security.empty()) common.insert(common.end(), {"--security", absolute_path(network.security)});
   const auto process = [&](const std::string& name, const fs::path& program,
                            std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), common.begin(), common.end());
-    return ProcessSettings{name, program, std::move(arguments), plan.folder / (name + ".log")};
+    return ProcessSettings{name, program, std::move(arguments), fleet.folder / (name + ".log")};
   };
-  const std::string vehicle = absolute_path(plan.vehicle_file);
-  const std::string simulation = absolute_path(plan.simulation_file);
-  const std::string seed = std::to_string(plan.seed);
+  const std::string vehicle = absolute_path(first.vehicle_file);
+  const std::string simulation = absolute_path(first.simulation_file);
+  const std::string seed = std::to_string(first.seed);
   std::vector<std::string> plant = {"--vehicle",
                                     vehicle,
                                     "--simulation",
@@ -187,21 +202,25 @@ std::vector<ProcessSettings> processes(const LaunchConfiguration& plan, const co
                                     "--seed",
                                     seed,
                                     "--start",
-                                    runtime::exact(plan.start_ned.x()),
-                                    runtime::exact(plan.start_ned.y())};
-  if (plan.imu_rate_option_hz > 0) {
-    plant.insert(plant.end(), {"--imu-rate", std::to_string(plan.imu_rate_option_hz)});
+                                    runtime::exact(first.start_ned.x()),
+                                    runtime::exact(first.start_ned.y())};
+  const bool several = fleet.vehicles.size() > 1;
+  if (several) plant.insert(plant.end(), {"--spacing", runtime::exact(fleet.spacing_m)});
+  if (several && fleet.per_row > 0) plant.insert(plant.end(), {"--per-row", std::to_string(fleet.per_row)});
+  if (first.imu_rate_option_hz > 0) {
+    plant.insert(plant.end(), {"--imu-rate", std::to_string(first.imu_rate_option_hz)});
   }
-  if (plan.clock == runtime::Clock::kLockstep) {
+  if (first.clock == runtime::Clock::kLockstep) {
     plant.emplace_back("--paused");
-    if (plan.trace) plant.insert(plant.end(), {"--trace", absolute_path(plan.trace_file())});
+    const fs::path trace = several ? fleet.folder / "{}" / first.trace_file().filename() : first.trace_file();
+    if (first.trace) plant.insert(plant.end(), {"--trace", absolute_path(trace)});
   }
-  if (plan.speed) plant.insert(plant.end(), {"--speed", runtime::exact(*plan.speed)});
+  if (first.speed) plant.insert(plant.end(), {"--speed", runtime::exact(*first.speed)});
   return {
-      process("swiftlet-plant", plan.plant_program, std::move(plant)),
-      process("swiftlet-mocap", plan.mocap_program, {"--simulation", simulation, "--seed", seed}),
-      process("swiftlet-control", plan.control_program,
-              {"--vehicle", vehicle, "--control", absolute_path(plan.control_file)}),
+      process("swiftlet-plant", first.plant_program, std::move(plant)),
+      process("swiftlet-mocap", first.mocap_program, {"--simulation", simulation, "--seed", seed}),
+      process("swiftlet-control", first.control_program,
+              {"--vehicle", vehicle, "--control", absolute_path(first.control_file)}),
   };
 }
 

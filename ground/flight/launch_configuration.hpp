@@ -47,7 +47,9 @@ struct FlyOptions {
   comms::NodeSettings network;
   // m, initial position; the mission is shifted by it.
   Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();
+  int vehicles = 1;        // above 1: kl1, kl2 ... instead of network.vehicle
   double spacing_m = 1.0;  // distance between several vehicles, to the east
+  int per_row = 0;         // several vehicles: further rows stand to the north; 0: all in one row
   int domain = -1;         // DDS domain; < 0: a free one, or 0 if attached
   bool trace = false;      // write a trace of a lockstep or in-process flight
   bool sensors = false;    // record sensors and commands, for `swiftlet identify flight`
@@ -92,8 +94,20 @@ ExistingRecord existing_record(const FlyOptions& options);
 // Throws as draw() of dispersion.hpp does.
 DispersionSample draw(const LaunchConfiguration& plan, std::uint64_t seed);
 
-// The three processes of a plan of kStarted, on this network; empty for other launch modes.
-std::vector<ProcessSettings> processes(const LaunchConfiguration& plan, const comms::NodeSettings& network);
+// The vehicles of one command, with the i-th plan for the i-th name. They differ in mission, seed and start only.
+struct Fleet {
+  std::vector<std::string> vehicles;
+  std::vector<LaunchConfiguration> plans;
+  double spacing_m = 1.0;
+  int per_row = 0;
+  std::filesystem::path folder;  // of the record; that of the plan of a single vehicle
+};
+
+// Where the i-th of several vehicles starts, m: in rows about the origin.
+Eigen::Vector2d start_of(std::size_t i, std::size_t vehicles, double spacing_m, int per_row);
+
+// The three processes that serve a fleet of kStarted, on this network; empty for other launch modes.
+std::vector<ProcessSettings> processes(const Fleet& fleet, const comms::NodeSettings& network);
 
 // A report with the fields of the plan filled in.
 FlightReport report_of(const LaunchConfiguration& plan);

@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 using ControlMode = control::Mode;
 
 constexpr auto kReadyTimeout = 20s;
-constexpr auto kRequestTimeout = 3s;
+constexpr auto kRequestTimeout = 10s;
 constexpr auto kRetryPeriod = 200ms;
 constexpr auto kStep = 50ms;
 constexpr auto kLastFiguresTimeout = 1500ms;

@@ -30,33 +30,33 @@ void take_figures(const View& view, FlightReport& report) {
 
 }  // namespace
 
-ProcessFlight::ProcessFlight(LaunchConfiguration plan, comms::NodeSettings network)
+ProcessFlight::ProcessFlight(LaunchConfiguration plan, comms::NodeSettings network, ProcessGroup& processes,
+                             const comms::Participant& participant)
     : plan_(std::move(plan)),
       network_(std::move(network)),
       record_(plan_.record_capacity()),
-      report_(report_of(plan_)) {
+      report_(report_of(plan_)),
+      processes_(processes) {
   report_.vehicle_name = network_.vehicle;
   if (plan_.sensors) record_.sensors = std::make_unique<SensorRecord>(plan_.record_capacity());
   keep_settings(plan_);
-  processes_.emplace(processes(plan_, network_));
+  client_.emplace(participant, network_, &record_);
 }
 
-void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* barrier, Progress& progress) {
-  fly_mission(interrupts, barrier, progress);
-  for (const std::string& error : processes_->stop()) {
+void ProcessFlight::finish(const std::vector<std::string>& end_errors, Progress& progress) {
+  client_.reset();
+  for (const std::string& error : end_errors) {
     if (report_.reason.empty()) report_.reason = "after the flight: " + error;
   }
   evaluate(report_, record_, window_);
   write_record(plan_.folder, record_, report_, window_, progress);
 }
 
-void ProcessFlight::fly_mission(const Interrupts& interrupts, StartBarrier* barrier, Progress& progress) {
-  comms::NodeSettings network = network_;
-  network.deadlines = plan_.clock != runtime::Clock::kLockstep;
-  Client client(network, &record_);
+void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* barrier, Progress& progress) {
+  Client& client = *client_;
   const auto start = Clock::now();
   try {
-    const NetworkTransport::Watch watch{[this] { return processes_->exited_process(); },
+    const NetworkTransport::Watch watch{[this] { return processes_.exited_process(); },
                                         [&] { return interrupts.count(); }, barrier,
                                         plan_.launch_mode == LaunchMode::kAttached};
     NetworkTransport vehicle(client, record_, plan_.mission, plan_.clock, watch, progress);
@@ -65,7 +65,7 @@ void ProcessFlight::fly_mission(const Interrupts& interrupts, StartBarrier* barr
   } catch (const FlightFailure& failure) {
     report_.reason = failure.what();
     // The end of a process may be noticed after what it caused.
-    const auto exited_process = processes_->exited_process();
+    const auto exited_process = processes_.exited_process();
     if (exited_process && report_.reason.find(*exited_process) == std::string::npos)
       report_.reason = *exited_process + "; " + report_.reason;
     if (barrier != nullptr) barrier->fail(network_.vehicle + " failed: " + report_.reason);

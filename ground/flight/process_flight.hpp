@@ -1,8 +1,11 @@
-// A flight of one vehicle over DDS: starts its processes, flies the mission, writes record and report.
+// A flight of one vehicle over DDS: flies the mission, writes record and report.
 #pragma once
 
-#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/flight/launch_configuration.hpp"
 #include "swiftlet/ground/flight/process_group.hpp"
@@ -16,27 +19,30 @@ namespace swiftlet::ground {
 
 class ProcessFlight {
  public:
-  // Creates the record's folder and starts the plan's processes, which end with the calling thread. Throws
-  // InputError or std::runtime_error; no process is running then.
-  ProcessFlight(LaunchConfiguration plan, comms::NodeSettings network);
+  // network.vehicle names the vehicle. The processes and the participant are shared with the other vehicles of the
+  // flight and must outlive this object. Throws std::runtime_error.
+  ProcessFlight(LaunchConfiguration plan, comms::NodeSettings network, ProcessGroup& processes,
+                const comms::Participant& participant);
 
-  // Flies the mission, ends the processes and writes the record. barrier: shared with the other vehicles of
-  // the flight; null for a single one. Call once, from any thread. Throws std::runtime_error if the record
-  // cannot be written.
+  // Flies the mission. barrier: shared with the other vehicles of the flight; null for a single one. Call once, from any
+  // thread. The vehicle is attended to until finish().
   void fly(const Interrupts& interrupts, StartBarrier* barrier, Progress& progress);
+
+  // Writes the record, once the processes have ended. end_errors: what ProcessGroup::stop() returned. Throws
+  // std::runtime_error if the record cannot be written.
+  void finish(const std::vector<std::string>& end_errors, Progress& progress);
 
   const FlightReport& report() const { return report_; }
   const std::string& vehicle_name() const { return network_.vehicle; }
 
  private:
-  void fly_mission(const Interrupts& interrupts, StartBarrier* barrier, Progress& progress);
-
   LaunchConfiguration plan_;
   comms::NodeSettings network_;
   FlightRecord record_;
   FlightReport report_;
   Window window_;
-  std::optional<ProcessGroup> processes_;
+  ProcessGroup& processes_;
+  std::optional<Client> client_;  // last: records into the members above
 };
 
 }  // namespace swiftlet::ground

@@ -5,7 +5,8 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::chrono::seconds kGrace{10};  // a busy machine may delay a process by some seconds
+constexpr std::chrono::seconds kGrace{
+    30};  // a busy machine, or its disk, may delay a process by many seconds
 
 }  // namespace
 
@@ -17,6 +18,7 @@ ProcessGroup::ProcessGroup(const std::vector<ProcessSettings>& processes) {
 ProcessGroup::~ProcessGroup() { stop(); }
 
 std::optional<std::string> ProcessGroup::exited_process() {
+  const std::lock_guard<std::mutex> lock(mutex_);
   for (ChildProcess& child : children_) {
     const auto end = child.poll();
     if (!end) continue;
@@ -27,6 +29,7 @@ std::optional<std::string> ProcessGroup::exited_process() {
 }
 
 std::vector<std::string> ProcessGroup::stop() {
+  const std::lock_guard<std::mutex> lock(mutex_);
   std::vector<std::string> errors;
   for (ChildProcess& child : children_) child.signal(SIGTERM);
   const auto deadline = std::chrono::steady_clock::now() + kGrace;
@@ -36,7 +39,7 @@ std::vector<std::string> ProcessGroup::stop() {
     const bool ended = child.wait(left).has_value();
     const ProcessEnd end = child.stop(std::chrono::milliseconds::zero());
     if (!ended) {
-      errors.push_back(child.name() + " did not end within 10 s of SIGTERM and was killed");
+      errors.push_back(child.name() + " did not end within 30 s of SIGTERM and was killed");
     } else if (end.by_signal || end.code != 0) {
       errors.push_back(child.name() + " " + end.to_string());
     }

@@ -1,7 +1,8 @@
-// The processes of one simulated flight: plant, motion capture and control.
+// The processes of a simulated flight of one or several vehicles: plant, motion capture and control.
 #pragma once
 
 #include <chrono>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,13 +21,14 @@ class ProcessGroup {
   ProcessGroup(const ProcessGroup&) = delete;
   ProcessGroup& operator=(const ProcessGroup&) = delete;
 
-  // A sentence on the first process that has exited: its name, its exit status and its last log line.
+  // A sentence on the first process that has exited: its name, its exit status and its last log line. Thread-safe.
   std::optional<std::string> exited_process();
 
   // Ends all processes. Returns a sentence for each that did not end cleanly.
   std::vector<std::string> stop();
 
  private:
+  std::mutex mutex_;  // guards children_
   std::vector<ChildProcess> children_;
 };
 

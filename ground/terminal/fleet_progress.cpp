@@ -6,6 +6,7 @@ namespace swiftlet::ground {
 namespace {
 
 constexpr std::size_t kLeastWidth = 16;
+constexpr std::size_t kMostInALog = 6;  // vehicles in a line that goes to a file
 
 }  // namespace
 
@@ -20,6 +21,8 @@ void FleetProgress::Share::update(int stage, const std::string& text) {
   const std::size_t width = all_.line_.width();
   std::string line;
   int stages = 0;
+  const std::size_t most = width > 0 ? width / kLeastWidth : kMostInALog;
+  if (all_.shares_.size() > most) return all_.show_last();
   for (const Share& share : all_.shares_) {
     std::string part = share.vehicle_ + " " + share.text_;
     if (width > 0) part.resize(std::max(kLeastWidth, width / all_.shares_.size()) - 2, ' ');
@@ -27,6 +30,15 @@ void FleetProgress::Share::update(int stage, const std::string& text) {
     stages += share.stage_;
   }
   all_.line_.update(stages, line);
+}
+
+// For more vehicles than fit into the line: the one that is furthest behind.
+void FleetProgress::show_last() {
+  int stages = 0;
+  for (const Share& share : shares_) stages += share.stage_;
+  const Share& last = *std::min_element(shares_.begin(), shares_.end(),
+                                        [](const Share& a, const Share& b) { return a.stage_ < b.stage_; });
+  line_.update(stages, "last of " + std::to_string(shares_.size()) + ": " + last.vehicle_ + " " + last.text_);
 }
 
 void FleetProgress::Share::say(const std::string& text) {

@@ -35,6 +35,8 @@ class FleetProgress {
     int stage_ = 0;
   };
 
+  void show_last();  // requires mutex_
+
   ProgressLine& line_;
   std::mutex mutex_;  // guards line_ and shares_
   std::deque<Share> shares_;

@@ -9,6 +9,7 @@
 #include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/ground/client/controllers.hpp"
 #include "swiftlet/ground/client/silence.hpp"
+#include "swiftlet/ground/terminal/clock_text.hpp"
 #include "swiftlet/ground/terminal/state_lines.hpp"
 #include "swiftlet/services/messages/wire.hpp"
 
@@ -227,6 +228,7 @@ void add_timing(const View& view, const WatchFacts& facts, Clock::time_point now
                            vehicle.sense_to_actuate_max_us()));
     add(lines, fmt::format("{:<11} {:.0f} Hz", "IMU", vehicle.imu_rate_hz()));
   }
+  if (view.clock.seen()) add(lines, fmt::format("{:<11} {}", "clock", clock_text(view.clock.message)));
   add(lines, fmt::format("{:<11} {:.1f} Hz, {} of {} steps late, longest {:.0f} us", "control",
                          control.rate_hz(), static_cast<unsigned long long>(control.deadline_misses()),
                          static_cast<unsigned long long>(control.cycles()), control.step_time_max_us()));
@@ -261,11 +263,16 @@ std::vector<std::string> warnings_of(const View& view, Clock::time_point now) {
   if (!view.control.seen()) return {"no control service"};
   const msg::ControlStatus& control = view.control.message;
   if (control.source_conflict().size() > 0) warnings.emplace_back(control.source_conflict().c_str());
+  if (control.delay_near_margin())
+    warnings.push_back(fmt::format("delay of the loop {:.0f} ms, unstable from {:.0f} ms on",
+                                   1e3 * control.loop_delay_p95_s(), 1e3 * control.delay_margin_s()));
   if (mode_of(view) == Mode::kStopped)
     warnings.push_back("rotors stopped: " + std::string(control.reason().c_str()));
   if (view.vehicle.seen() && view.vehicle.message.fault().size() > 0)
     warnings.push_back("vehicle: " + std::string(view.vehicle.message.fault().c_str()));
   if (!control.has_pose()) warnings.push_back(fmt::format("no pose for {:.1f} s", pose_age_s(view, now)));
+  if (view.clock.seen() && !view.clock.message.known())
+    warnings.emplace_back("poses are withheld: the clock of motion capture is unknown");
   if (view.estimate.seen() && view.estimate.message.pose_fault() != msg::Estimate_Constants::POSE_FAULT_NONE)
     warnings.push_back(std::string("poses are refused: ") +
                        pose_fault_name(view.estimate.message.pose_fault()));

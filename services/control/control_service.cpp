@@ -46,7 +46,8 @@ ControlService::ControlService(const plant::Vehicle& vehicle, const control::Con
       realtime_(realtime),
       loop_(vehicle, settings),
       command_server_(loop_, settings.limits, GainDesigner(vehicle, settings, std::move(fixed)), wake_),
-      telemetry_(loop_, command_server_, settings.failsafe, node, controller_),
+      telemetry_(loop_, command_server_, settings.failsafe, node, controller_,
+                 {vehicle.motor.time_constant_s, settings.estimator.rotor_speed_bandwidth}),
       failover_(controller_, failover_priority),
       reports_(node.publish(topics::kControllerState)),
       commands_(node.publish(topics::kActuatorCommand, failover_.next_term())),
@@ -255,7 +256,7 @@ void ControlService::answer(const msg::Imu& message, Role role) {
   last_answer_ = comms::to_message(loop_.step(sample, arrived_ns, role, failover_.followed_term()));
   last_answer_.term(clock_ == runtime::Clock::kLockstep ? failover_.next_term() : failover_.term());
   if (role == Role::kActive && !loop_.detecting_airborne()) publish_command(last_answer_);
-  if (loop_.finish(runtime::monotonic_ns())) wake_.post();
+  if (loop_.finish(runtime::monotonic_ns(), failover_.loop_delay().figures())) wake_.post();
   if (loop_.report_due()) report(message.stamp_ns());
 }
 

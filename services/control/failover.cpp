@@ -64,10 +64,12 @@ void Failover::step_down(std::uint32_t to_term) {
 
 Role Failover::sample(std::int64_t stamp_ns, const plant::ObeyedCommand& obeyed, std::int64_t now_ns) {
   pass_time(stamp_ns, obeyed, now_ns);
+  loop_delay_.sample(stamp_ns, obeyed);
   obeyed_term_ = obeyed.any ? obeyed.term : 0;
   newest_term_ = std::max(newest_term_, obeyed_term_);
   if (role_ == Role::kActive) {
-    const bool another_flies = obeyed.any && obeyed.term > own_term_ && silence_ns_ <= kPatienceNs;
+    const bool another_flies =
+        obeyed.any && obeyed.term > own_term_ && silence_ns_ <= least_patience_ns(obeyed);
     if (another_flies) step_down(obeyed.term);
   } else if (silence_ns_ > patience_ns(obeyed, now_ns) && !is_on_trial()) {
     continues_ = knows_flight(now_ns);
@@ -104,10 +106,17 @@ bool Failover::is_on_trial() const {
   return obeyed_term_ != 0 && obeyed_term_ < followed_term_ && followed_for_ns_ < kTrialNs;
 }
 
+std::int64_t Failover::least_patience_ns(const plant::ObeyedCommand& obeyed) const {
+  const std::int64_t delay_ns = loop_delay_.figures().p95_ns;
+  if (obeyed.any && delay_ns < 0) return kUnknownDelayNs;
+  return std::clamp(delay_ns + kBeyondDelayNs, kPatienceNs, kUnknownDelayNs);
+}
+
 std::int64_t Failover::patience_ns(const plant::ObeyedCommand& obeyed, std::int64_t now_ns) const {
   const std::int64_t turn_ns = rank(now_ns) * kPerRankNs;
-  if (knows_flight(now_ns)) return kPatienceNs + turn_ns;
-  return (obeyed.reported ? kUnknownFlightPatienceNs : kSearchNs) + turn_ns;
+  if (knows_flight(now_ns)) return least_patience_ns(obeyed) + turn_ns;
+  return std::max(obeyed.reported ? kUnknownFlightPatienceNs : kSearchNs, least_patience_ns(obeyed)) +
+         turn_ns;
 }
 
 // The number of standbys that rank before this one.

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/services/control/loop_delay.hpp"
 
 namespace swiftlet::services {
 
@@ -47,14 +48,19 @@ class Failover {
   std::uint32_t next_term() const;
   // The term of the active controller that is followed; 0 before its first heartbeat.
   std::uint32_t followed_term() const { return followed_term_; }
+  const LoopDelay& loop_delay() const { return loop_delay_; }
   // True if the state of the previous controller was known up to the last takeover: the flight continues from
   // it.
   bool continues() const { return continues_; }
 
   // Silence of the active controller, on the vehicle's clock, after which a standby takes over: the first in
   // rank after kPatienceNs, each further one kPerRankNs later. A standby that does not know the state of the
-  // flight waits for kUnknownFlightPatienceNs: those that know it take over first.
+  // flight waits for kUnknownFlightPatienceNs: those that know it take over first. Over a slow network
+  // commands are always old: the first one waits at least kBeyondDelayNs longer than 95 % of them need, and
+  // kUnknownDelayNs as long as that is not measured.
   static constexpr std::int64_t kPatienceNs = 25'000'000;
+  static constexpr std::int64_t kBeyondDelayNs = 15'000'000;
+  static constexpr std::int64_t kUnknownDelayNs = 250'000'000;
   static constexpr std::int64_t kPerRankNs = 15'000'000;
   static constexpr std::int64_t kUnknownFlightPatienceNs = 100'000'000;
   // The same if the vehicle does not report which term it obeys: time to discover an active controller.
@@ -74,6 +80,7 @@ class Failover {
   void pass_time(std::int64_t stamp_ns, const plant::ObeyedCommand& obeyed, std::int64_t now_ns);
   bool knows_flight(std::int64_t now_ns) const;
   bool is_on_trial() const;
+  std::int64_t least_patience_ns(const plant::ObeyedCommand& obeyed) const;
   std::int64_t patience_ns(const plant::ObeyedCommand& obeyed, std::int64_t now_ns) const;
   int rank(std::int64_t now_ns) const;
 
@@ -88,6 +95,7 @@ class Failover {
   std::int64_t followed_for_ns_ = 0;  // vehicle's clock
   bool continues_ = false;
 
+  LoopDelay loop_delay_;
   bool sampled_ = false;
   std::int64_t last_stamp_ns_ = 0;
   std::int64_t last_now_ns_ = 0;

@@ -133,7 +133,7 @@ void InnerLoop::report(comms::ControllerReport& report) const {
   report.flight = controller_.state();
 }
 
-bool InnerLoop::finish(std::int64_t now_ns) {
+bool InnerLoop::finish(std::int64_t now_ns, const LoopDelay::Figures& loop_delay) {
   timing_.answered(now_ns);
   const control::Status& status = controller_.status();
   saturated_ = saturated_ || status.saturated;
@@ -161,6 +161,7 @@ bool InnerLoop::finish(std::int64_t now_ns) {
   snapshot_.role = role_;
   snapshot_.saturated = saturated_;
   snapshot_.timing = timing_.figures();
+  snapshot_.loop_delay = loop_delay;
   snapshot_.setpoints = setpoints_;
   if (snapshots.push(snapshot_)) {
     last_snapshot_ = status;

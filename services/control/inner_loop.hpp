@@ -12,6 +12,7 @@
 
 #include "swiftlet/control/flight_controller.hpp"
 #include "swiftlet/services/control/failover.hpp"
+#include "swiftlet/services/control/loop_delay.hpp"
 #include "swiftlet/services/control/pending_request.hpp"
 #include "swiftlet/services/control/step_timing.hpp"
 #include "swiftlet/services/messages/convert.hpp"
@@ -41,6 +42,7 @@ struct Snapshot {
   bool saturated = false;       // in any step since the last snapshot
   control::ControlGains gains;  // in force
   StepTiming::Figures timing;
+  LoopDelay::Figures loop_delay;
   SetpointTally setpoints;
 };
 
@@ -76,10 +78,10 @@ class InnerLoop {
   // Call both from the IMU thread. step() returns the command. finish() does the rest of the step after the
   // command is sent, and returns true if there is new output. now_ns, monotonic: arrival of the sample for
   // step(), departure of the command for finish(). A standby steps too and adopts the active controller's
-  // state of term followed_term; its command must not be sent.
+  // state of term followed_term; its command must not be sent. loop_delay: for telemetry.
   plant::ActuatorCommand step(const plant::ImuSample& sample, std::int64_t now_ns, Role role = Role::kActive,
                               std::uint32_t followed_term = 0);
-  bool finish(std::int64_t now_ns);
+  bool finish(std::int64_t now_ns, const LoopDelay::Figures& loop_delay = {});
 
   // In-air restart, if there is no controller state to continue from: from the next step on detects whether
   // the vehicle is airborne, and if so engages hold. Until that is decided, for at most kAirborneDetectionNs,

@@ -1,22 +1,25 @@
-// swiftlet-control: the flight controller.
-#include <atomic>
+// swiftlet-control: the flight controllers.
 #include <chrono>
-#include <stdexcept>
+#include <memory>
 #include <string>
-#include <thread>
+#include <utility>
+#include <vector>
 
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/fixed_settings.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
-#include "swiftlet/services/control/control_service.hpp"
-#include "swiftlet/services/dds/discovery/peer_log.hpp"
+#include "swiftlet/services/control/hosted_control.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/node_options.hpp"
+#include "swiftlet/services/dds/vehicle_list.hpp"
 #include "swiftlet/services/runtime/clock.hpp"
+#include "swiftlet/services/runtime/hosting.hpp"
 #include "swiftlet/services/runtime/log.hpp"
+#include "swiftlet/services/runtime/log_label.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 #include "swiftlet/services/runtime/stop_signal.hpp"
 #include "swiftlet/services/runtime/version.hpp"
@@ -45,47 +48,39 @@ void add_options(runtime::CommandLine app, Options& options) {
       .range(0, 1000)
       .show_default();
   runtime::add_clock_option(app, options.clock);
-  comms::add_node_options(app, options.node);
+  options.node.name = "control";
+  comms::add_service_options(app, options.node);
   runtime::add_process_options(app, options.process);
 }
 
 void run(const Options& options) {
-  const plant::Vehicle vehicle =
+  const std::vector<std::string> names = comms::vehicles_of_list(options.node.vehicle);
+  ControllerSettings settings;
+  settings.vehicle =
       runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
   const std::string settings_file = runtime::configuration_file(runtime::kinds::kControl, options.control);
-  const control::ControlSettings settings = runtime::load_control_settings(settings_file);
+  settings.control = runtime::load_control_settings(settings_file);
+  settings.fixed = runtime::load_fixed_settings(settings_file);
+  settings.failover_priority = options.failover_priority;
+  settings.clock = options.clock;
 
   runtime::StopSignal stop;
   const runtime::Logging logging("control", options.process.log);
-  const runtime::RealtimeSettings realtime =
-      runtime::prepare_realtime(options.process.realtime, options.clock);
+  settings.realtime = runtime::prepare_realtime(options.process.realtime, options.clock);
 
-  comms::NodeSettings node_settings = options.node;
-  node_settings.name = "control";
-  node_settings.deadlines = options.clock == runtime::Clock::kRealtime;
-  comms::Node node(node_settings);
-  comms::log_peers(node);
-  ControlService service(vehicle, settings, options.failover_priority, node, realtime, options.clock,
-                         runtime::load_fixed_settings(settings_file));
-  spdlog::info("ready: {} with {} control, vehicle {}, domain {}, failover priority {}", vehicle.name,
-               settings.name, node_settings.vehicle, node_settings.domain, options.failover_priority);
-
-  std::atomic<bool> telemetry_ends{false};
-  std::thread telemetry([&] { service.run(telemetry_ends); });
-  while (!service.has_rival() && !stop.wait_for(kPollPeriod)) {
+  comms::NodeSettings network = options.node;
+  network.deadlines = options.clock == runtime::Clock::kRealtime;
+  const comms::Participant participant(network, names);
+  std::vector<std::unique_ptr<runtime::HostedVehicle>> vehicles;
+  for (const std::string& name : names) {
+    const std::string log_label = runtime::log_label_of(name, names.size());
+    const runtime::LogLabel label(log_label);
+    vehicles.push_back(std::make_unique<HostedControl>(participant, name, settings));
   }
-  telemetry_ends = true;
-  service.wake();
-  telemetry.join();
-  if (service.has_rival())
-    throw std::runtime_error("lockstep: another controller commands this vehicle; only one is allowed");
-
-  const Snapshot& last = service.last();
-  spdlog::info(
-      "ended in mode {}: {} steps at {:.1f} Hz since the rotors were last started, {} late, longest {:.0f} "
-      "us",
-      control::to_string(last.status.mode), last.timing.cycles, last.timing.rate_hz,
-      last.timing.deadline_misses, static_cast<double>(last.timing.longest_ns) * 1e-3);
+  spdlog::info("ready: {} with {} control, vehicle {}, domain {}, failover priority {}",
+               settings.vehicle.name, settings.control.name, fmt::join(names, ","), network.domain,
+               options.failover_priority);
+  runtime::host(std::move(vehicles), stop, kPollPeriod);
 }
 
 }  // namespace
@@ -97,8 +92,10 @@ int main(int argc, char** argv) {
   options.process.realtime.priority = 70;
   return runtime::run_process(
       {"swiftlet-control",
-       "The flight controller: answers each IMU sample with an actuator command, executes requests.",
-       "--control config/control/motor_lag.yaml --localhost-only", runtime::version_text()},
+       "The flight controller of one or several vehicles: answers each IMU sample with an actuator command, "
+       "executes requests.",
+       "--control config/control/motor_lag.yaml --vehicle-name kl1..kl4 --localhost-only",
+       runtime::version_text()},
       argc, argv, [&](runtime::CommandLine app) { services::add_options(app, options); },
       [&] { services::run(options); });
 }

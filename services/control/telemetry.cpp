@@ -39,12 +39,14 @@ void show_stop(const control::RequestKey& key, comms::msg::ControlStatus& messag
 }  // namespace
 
 Telemetry::Telemetry(InnerLoop& loop, CommandServer& command_server,
-                     const control::FailsafeSettings& thresholds, comms::Node& node, std::uint64_t controller)
+                     const control::FailsafeSettings& thresholds, comms::Node& node, std::uint64_t controller,
+                     const control::ObservedRotors& rotors)
     : loop_(loop),
       command_server_(command_server),
       thresholds_(thresholds),
       node_(node),
       controller_(controller),
+      delay_monitor_(rotors),
       estimates_(node.publish(topics::kEstimate)),
       references_(node.publish(topics::kReference)),
       acks_(node.publish(topics::kCommandAck)) {
@@ -192,6 +194,12 @@ void Telemetry::publish_status() {
   message.setpoints_accepted(last_.setpoints.accepted);
   message.setpoints_refused(last_.setpoints.refused);
   message.setpoint_refusal() = last_.setpoints.refusal.reason;
+  const DelayMonitor::Report& delay =
+      delay_monitor_.update(last_.loop_delay, last_.gains, status.gains_progress >= 1.0);
+  message.loop_delay_p50_s(delay.p50_s);
+  message.loop_delay_p95_s(delay.p95_s);
+  message.delay_margin_s(delay.margin_s);
+  message.delay_near_margin(delay.near_margin);
   message.realtime_scheduling(realtime_);
   message.controller(controller_);
   message.settings() = status.settings.data();

@@ -9,6 +9,7 @@
 
 #include "swiftlet/services/control/arrivals.hpp"
 #include "swiftlet/services/control/command_server.hpp"
+#include "swiftlet/services/control/delay_monitor.hpp"
 #include "swiftlet/services/control/inner_loop.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
@@ -16,9 +17,10 @@ namespace swiftlet::services {
 
 class Telemetry {
  public:
-  // thresholds: published in control_status. controller: the random number of this controller.
+  // thresholds: published in control_status. controller: the random number of this controller. rotors: of the
+  // loops whose delay margin is published.
   Telemetry(InnerLoop& loop, CommandServer& command_server, const control::FailsafeSettings& thresholds,
-            comms::Node& node, std::uint64_t controller);
+            comms::Node& node, std::uint64_t controller, const control::ObservedRotors& rotors);
 
   // Publishes what is new or due. Call periodically from one thread.
   void publish_due();
@@ -58,6 +60,7 @@ class Telemetry {
   StreamAges ages_;
   std::string source_conflict_;
   std::optional<control::RequestKey> unconfirmed_stop_;
+  DelayMonitor delay_monitor_;
 
   Snapshot last_;
   bool saturated_ = false;        // since the last control_status

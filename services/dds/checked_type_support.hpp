@@ -5,21 +5,18 @@
 #include <exception>
 #include <mutex>
 
-#include <fastdds/rtps/common/SerializedPayload.h>
-
+#include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/throttled_warning.hpp"
 
 namespace swiftlet::comms {
 
-// Generated code of Fast DDS 2.9 does not catch the exceptions of the decoder. A byte other than 0 or 1 in a
+// Generated code does not catch all exceptions of the decoder. A byte other than 0 or 1 in a
 // boolean is enough to throw one, and in a middleware thread it would end the process. This class drops such
 // a sample and logs a line.
 template <class PubSubType>
 class CheckedTypeSupport final : public PubSubType {
  public:
-  using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
-
-  bool deserialize(Payload* payload, void* data) override {
+  bool deserialize(PayloadArgument payload, void* data) override {
     try {
       if (PubSubType::deserialize(payload, data)) return true;
       note("it is too short");
@@ -38,7 +35,7 @@ class CheckedTypeSupport final : public PubSubType {
   }
 
   std::mutex mutex_;  // several threads take samples
-  ThrottledWarning log_{this->getName()};
+  ThrottledWarning log_{type_name(*this)};
 };
 
 }  // namespace swiftlet::comms

@@ -12,6 +12,7 @@
 #include "swiftlet/services/dds/discovery/discovery_servers.hpp"
 #include "swiftlet/services/dds/discovery/host_address.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/services/dds/security/security_qos.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -77,6 +78,11 @@ void read(const ConfigNode& root, NodeSettings& settings) {
   if (const auto key = root.find("network_key")) {
     settings.network_key_file = path_beside(*key);
     runtime::read_network_keys(settings.network_key_file);  // throws for an invalid one
+  }
+  if (const auto folder = root.find("security")) {
+    settings.security = path_beside(*folder);
+    const std::string fault = fault_of_security(settings.security, settings.name);
+    if (!fault.empty()) folder->fail(fault);
   }
 }
 

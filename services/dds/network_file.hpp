@@ -4,6 +4,7 @@
 //   transport: udp                      # or shm
 //   dds_profile: profile.xml            # relative to this file
 //   network_key: lab.key                # relative to this file
+//   security: lab                       # likewise
 #pragma once
 
 #include <string>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -13,6 +14,9 @@
 
 #include "swiftlet_msgs/msg/ActuatorCommandPubSubTypes.h"
 #include "swiftlet_msgs/msg/BatteryPubSubTypes.h"
+#include "swiftlet_msgs/msg/ClockReplyPubSubTypes.h"
+#include "swiftlet_msgs/msg/ClockRequestPubSubTypes.h"
+#include "swiftlet_msgs/msg/ClockStatusPubSubTypes.h"
 #include "swiftlet_msgs/msg/CommandAckPubSubTypes.h"
 #include "swiftlet_msgs/msg/CommandPubSubTypes.h"
 #include "swiftlet_msgs/msg/ControlSettingsPubSubTypes.h"
@@ -33,17 +37,19 @@
 #include "swiftlet_msgs/msg/VehicleInfoPubSubTypes.h"
 
 #include "swiftlet/services/dds/checked_type_support.hpp"
+#include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/participant.hpp"
 #include "swiftlet/services/dds/participant_qos.hpp"
 #include "swiftlet/services/dds/qos/duration.hpp"
 #include "swiftlet/services/dds/qos/profiles.hpp"
 #include "swiftlet/services/dds/single_source.hpp"
 #include "swiftlet/services/dds/vehicle_name.hpp"
+#include "swiftlet/services/runtime/log_label.hpp"
 
 // All message types of topics.
 // clang-format off
 #define SWIFTLET_FOR_EACH_MESSAGE(X)                                      \
-  X(ActuatorCommand) X(Battery) X(Command) X(CommandAck) X(ControllerState) X(ControlSettings) X(ControlStatus) \
+  X(ActuatorCommand) X(Battery) X(ClockReply) X(ClockRequest) X(ClockStatus) X(Command) X(CommandAck) X(ControllerState) X(ControlSettings) X(ControlStatus) \
   X(Estimate) X(GroundLink) X(GroundTruth) X(Imu) X(Mission) X(MissionStatus) \
   X(MocapPose) X(Reference) X(RotorSpeeds) X(Setpoint)                    \
   X(SimulationClock) X(Trajectory) X(VehicleInfo)
@@ -53,8 +59,6 @@ namespace swiftlet::comms {
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
-using eprosima::fastrtps::types::ReturnCode_t;
 
 template <class T>
 struct PubSubTypeOf;
@@ -109,16 +113,16 @@ class DdsWriter final : public detail::Writer, private Endpoint {
     }
     const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
     if (!writer) return false;
-    void* const data = const_cast<void*>(sample);  // serialized before write() returns, never modified
-    if (writer->write(data)) return true;
+    if (comms::write(*writer, sample)) return true;
     // A full history of requests has room again once they are acknowledged. write() does not always wait for
     // that.
-    return topic_.qos == Qos::kRequest && wait_until_received(kReliableWriteTimeout) && writer->write(data);
+    return topic_.qos == Qos::kRequest && wait_until_received(kReliableWriteTimeout) &&
+           comms::write(*writer, sample);
   }
 
   bool wait_until_received(std::chrono::milliseconds timeout) override {
     const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
-    return writer && writer->wait_for_acknowledgments(duration(timeout)) == ReturnCode_t::RETCODE_OK;
+    return writer && succeeded(writer->wait_for_acknowledgments(duration(timeout)));
   }
 
   void set_strength(std::uint32_t strength) override {
@@ -143,7 +147,7 @@ class DdsWriter final : public detail::Writer, private Endpoint {
         writer_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), strength_, node_->settings.transport));
     if (writer == nullptr) throw std::runtime_error(std::string("cannot publish ") + topic_.name);
     const std::lock_guard<std::mutex> lock(last_mutex_);
-    if (last_) writer->write(&*last_);
+    if (last_) comms::write(*writer, &*last_);
     writer_.give(writer);
   }
   void leave(ParticipantSession& session) override {
@@ -176,11 +180,14 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
  public:
   DdsReader(std::shared_ptr<Impl> node, std::string vehicle, const Topic<T>& topic,
             std::function<void(const T&)> callback, Delivery delivery,
-            std::optional<std::chrono::milliseconds> source_silence)
+            std::optional<std::chrono::milliseconds> source_silence,
+            std::function<void(const std::string&)> on_fault)
       : node_(std::move(node)),
         vehicle_(std::move(vehicle)),
         topic_(topic),
         delivery_(delivery),
+        log_label_(runtime::LogLabel::current()),
+        on_fault_(std::move(on_fault)),
         callback_(std::move(callback)) {
     if (source_silence) source_.emplace(*source_silence);
     node_->add(this);
@@ -237,11 +244,22 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
 
   void on_data_available(dds::DataReader* reader) override {
     const std::lock_guard<std::mutex> lock(mutex_);
+    const runtime::LogLabel label(log_label_);
     dds::SampleInfo info;
-    while (open_ && reader->take_next_sample(&sample_, &info) == ReturnCode_t::RETCODE_OK) {
+    while (open_ && !faulty_ && succeeded(reader->take_next_sample(&sample_, &info))) {
       if (!info.valid_data) continue;
       if (source_ && !is_from_source(info)) continue;
+      deliver();
+    }
+  }
+
+  void deliver() {
+    if (!on_fault_) return callback_(sample_);
+    try {
       callback_(sample_);
+    } catch (const std::exception& error) {
+      faulty_ = true;
+      on_fault_(error.what());
     }
   }
 
@@ -259,6 +277,8 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
   const std::string vehicle_;
   const Topic<T> topic_;
   const Delivery delivery_;
+  const std::string log_label_;  // of the thread that subscribed
+  const std::function<void(const std::string&)> on_fault_;
   GuardedPointer<dds::DataReader> reader_;
   mutable std::mutex conflict_mutex_;
   std::optional<Conflict> conflict_;
@@ -267,6 +287,7 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
   std::optional<SingleSource<SenderId>> source_;
   T sample_;
   bool open_ = false;
+  bool faulty_ = false;  // the callback threw an exception
 };
 
 }  // namespace
@@ -278,17 +299,27 @@ std::string ProcessIdentity::to_string() const {
 
 Participant::Participant(const NodeSettings& settings) : impl_(std::make_shared<Impl>(settings, "")) {}
 
+Participant::Participant(const NodeSettings& settings, const std::vector<std::string>& vehicles)
+    : impl_(std::make_shared<Impl>(settings, join_names(vehicles))) {}
+
 Node::Node(const NodeSettings& settings)
     : participant_(std::make_shared<Participant::Impl>(settings, checked(settings.vehicle))),
       vehicle_(settings.vehicle),
       source_of_(settings.source_of) {}
 
-Node::Node(const Participant& participant, const std::string& vehicle)
-    : participant_(participant), vehicle_(checked(vehicle)) {
+Node::Node(const Participant& participant, const std::string& vehicle,
+           std::function<void(const std::string&)> on_fault)
+    : participant_(participant),
+      vehicle_(checked(vehicle)),
+      on_fault_(std::move(on_fault)),
+      shares_participant_(true) {
   participant_.impl_->serve(vehicle_);
 }
 
-Node::~Node() { on_peer({}); }
+Node::~Node() {
+  on_peer({});
+  if (shares_participant_) participant_.impl_->stop_serving(vehicle_);
+}
 
 std::vector<std::string> Participant::topics_seen() const { return impl_->topics_seen(); }
 std::vector<ProcessIdentity> Participant::processes_seen() const { return impl_->processes_seen(); }
@@ -320,7 +351,7 @@ template <class T>
 Subscription Node::subscribe(const Topic<T>& topic, std::function<void(const T&)> callback, Delivery delivery,
                              std::optional<std::chrono::milliseconds> source_silence) {
   return Subscription(std::make_unique<DdsReader<Participant::Impl, T>>(
-      participant_.impl_, vehicle_, topic, std::move(callback), delivery, source_silence));
+      participant_.impl_, vehicle_, topic, std::move(callback), delivery, source_silence, on_fault_));
 }
 
 #define SWIFTLET_INSTANTIATE(Name)                                                                      \

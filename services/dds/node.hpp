@@ -32,6 +32,8 @@ struct NodeSettings {
   // File with the keys of the network (io/network_key.hpp): only datagrams of processes with one of them are
   // received. Empty: from everyone.
   std::string network_key_file{};
+  // Folder with the keys of DDS Security (io/security/security_folder.hpp). Empty: no security.
+  std::string security{};
   // Offer and request the topics' deadlines. False in lockstep, where time may stand still. A reader that
   // requests a deadline does not match a writer that offers none.
   bool deadlines = true;
@@ -64,6 +66,8 @@ constexpr const char* kFlight = "flight";
 
 // How long become_source() looks for another source: an announcement is sent several times in that time.
 constexpr std::chrono::milliseconds kSourceSearchTime{250};
+// With security: Fast DDS repeats a lost handshake after 0.5 s.
+constexpr std::chrono::milliseconds kSecureSourceSearchTime{1000};
 // After become_source(), a source that turns out to be the later of two yields within this time only.
 constexpr std::chrono::milliseconds kSourceProbation{3000};
 // How long a SourceConflict is reported after the last ignored sample.
@@ -149,6 +153,8 @@ class Participant {
   // the calling thread. With kSharedMemory, constructor and destructor remove the files that dead processes
   // of this user left in /dev/shm. Throws std::runtime_error with a sentence.
   explicit Participant(const NodeSettings& settings);
+  // The same, and announces at once that it serves these vehicles; then construct a node for each.
+  Participant(const NodeSettings& settings, const std::vector<std::string>& vehicles);
 
   // The wire names ("rt/kl1/imu") of the topics that other participants of the domain publish now, of any
   // vehicle; sorted, without duplicates. Topics of processes with localhost_only are seen only with
@@ -180,8 +186,11 @@ class Node {
  public:
   // With its own participant. Throws as Participant does, and for an invalid vehicle name.
   explicit Node(const NodeSettings& settings);
-  // Shares the participant with other nodes.
-  Node(const Participant& participant, const std::string& vehicle);
+  // Shares the participant with other nodes. When the last node of a vehicle ends, the process no longer announces
+  // that it serves the vehicle. on_fault: called with the text of an exception that a callback of a subscription throws,
+  // in its thread; that subscription delivers nothing more. Without it such an exception ends the process.
+  Node(const Participant& participant, const std::string& vehicle,
+       std::function<void(const std::string&)> on_fault = {});
   ~Node();
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
@@ -218,6 +227,8 @@ class Node {
   Participant participant_;
   const std::string vehicle_;
   const std::string source_of_;
+  const std::function<void(const std::string&)> on_fault_;
+  const bool shares_participant_ = false;
 };
 
 }  // namespace swiftlet::comms

@@ -9,6 +9,8 @@
 #include "swiftlet/services/dds/discovery/host_address.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
 #include "swiftlet/services/dds/network_file.hpp"
+#include "swiftlet/services/dds/security/security_qos.hpp"
+#include "swiftlet/services/dds/vehicle_list.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -77,10 +79,12 @@ void add_network_options(runtime::CommandLine app, NodeSettings& settings) {
 }
 
 void add_profile_option(runtime::CommandLine app, NodeSettings& settings) {
-  settings.network.dds_profile = environment("FASTRTPS_DEFAULT_PROFILES_FILE");
+  settings.network.dds_profile = environment("FASTDDS_DEFAULT_PROFILES_FILE");
+  if (settings.network.dds_profile.empty())
+    settings.network.dds_profile = environment("FASTRTPS_DEFAULT_PROFILES_FILE");
   app.add_option("--dds-profile", settings.network.dds_profile,
                  "Participant profile of Fast DDS: buffers, transport, properties; default: "
-                 "$FASTRTPS_DEFAULT_PROFILES_FILE")
+                 "$FASTDDS_DEFAULT_PROFILES_FILE or $FASTRTPS_DEFAULT_PROFILES_FILE")
       .type_name("FILE");
 }
 
@@ -107,6 +111,24 @@ void add_node_options(runtime::CommandLine app, NodeSettings& settings, const Na
   add_network_options(app, settings);
   add_profile_option(app, settings);
   add_network_key_option(app, settings.network_key_file);
+  add_security_option(app, settings.security)
+      .check(
+          [process = settings.name](const std::string& given) { return fault_of_security(given, process); },
+          "DIR");
+}
+
+runtime::Option add_security_option(runtime::CommandLine app, std::string& folder) {
+  return app
+      .add_option("--security", folder,
+                  "Authenticate, encrypt, and let each role write its own topics only: folder made by "
+                  "`swiftlet keys create`")
+      .environment("SWIFTLET_SECURITY");
+}
+
+void add_service_options(runtime::CommandLine app, NodeSettings& settings) {
+  add_node_options(app, settings, {fault_of_vehicle_list, "NAME[,NAME...]"});
+  runtime::Option name = app.option("--vehicle-name");
+  name.describe(name.description() + "; several as kl1,kl2 or kl1..kl4");
 }
 
 void add_network_key_option(runtime::CommandLine app, std::string& file) {

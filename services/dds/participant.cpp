@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <climits>
 #include <iterator>
+#include <random>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
@@ -18,11 +19,10 @@ namespace swiftlet::comms {
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kRediscoveryPatience{1000};
 constexpr std::chrono::milliseconds kCheckPeriod{250};
+constexpr std::chrono::milliseconds kHandshakePatience{1500};  // three attempts of Fast DDS
 
 void check(const NodeSettings& settings) {
   if (settings.domain < 0 || settings.domain > 232) {
@@ -32,9 +32,9 @@ void check(const NodeSettings& settings) {
   if (settings.name.empty()) throw std::runtime_error("the node has no name");
 }
 
-Announcement announcement_of(const NodeSettings& settings, const std::string& vehicle) {
+Announcement announcement_of(const NodeSettings& settings, const std::string& vehicles) {
   Announcement announcement;
-  announcement.vehicles = vehicle;
+  announcement.vehicles = vehicles;
   char host[HOST_NAME_MAX + 1] = {};
   ::gethostname(host, HOST_NAME_MAX);
   announcement.host = host;
@@ -44,9 +44,15 @@ Announcement announcement_of(const NodeSettings& settings, const std::string& ve
   return announcement;
 }
 
+double random_share() {
+  std::random_device random;
+  return std::uniform_real_distribution<double>(0.0, 1.0)(random);
+}
+
 std::shared_ptr<DatagramGuard> guard_of(const NodeSettings& settings) {
   DatagramLimits limits;
   limits.discovery_servers = !settings.network.discovery_servers.empty();
+  limits.security = !settings.security.empty();
   const std::string& file = settings.network_key_file;
   return std::make_shared<DatagramGuard>(
       file.empty() ? runtime::NetworkKeys() : runtime::read_network_keys(file), limits);
@@ -64,17 +70,21 @@ rtps::GUID_t participant_guid(const rtps::GuidPrefix_t& participant) {
 
 }  // namespace
 
-Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& vehicle)
+Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& vehicles)
     : settings(node_settings),
       guard_(guard_of(node_settings)),
-      announcement_(announcement_of(node_settings, vehicle)) {
+      announcement_(announcement_of(node_settings, vehicles)),
+      patience_(random_share()) {
   check(settings);
   if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
+  if (!settings.security.empty()) refused_peers_.emplace();
   session_ = std::make_unique<ParticipantSession>(settings, announcement_, guard_, this);
   periodic_task_.emplace(kCheckPeriod, [this] {
     rejoin_if_rediscovery_failed();
     guard_->refusals().write_due(Clock::now());
     const std::lock_guard<std::mutex> lock(peers_mutex_);
+    refuse_silent_strangers();
+    if (refused_peers_) refused_peers_->write_due(Clock::now());
     conflict_log_.write_due(Clock::now());
   });
 }
@@ -87,6 +97,7 @@ Participant::Impl::~Impl() {
 
 void Participant::Impl::serve(const std::string& vehicle) {
   const std::lock_guard<std::mutex> lock(session_mutex_);
+  ++nodes_of_[vehicle];
   if (lists(announcement_.vehicles, vehicle)) return;
   {
     const std::lock_guard<std::mutex> peers_lock(peers_mutex_);
@@ -95,6 +106,18 @@ void Participant::Impl::serve(const std::string& vehicle) {
         rediscovery_.came(guid.guidPrefix, Clock::now());
     }
     announcement_.vehicles += (announcement_.vehicles.empty() ? "" : ",") + vehicle;
+  }
+  if (session_ != nullptr) session_->announce(announcement_);
+}
+
+void Participant::Impl::stop_serving(const std::string& vehicle) {
+  const std::lock_guard<std::mutex> lock(session_mutex_);
+  if (--nodes_of_[vehicle] > 0) return;
+  {
+    const std::lock_guard<std::mutex> peers_lock(peers_mutex_);
+    std::vector<std::string> vehicles = split_names(announcement_.vehicles);
+    vehicles.erase(std::remove(vehicles.begin(), vehicles.end(), vehicle), vehicles.end());
+    announcement_.vehicles = join_names(vehicles);
   }
   if (session_ != nullptr) session_->announce(announcement_);
 }
@@ -114,7 +137,11 @@ void Participant::Impl::remove(Endpoint* endpoint) {
 void Participant::Impl::rejoin_if_rediscovery_failed() {
   {
     const std::lock_guard<std::mutex> lock(peers_mutex_);
-    if (!rediscovery_.failed(Clock::now(), kRediscoveryPatience) && !away_) return;
+    const auto now = Clock::now();
+    if (!away_) {
+      if (!rediscovery_.failed(now, patience_.at(now))) return;
+      patience_.rejoined(now);
+    }
   }
   if (rejoin()) spdlog::warn("rejoined the network: a peer was rediscovered without its endpoints");
 }
@@ -140,6 +167,8 @@ void Participant::Impl::leave() {
   session_.reset();
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   peers_.clear();
+  strangers_.clear();
+  authenticated_.clear();
   writers_.clear();
   readers_.clear();
   conflict_log_.clear();
@@ -201,20 +230,53 @@ void Participant::Impl::listen(const Node* node, const std::string& vehicle,
   peer_listeners_[node] = {vehicle, std::move(callback)};
 }
 
-void Participant::Impl::on_participant_discovery(DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) {
+void Participant::Impl::on_participant(const Guid& guid, const std::string& name,
+                                       const std::vector<std::uint8_t>& user_data) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
-  switch (info.status) {
-    case rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT:
-    case rtps::ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT:
-      update_peer(info.info.m_guid,
-                  {info.info.m_participantName.c_str(), from_user_data(info.info.m_userData.dataVec())});
-      break;
-    case rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT:
-      drop_peer(info.info.m_guid, true);
-      break;
-    case rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT:
-      drop_peer(info.info.m_guid, false);
-      break;
+  const Peer peer{name, from_user_data(user_data)};
+  if (is_authenticated(guid)) return update_peer(guid, peer);
+  strangers_.emplace(guid, Stranger{peer, Clock::now()}).first->second.peer = peer;
+}
+
+void Participant::Impl::on_participant_gone(const Guid& guid, bool said_goodbye) {
+  const std::lock_guard<std::mutex> lock(peers_mutex_);
+  strangers_.erase(guid);
+  authenticated_.erase(guid);
+  drop_peer(guid, said_goodbye);
+}
+
+bool Participant::Impl::is_authenticated(const Guid& guid) const {
+  return settings.security.empty() || authenticated_.count(guid) > 0;
+}
+
+// Before or after its discovery.
+void Participant::Impl::on_authentication(const Guid& guid, bool authenticated) {
+  const std::lock_guard<std::mutex> lock(peers_mutex_);
+  const auto stranger = strangers_.find(guid);
+  if (authenticated) {
+    authenticated_.insert(guid);
+    if (stranger == strangers_.end()) return;
+    update_peer(guid, stranger->second.peer);
+    strangers_.erase(stranger);
+  } else {
+    refuse(guid, stranger == strangers_.end() ? Peer{} : stranger->second.peer, "");
+  }
+}
+
+void Participant::Impl::refuse(const Guid& guid, const Peer& peer, const char* reason) {
+  if (!refused_peers_) return;
+  const std::string process =
+      peer.announced.host.empty()
+          ? named(peer.name, guid.guidPrefix)
+          : ProcessIdentity{peer.name, peer.announced.host, peer.announced.pid}.to_string();
+  refused_peers_->note(guid, process, reason, Clock::now());
+}
+
+// Who refuses this process does not answer it. Neither is told why.
+void Participant::Impl::refuse_silent_strangers() {
+  for (const auto& [guid, stranger] : strangers_) {
+    if (Clock::now() - stranger.since > kHandshakePatience)
+      refuse(guid, stranger.peer, ": it does not complete the handshake");
   }
 }
 
@@ -223,9 +285,9 @@ void Participant::Impl::update_peer(const Guid& guid, const Peer& peer) {
   const Peer before = std::exchange(known, peer);
   if (is_own(peer) && !is_own(before)) rediscovery_.came(guid.guidPrefix, Clock::now());
   for (const auto& [node, listener] : peer_listeners_) {
-    if (lists(peer.announced.vehicles, listener.vehicle) &&
-        !lists(before.announced.vehicles, listener.vehicle))
-      listener.callback({peer.name, true, false});
+    const bool serves = lists(peer.announced.vehicles, listener.vehicle);
+    if (serves != lists(before.announced.vehicles, listener.vehicle))
+      listener.callback({peer.name, serves, !serves});
   }
   yield_source_to(peer);
 }
@@ -240,33 +302,32 @@ void Participant::Impl::drop_peer(const Guid& guid, bool said_goodbye) {
   if (peer == peers_.end()) return;
   const Peer gone = peer->second;
   peers_.erase(peer);
+  if (said_goodbye) rediscovery_.gone(guid.guidPrefix);
   if (!is_own(gone)) return;
-  said_goodbye ? rediscovery_.gone(guid.guidPrefix) : rediscovery_.lost(guid.guidPrefix);
+  if (!said_goodbye) rediscovery_.lost(guid.guidPrefix);
   for (const auto& [node, listener] : peer_listeners_) {
     if (lists(gone.announced.vehicles, listener.vehicle)) listener.callback({gone.name, false, said_goodbye});
   }
 }
 
-void Participant::Impl::on_publisher_discovery(DomainParticipant* own, rtps::WriterDiscoveryInfo&& info) {
-  if (info.info.guid().guidPrefix == own->guid().guidPrefix) return;
+void Participant::Impl::on_writer(const Guid& guid, const std::string& topic, const EndpointQos& qos) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
-  if (info.status == rtps::WriterDiscoveryInfo::DISCOVERED_WRITER) {
-    add_endpoint(writers_, info.info.guid(), {info.info.topicName().c_str(), endpoint_qos(info.info.m_qos)},
-                 PeerMonitor::kWriter);
-  } else if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
-    writers_.erase(info.info.guid());
-  }
+  add_endpoint(writers_, guid, {topic, qos}, PeerMonitor::kWriter);
 }
 
-void Participant::Impl::on_subscriber_discovery(DomainParticipant* own, rtps::ReaderDiscoveryInfo&& info) {
-  if (info.info.guid().guidPrefix == own->guid().guidPrefix) return;
+void Participant::Impl::on_writer_gone(const Guid& guid) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
-  if (info.status == rtps::ReaderDiscoveryInfo::DISCOVERED_READER) {
-    add_endpoint(readers_, info.info.guid(), {info.info.topicName().c_str(), endpoint_qos(info.info.m_qos)},
-                 PeerMonitor::kReader);
-  } else if (info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER) {
-    readers_.erase(info.info.guid());
-  }
+  writers_.erase(guid);
+}
+
+void Participant::Impl::on_reader(const Guid& guid, const std::string& topic, const EndpointQos& qos) {
+  const std::lock_guard<std::mutex> lock(peers_mutex_);
+  add_endpoint(readers_, guid, {topic, qos}, PeerMonitor::kReader);
+}
+
+void Participant::Impl::on_reader_gone(const Guid& guid) {
+  const std::lock_guard<std::mutex> lock(peers_mutex_);
+  readers_.erase(guid);
 }
 
 void Participant::Impl::add_endpoint(RemoteEndpoints& endpoints, const Guid& guid, RemoteEndpoint endpoint,
@@ -292,15 +353,14 @@ std::string Participant::Impl::shared_vehicle(const Peer& peer) const {
 
 void Participant::Impl::on_requested_incompatible_qos(dds::DataReader* reader,
                                                       const dds::RequestedIncompatibleQosStatus&) {
-  const EndpointQos requested = endpoint_qos(reader->get_qos().get_readerqos(dds::SUBSCRIBER_QOS_DEFAULT));
+  const EndpointQos requested = endpoint_qos(reader->get_qos());
   log_conflicts(reader->guid(), reader->get_topicdescription()->get_name(), writers_, "is not received",
                 [&](const EndpointQos& offered) { return conflicts(offered, requested); });
 }
 
 void Participant::Impl::on_offered_incompatible_qos(dds::DataWriter* writer,
                                                     const dds::OfferedIncompatibleQosStatus&) {
-  const EndpointQos offered =
-      endpoint_qos(writer->get_qos().get_writerqos(dds::PUBLISHER_QOS_DEFAULT, dds::TOPIC_QOS_DEFAULT));
+  const EndpointQos offered = endpoint_qos(writer->get_qos());
   log_conflicts(writer->guid(), writer->get_topic()->get_name(), readers_,
                 "does not receive from this process",
                 [&](const EndpointQos& requested) { return conflicts(offered, requested); });
@@ -325,7 +385,7 @@ void Participant::Impl::log_conflicts(const Guid& own, const std::string& topic,
 
 std::optional<std::string> Participant::Impl::become_source(const std::vector<std::string>& excluded,
                                                             std::function<void(const std::string&)> on_lost) {
-  std::this_thread::sleep_for(kSourceSearchTime);
+  std::this_thread::sleep_for(settings.security.empty() ? kSourceSearchTime : kSecureSourceSearchTime);
   const std::lock_guard<std::mutex> lock(session_mutex_);
   {
     const std::lock_guard<std::mutex> peers_lock(peers_mutex_);

@@ -19,22 +19,26 @@
 #include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 #include "swiftlet/services/dds/discovery/announcement.hpp"
 #include "swiftlet/services/dds/discovery/rediscovery_monitor.hpp"
+#include "swiftlet/services/dds/discovery/rejoin_patience.hpp"
+#include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/participant_session.hpp"
 #include "swiftlet/services/dds/periodic_task.hpp"
 #include "swiftlet/services/dds/qos/qos_conflict_log.hpp"
+#include "swiftlet/services/dds/security/refused_peers.hpp"
 
 namespace swiftlet::comms {
 
-struct Participant::Impl final : public eprosima::fastdds::dds::DomainParticipantListener {
-  // vehicle: may be empty
-  Impl(const NodeSettings& node_settings, const std::string& vehicle);
+struct Participant::Impl final : public DiscoveryListener {
+  // vehicles: a list, "kl1,kl2"; may be empty
+  Impl(const NodeSettings& node_settings, const std::string& vehicles);
   ~Impl() override;
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  // Adds a vehicle that this process serves.
+  // Call for each node of a vehicle that this process serves, and for each of them that ends.
   void serve(const std::string& vehicle);
+  void stop_serving(const std::string& vehicle);
   std::optional<std::string> become_source(const std::vector<std::string>& excluded,
                                            std::function<void(const std::string&)> on_lost);
   void add(Endpoint* endpoint);
@@ -45,7 +49,7 @@ struct Participant::Impl final : public eprosima::fastdds::dds::DomainParticipan
   std::vector<std::string> topics_seen() const;
   std::vector<ProcessIdentity> processes_seen() const;
   std::vector<std::string> qos_conflicts_seen() const;
-  ProcessIdentity identity_of(const eprosima::fastrtps::rtps::GuidPrefix_t& participant) const;
+  ProcessIdentity identity_of(const rtps::GuidPrefix_t& participant) const;
   // node: key of the callback; an empty callback removes it. Calls it at once for known peers of the vehicle.
   void listen(const Node* node, const std::string& vehicle, std::function<void(const PeerEvent&)> callback);
 
@@ -54,10 +58,9 @@ struct Participant::Impl final : public eprosima::fastdds::dds::DomainParticipan
   const NodeSettings settings;
 
  private:
-  using Guid = eprosima::fastrtps::rtps::GUID_t;
-  using GuidPrefix = eprosima::fastrtps::rtps::GuidPrefix_t;
+  using Guid = rtps::GUID_t;
+  using GuidPrefix = rtps::GuidPrefix_t;
   using PeerMonitor = RediscoveryMonitor<GuidPrefix>;
-  using DomainParticipant = eprosima::fastdds::dds::DomainParticipant;
   struct Peer {
     std::string name;
     Announcement announced;
@@ -71,12 +74,14 @@ struct Participant::Impl final : public eprosima::fastdds::dds::DomainParticipan
   void rejoin_if_rediscovery_failed();
   void leave();  // requires session_mutex_
 
-  void on_participant_discovery(DomainParticipant* own,
-                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
-  void on_publisher_discovery(DomainParticipant* own,
-                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
-  void on_subscriber_discovery(DomainParticipant* own,
-                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+  void on_participant(const Guid& guid, const std::string& name,
+                      const std::vector<std::uint8_t>& user_data) override;
+  void on_participant_gone(const Guid& guid, bool said_goodbye) override;
+  void on_authentication(const Guid& guid, bool authenticated) override;
+  void on_writer(const Guid& guid, const std::string& topic, const EndpointQos& qos) override;
+  void on_writer_gone(const Guid& guid) override;
+  void on_reader(const Guid& guid, const std::string& topic, const EndpointQos& qos) override;
+  void on_reader_gone(const Guid& guid) override;
   // Fast DDS reports which own reader or writer has a conflict, but not the peer. Logs every known peer
   // endpoint of the topic that does not match.
   void on_requested_incompatible_qos(eprosima::fastdds::dds::DataReader* reader,
@@ -85,6 +90,9 @@ struct Participant::Impl final : public eprosima::fastdds::dds::DomainParticipan
                                    const eprosima::fastdds::dds::OfferedIncompatibleQosStatus&) override;
 
   // All of these require peers_mutex_.
+  bool is_authenticated(const Guid& guid) const;
+  void refuse(const Guid& guid, const Peer& peer, const char* reason);
+  void refuse_silent_strangers();
   void update_peer(const Guid& guid, const Peer& peer);  // a known peer may serve more vehicles now
   void drop_peer(const Guid& guid, bool said_goodbye);
   void add_endpoint(RemoteEndpoints& endpoints, const Guid& guid, RemoteEndpoint endpoint,
@@ -108,18 +116,28 @@ struct Participant::Impl final : public eprosima::fastdds::dds::DomainParticipan
   std::unique_ptr<ParticipantSession> session_;
   std::vector<Endpoint*> endpoints_;
 
-  mutable std::mutex peers_mutex_;  // guards all below; locked after session_mutex_
-  Announcement announcement_;       // of this process; changed with both mutexes locked
+  mutable std::mutex peers_mutex_;       // guards all below; locked after session_mutex_
+  Announcement announcement_;            // of this process; changed with both mutexes locked
+  std::map<std::string, int> nodes_of_;  // number of the nodes that serve a vehicle
   std::chrono::steady_clock::time_point established_at_;
   std::function<void(const std::string&)> on_lost_source_;
-  std::map<Guid, Peer> peers_;  // of any vehicle
-  RemoteEndpoints writers_;     // of other processes, any vehicle
+  std::map<Guid, Peer> peers_;  // of any vehicle; with security only authenticated ones
+  // With security.
+  struct Stranger {
+    Peer peer;
+    std::chrono::steady_clock::time_point since;
+  };
+  std::map<Guid, Stranger> strangers_;  // announced, not authenticated
+  std::set<Guid> authenticated_;
+  RemoteEndpoints writers_;  // of other processes, any vehicle
   RemoteEndpoints readers_;
   QosConflictLog conflict_log_;
   std::map<const Node*, PeerListener> peer_listeners_;
   PeerMonitor rediscovery_;
+  RejoinPatience patience_;
 
-  std::atomic<bool> away_{false};  // the last rejoin failed
+  std::optional<RefusedPeers> refused_peers_;  // with security
+  std::atomic<bool> away_{false};              // the last rejoin failed
   std::optional<PeriodicTask> periodic_task_;
 };
 

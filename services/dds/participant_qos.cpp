@@ -2,23 +2,20 @@
 
 #include <string>
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
-
 #include "swiftlet/services/dds/datagram/guarded_transport.hpp"
 #include "swiftlet/services/dds/dds_profile.hpp"
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 #include "swiftlet/services/dds/discovery/repeated_discovery.hpp"
+#include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/network_qos.hpp"
 #include "swiftlet/services/dds/qos/duration.hpp"
 #include "swiftlet/services/dds/qos/profiles.hpp"
+#include "swiftlet/services/dds/security/security_qos.hpp"
 
 namespace swiftlet::comms {
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 
@@ -41,6 +38,7 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
   const DdsProfile profile = file.empty() ? DdsProfile{} : load_dds_profile(file);
   dds::DomainParticipantQos qos = profile.participant;
   qos.name(settings.name);
+  if (!settings.security.empty()) set_security(settings.security, settings.name, qos);
 
   auto& builtin = qos.wire_protocol().builtin;
   builtin.discovery_config.leaseDuration = duration(kLivelinessLease);
@@ -52,7 +50,7 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
   const DiscoveryPorts ports = discovery_ports(settings.domain);
   builtin.mutation_tries = ports.count - 1;
 
-  qos.flow_controllers().push_back(long_message_flow());
+  if (kHasFlowControllers) qos.flow_controllers().push_back(long_message_flow());
 
   // Announcements of forged participants must not fill the memory. When the limit is reached, Fast DDS ignores newcomers.
   qos.allocation().participants = {0, kMostParticipants, 1};

@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/fast_dds_library.hpp"
 #include "swiftlet/services/dds/participant_qos.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
@@ -18,7 +17,6 @@ namespace swiftlet::comms {
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
-using eprosima::fastrtps::types::ReturnCode_t;
 
 void end(dds::DomainParticipant* participant) {
   participant->set_listener(nullptr);
@@ -99,7 +97,7 @@ void ParticipantSession::announce(const Announcement& announcement) {
 
 dds::Topic* ParticipantSession::topic(const std::string& wire_name, const dds::TypeSupport& type) {
   dds::Topic*& found = topics_[wire_name];
-  if (found == nullptr && participant->register_type(type) == ReturnCode_t::RETCODE_OK)
+  if (found == nullptr && succeeded(participant->register_type(type)))
     found = participant->create_topic(wire_name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
   if (found == nullptr) throw std::runtime_error("cannot create DDS topic " + wire_name);
   return found;

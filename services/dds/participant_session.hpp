@@ -71,6 +71,7 @@ class GuardedPointer {
     Use(const Use&) = delete;
     Use& operator=(const Use&) = delete;
     explicit operator bool() const { return target_ != nullptr; }
+    T& operator*() const { return *target_; }
     T* operator->() const { return target_; }
 
    private:

@@ -49,7 +49,7 @@ int remove_files(const std::vector<fs::path>& paths) {
 
 int remove_stale_shared_memory(const std::string& directory) {
   // A segment, or a port with its semaphore; each has a lock file that its owner holds, exclusive or shared.
-  static const std::regex kFile("(fastrtps_(?:[0-9a-f]{16}|port[0-9]+))(?:_[es]l)?");
+  static const std::regex kFile("(fast(?:rtps|dds)_(?:[0-9a-f]{16}|port[0-9]+))(?:_[es]l)?");
 
   std::error_code error;
   std::set<std::string> names;

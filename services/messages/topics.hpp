@@ -4,6 +4,9 @@
 
 #include "swiftlet_msgs/msg/ActuatorCommand.h"
 #include "swiftlet_msgs/msg/Battery.h"
+#include "swiftlet_msgs/msg/ClockReply.h"
+#include "swiftlet_msgs/msg/ClockRequest.h"
+#include "swiftlet_msgs/msg/ClockStatus.h"
 #include "swiftlet_msgs/msg/Command.h"
 #include "swiftlet_msgs/msg/CommandAck.h"
 #include "swiftlet_msgs/msg/ControlSettings.h"
@@ -44,10 +47,13 @@ inline constexpr Topic<msg::ControllerState> kControllerState{"controller_state"
 inline constexpr Topic<msg::MocapPose> kMocapPose{"mocap_pose", Qos::kStream};
 inline constexpr Topic<msg::RotorSpeeds> kRotorSpeeds{"rotor_speeds", Qos::kStream};
 inline constexpr Topic<msg::Setpoint> kSetpoint{"setpoint", Qos::kStream};
+inline constexpr Topic<msg::ClockRequest> kClockRequest{"clock_request", Qos::kStream};
+inline constexpr Topic<msg::ClockReply> kClockReply{"clock_reply", Qos::kStream};
 inline constexpr Topic<msg::Battery> kBattery{"battery", Qos::kTelemetry};
 inline constexpr Topic<msg::Estimate> kEstimate{"estimate", Qos::kTelemetry};
 inline constexpr Topic<msg::Reference> kReference{"reference", Qos::kTelemetry};
 inline constexpr Topic<msg::GroundTruth> kGroundTruth{"ground_truth", Qos::kTelemetry};
+inline constexpr Topic<msg::ClockStatus> kClockStatus{"clock_status", Qos::kTelemetry};
 inline constexpr Topic<msg::ControlStatus> kControlStatus{"control_status", Qos::kLatched};
 inline constexpr Topic<msg::MissionStatus> kMissionStatus{"mission_status", Qos::kLatched};
 inline constexpr Topic<msg::VehicleInfo> kVehicleInfo{"vehicle_info", Qos::kLatched};

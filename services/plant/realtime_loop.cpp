@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "swiftlet/recording/telemetry_rate.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
@@ -11,30 +12,79 @@ std::int64_t scaled(std::int64_t simulated_ns, double speed) {
   return std::llround(static_cast<double>(simulated_ns) / speed);
 }
 
+// Irregular intervals depend on the seed of motion capture, and faults may delay frames.
+std::optional<plant::MocapSchedule> foreseen_frames(const plant::SimulationSettings& settings) {
+  if (settings.mocap.model == plant::MocapModel::kOptitrack || !settings.faults.empty()) return std::nullopt;
+  return plant::MocapSchedule(settings.mocap, 0);
+}
+
 }  // namespace
 
 RealtimeLoop::RealtimeLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings, double speed,
                            comms::Node& node, const runtime::RealtimeSettings& realtime)
     : vehicle_(vehicle),
+      speed_(speed),
       step_ns_(scaled(settings.step_ns, speed)),
-      imu_period_ns_(scaled(plant::period_ns(settings.imu.rate_hz), speed)),
+      sample_period_ns_(scaled(plant::period_ns(settings.imu.rate_hz), speed)),
+      imu_period_ns_(plant::period_ns(settings.imu.rate_hz)),
+      mocap_(foreseen_frames(settings)),
       realtime_(realtime),
       commands_(node.subscribe<comms::msg::ActuatorCommand>(
           comms::topics::kActuatorCommand, [this](const auto& message) { on_command(message); },
-          comms::Delivery::kOwnThread)) {}
+          comms::Delivery::kOwnThread)),
+      clock_(node, [this] { return simulated_ns(); }) {}
 
 void RealtimeLoop::run(const std::atomic<bool>& stop) {
   if (realtime_.enabled) runtime::make_this_thread_realtime(realtime_);
-  runtime::PeriodicTimer timer(step_ns_, imu_period_ns_);
-  vehicle_.publish_samples();
+  runtime::PeriodicTimer timer(sample_period_ns_, sample_period_ns_);
+  set_origin(timer.tick_ns());
+  publish();
   while (!stop.load(std::memory_order_relaxed)) {
     const std::int64_t slipped_ns = timer.wait();
     if (slipped_ns > 0) vehicle_.note_slip(slipped_ns);
-    received_.consume_all([this](const ReceivedCommand& received) { vehicle_.obey(received); });
-    vehicle_.step();
-    vehicle_.publish_samples();
-    vehicle_.report();
+    step_to_sample(timer.tick_ns());
+    if (slipped_ns > 0) set_origin(timer.tick_ns());
   }
+}
+
+// Makes the steps up to the next IMU sample at once, since each wake-up costs more than a step. Each obeys the commands that
+// had arrived when it was due.
+void RealtimeLoop::step_to_sample(std::int64_t sample_due_ns) {
+  for (std::int64_t due_ns = sample_due_ns - sample_period_ns_ + step_ns_;; due_ns += step_ns_) {
+    const bool is_last = due_ns > sample_due_ns - step_ns_;
+    while (received_.read_available() > 0 && (is_last || received_.front().received_ns <= due_ns)) {
+      vehicle_.obey(received_.front());
+      received_.pop();
+    }
+    vehicle_.step();
+    publish();
+    vehicle_.report();
+    if (is_last) return;
+  }
+}
+
+void RealtimeLoop::publish() {
+  vehicle_.publish_samples(vehicle_.simulation().imu_due() && is_truth_needed());
+}
+
+// Motion capture and telemetry do not need the truth of every IMU sample, and each message costs time.
+bool RealtimeLoop::is_truth_needed() {
+  if (!mocap_) return true;
+  const plant::MocapSchedule::Events frame = mocap_->advance(vehicle_.simulation().stamp_ns());
+  return frame.exposes || frame.delivers ||
+         runtime::is_telemetry_sample(vehicle_.simulation().imu_count(), imu_period_ns_);
+}
+
+// tick_ns: when the last step was due.
+void RealtimeLoop::set_origin(std::int64_t tick_ns) {
+  origin_ns_.store(tick_ns - scaled(vehicle_.simulation().stamp_ns(), speed_), std::memory_order_relaxed);
+}
+
+// The vehicle's clock, also between its steps.
+std::optional<std::int64_t> RealtimeLoop::simulated_ns() const {
+  const std::int64_t origin_ns = origin_ns_.load(std::memory_order_relaxed);
+  if (origin_ns == 0) return std::nullopt;
+  return scaled(runtime::monotonic_ns() - origin_ns, 1.0 / speed_);
 }
 
 // Runs in the subscription's thread.

@@ -3,9 +3,12 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 
 #include <boost/lockfree/spsc_queue.hpp>
 
+#include "swiftlet/plant/simulation/mocap_schedule.hpp"
+#include "swiftlet/services/dds/clocks/clock_server.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/plant/simulated_vehicle.hpp"
 #include "swiftlet/services/runtime/realtime.hpp"
@@ -24,15 +27,27 @@ class RealtimeLoop {
 
  private:
   void on_command(const comms::msg::ActuatorCommand& message);
+  void step_to_sample(std::int64_t sample_due_ns);
+  void publish();
+  bool is_truth_needed();
+  void set_origin(std::int64_t tick_ns);
+  std::optional<std::int64_t> simulated_ns() const;
 
   SimulatedVehicle& vehicle_;
-  std::int64_t step_ns_;  // computer's clock
+  double speed_;
+  std::int64_t step_ns_;           // computer's clock
+  std::int64_t sample_period_ns_;  // of the IMU, computer's clock
   std::int64_t imu_period_ns_;
+  // When motion capture needs the truth; without a value always, as its frames cannot be foreseen.
+  std::optional<plant::MocapSchedule> mocap_;
   runtime::RealtimeSettings realtime_;
 
   boost::lockfree::spsc_queue<ReceivedCommand, boost::lockfree::capacity<64>> received_;
   runtime::RealtimeThread listener_;
-  comms::Subscription commands_;  // last: its callback uses all members above
+  // The computer's clock at stamp 0, monotonic; 0 before the first step.
+  std::atomic<std::int64_t> origin_ns_{0};
+  comms::Subscription commands_;  // last two: their callbacks use all members above
+  comms::ClockServer clock_;
 };
 
 }  // namespace swiftlet::services

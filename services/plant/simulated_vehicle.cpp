@@ -69,14 +69,14 @@ void SimulatedVehicle::step() {
   simulation_.step(command);
 }
 
-void SimulatedVehicle::publish_samples() {
+void SimulatedVehicle::publish_samples(bool truth_needed) {
   if (simulation_.imu()) {
     imu_message_ = comms::to_message(*simulation_.imu());
     comms::set_obeyed_command(watchdog_.obeyed(), imu_message_);
     if (report_.rotors_running) answers_.written(simulation_.imu()->sequence, runtime::monotonic_ns());
     imu_.publish(imu_message_);
   }
-  if (simulation_.imu_due()) publish_truth();
+  if (truth_needed) publish_truth();
   publish_slow_samples();
 }
 

@@ -60,7 +60,7 @@ class SimulatedVehicle {
   // Advances one integration step.
   void step();
   // Publishes the samples due at this stamp, the IMU's first: the controller waits for it.
-  void publish_samples();
+  void publish_samples(bool truth_needed);
   // The same for lockstep: publishes battery and rotor speeds before the IMU sample that belongs to them. The
   // IMU sample carries the sequence numbers that control must wait for. mocap_sequence: the newest frame that
   // motion capture makes of the ground truth up to this stamp.

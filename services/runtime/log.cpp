@@ -2,6 +2,8 @@
 
 #include <memory>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <spdlog/async.h>
@@ -9,10 +11,32 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "swiftlet/services/runtime/log_label.hpp"
+
 namespace swiftlet::runtime {
 namespace {
 
 constexpr std::size_t kQueuedLines = 1024;
+
+// Adds the label of the calling thread: the asynchronous logger below writes in another thread.
+class LabellingLogger final : public spdlog::logger {
+ public:
+  explicit LabellingLogger(std::shared_ptr<spdlog::logger> below)
+      : logger(below->name()), below_(std::move(below)) {
+    set_level(below_->level());
+  }
+
+ private:
+  void sink_it_(const spdlog::details::log_msg& line) override {
+    const std::string label = LogLabel::current();
+    if (label.empty()) return below_->log(line.source, line.level, line.payload);
+    below_->log(line.source, line.level,
+                label + ": " + std::string(line.payload.data(), line.payload.size()));
+  }
+  void flush_() override { below_->flush(); }
+
+  std::shared_ptr<spdlog::logger> below_;
+};
 
 }  // namespace
 
@@ -35,7 +59,7 @@ Logging::Logging(const std::string& process, const LogSettings& settings) {
   logger->set_level(spdlog::level::from_str(settings.level));
   logger->flush_on(spdlog::level::info);
   logger->set_pattern("%H:%M:%S.%e %n %^%l%$: %v");
-  spdlog::set_default_logger(logger);
+  spdlog::set_default_logger(std::make_shared<LabellingLogger>(logger));
 }
 
 Logging::~Logging() { spdlog::shutdown(); }

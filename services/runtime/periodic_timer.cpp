@@ -8,13 +8,16 @@ namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-}  // namespace
-
-std::int64_t monotonic_ns() noexcept {
+std::int64_t read(clockid_t clock) noexcept {
   timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
+  clock_gettime(clock, &now);
   return now.tv_sec * kSecond + now.tv_nsec;
 }
+
+}  // namespace
+
+std::int64_t monotonic_ns() noexcept { return read(CLOCK_MONOTONIC); }
+std::int64_t system_ns() noexcept { return read(CLOCK_REALTIME); }
 
 PeriodicTimer::PeriodicTimer(std::int64_t period_ns, std::int64_t max_lateness_ns)
     : period_ns_(period_ns), max_lateness_ns_(max_lateness_ns), next_ns_(monotonic_ns()) {}

@@ -6,6 +6,7 @@
 namespace swiftlet::runtime {
 
 std::int64_t monotonic_ns() noexcept;
+std::int64_t system_ns() noexcept;  // system clock, since 1970
 
 class PeriodicTimer {
  public:
@@ -16,6 +17,8 @@ class PeriodicTimer {
   // Sleeps until the next tick; the first is one period after construction. Returns by how much the ticks
   // were shifted, ns.
   std::int64_t wait() noexcept;
+  // Monotonic time of the last tick; of the construction before the first.
+  std::int64_t tick_ns() const noexcept { return next_ns_; }
 
  private:
   std::int64_t period_ns_;

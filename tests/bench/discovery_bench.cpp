@@ -1,22 +1,34 @@
-// Time until the processes of one host have discovered each other with --localhost-only, and the CPU load
-// afterwards. The processes form a fleet: two of every four announce themselves as plant and motion capture
-// do.
+// Time and traffic until the processes of one host have discovered each other, with --localhost-only or through a discovery
+// server, and the CPU load and traffic afterwards. The processes form a fleet: two of every four announce
+// themselves as plant and motion capture do. As root, in a network namespace of its own, so that no other traffic is
+// counted.
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <fstream>
+#include <net/if.h>
+#include <sched.h>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <sys/ioctl.h>
 #include <sys/select.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/services/dds/discovery/discovery_server.hpp"
+#include "swiftlet/services/dds/discovery/discovery_servers.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 #include "tests/support/eventually.hpp"
 
@@ -32,15 +44,97 @@ struct Options {
   std::vector<int> processes{4, 40, 80};
   double seconds = 5.0;
   double patience_s = 120.0;
+  bool server = false;
   bool json = false;
 };
 
+// Moves this process into a network namespace with nothing but a loopback interface. Returns false without the
+// permission for that.
+bool enter_own_network() {
+  if (::unshare(CLONE_NEWNET) != 0) return false;
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  ifreq loopback{};
+  std::strcpy(loopback.ifr_name, "lo");
+  loopback.ifr_flags = IFF_UP | IFF_RUNNING;
+  const bool up = ::ioctl(socket, SIOCSIFFLAGS, &loopback) == 0;
+  ::close(socket);
+  if (!up) throw std::runtime_error("the loopback interface of a new network namespace cannot be started");
+  // A discovery server of Fast DDS 2.9 does not start where there is a loopback interface only.
+  if (std::system("ip link add bench0 type veth peer name bench1 && ip addr add 10.79.1.1/24 dev bench0 && "
+                  "ip link set bench0 up && ip link set bench1 up") != 0)
+    throw std::runtime_error("no interface can be added to a new network namespace");
+  return true;
+}
+
+struct Traffic {
+  double bytes = 0.0;
+  double packets = 0.0;
+};
+
+// What the loopback interface of this network has carried so far.
+Traffic traffic() {
+  std::ifstream file("/proc/self/net/dev");
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t name = line.find("lo:");
+    if (name == std::string::npos) continue;
+    Traffic carried;
+    std::istringstream(line.substr(name + 3)) >> carried.bytes >> carried.packets;
+    return carried;
+  }
+  throw std::runtime_error("/proc/self/net/dev has no loopback interface");
+}
+
+struct Network {
+  int domain = 0;
+  bool server = false;  // or --localhost-only
+};
+
+// A discovery server in a process of its own. Ends with its input.
+class ServerProcess {
+ public:
+  explicit ServerProcess(const Network& network) {
+    if (!network.server) return;
+    std::array<int, 2> ready{};
+    if (::pipe(input_.data()) != 0 || ::pipe(ready.data()) != 0) throw std::runtime_error("no pipe");
+    pid_ = ::fork();
+    if (pid_ == 0) {
+      ::close(input_[1]);
+      comms::DiscoveryServerSettings settings;
+      settings.domain = network.domain;
+      settings.port = comms::kDiscoveryServerPort;
+      const comms::DiscoveryServer server(settings, [](const comms::DiscoveryServerEvent&) {});
+      char byte = 'r';
+      if (::write(ready[1], &byte, 1) != 1) std::_Exit(1);
+      while (::read(input_[0], &byte, 1) > 0) {
+      }
+      std::_Exit(0);
+    }
+    ::close(input_[0]);
+    ::close(ready[1]);
+    char byte = 0;
+    if (::read(ready[0], &byte, 1) != 1) throw std::runtime_error("the discovery server does not start");
+    ::close(ready[0]);
+  }
+  ~ServerProcess() {
+    if (pid_ == 0) return;
+    ::close(input_[1]);
+    ::waitpid(pid_, nullptr, 0);
+  }
+  ServerProcess(const ServerProcess&) = delete;
+  ServerProcess& operator=(const ServerProcess&) = delete;
+
+ private:
+  std::array<int, 2> input_{};
+  pid_t pid_ = 0;
+};
+
 // Runs until its standard input is closed; writes a byte once it has discovered all others.
-[[noreturn]] void run_process_of_fleet(int number, int count, int domain, int input, int output) {
+[[noreturn]] void run_process_of_fleet(int number, int count, const Network& network, int input, int output) {
   comms::NodeSettings settings;
   settings.name = "process" + std::to_string(number);
-  settings.domain = domain;
-  settings.localhost_only = true;
+  settings.domain = network.domain;
+  settings.localhost_only = !network.server;
+  if (network.server) settings.network.discovery_servers = "127.0.0.1";
   if (number % 4 < 2) settings.announcement_period = comms::kFixturePeriod;
   comms::Node node(settings);
   const auto imu = node.publish(comms::topics::kImu);
@@ -60,13 +154,13 @@ struct Options {
 
 class Fleet {
  public:
-  Fleet(int count, int domain) {
+  Fleet(int count, const Network& network) {
     if (::pipe(input_.data()) != 0 || ::pipe(output_.data()) != 0) throw std::runtime_error("no pipe");
     for (int i = 0; i < count; ++i) {
       const pid_t pid = ::fork();
       if (pid == 0) {
         ::close(input_[1]);
-        run_process_of_fleet(i, count, domain, input_[0], output_[1]);
+        run_process_of_fleet(i, count, network, input_[0], output_[1]);
       }
       processes_.push_back(pid);
     }
@@ -99,7 +193,7 @@ class Fleet {
   }
 
   // Time that a late joiner needs to discover all processes.
-  double join_s(int domain) const {
+  double join_s(const Network& network) const {
     std::array<int, 2> input{}, output{};
     if (::pipe(input.data()) != 0 || ::pipe(output.data()) != 0) throw std::runtime_error("no pipe");
     const auto start = Clock::now();
@@ -107,7 +201,7 @@ class Fleet {
     const pid_t pid = ::fork();
     if (pid == 0) {
       ::close(input[1]);
-      run_process_of_fleet(2, count + 1, domain, input[0], output[1]);
+      run_process_of_fleet(2, count + 1, network, input[0], output[1]);
     }
     ::close(output[1]);
     char byte = 0;
@@ -152,43 +246,56 @@ class Fleet {
 
 nlohmann::ordered_json measure(int count, const Options& options) {
   const comms::DomainLock lock;
+  const Network network{lock.domain(), options.server};
+  const ServerProcess server(network);
   const auto start = Clock::now();
-  const Fleet fleet(count, lock.domain());
+  const Traffic at_start = traffic();
+  const Fleet fleet(count, network);
   const int known = fleet.wait_until_known(std::chrono::duration<double>(options.patience_s));
   const double found_s = std::chrono::duration<double>(Clock::now() - start).count();
   const double finding_s = fleet.time_s();
+  const Traffic when_found = traffic();
   fleet.wait_while_running(kFirstAnnouncements);
   const double before_s = fleet.time_s();
+  const Traffic before = traffic();
   const auto rest = Clock::now();
   fleet.wait_while_running(
       std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(options.seconds)));
   const double rest_s = std::chrono::duration<double>(Clock::now() - rest).count();
   const double cpu_s = fleet.time_s() - before_s;
+  const Traffic after = traffic();
   std::vector<double> joins_s;
-  for (int i = 0; i < kJoins; ++i) joins_s.push_back(fleet.join_s(lock.domain()));
+  for (int i = 0; i < (known == count ? kJoins : 0); ++i) joins_s.push_back(fleet.join_s(network));
   std::sort(joins_s.begin(), joins_s.end());
   return {{"processes", count},
           {"know_all", known},
           {"until_s", found_s},
           {"cpu_until_s", finding_s},
+          {"megabytes_until", 1e-6 * (when_found.bytes - at_start.bytes)},
+          {"datagrams_until", when_found.packets - at_start.packets},
+          {"kilobytes_per_s_at_rest", 1e-3 * (after.bytes - before.bytes) / rest_s},
           {"cpu_at_rest_percent", 100.0 * cpu_s / rest_s},
-          {"join_median_s", joins_s[kJoins / 2]},
-          {"join_max_s", joins_s.back()}};
+          {"join_median_s", joins_s.empty() ? NAN : joins_s[kJoins / 2]},
+          {"join_max_s", joins_s.empty() ? NAN : joins_s.back()}};
 }
 
 void run(const Options& options) {
+  runtime::log_to_stderr();
+  if (!enter_own_network())
+    std::fprintf(stderr, "discovery_bench: not root: the traffic of other programs is counted too\n");
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   if (!options.json) {
-    std::printf("%9s %9s %8s %14s %22s %20s\n", "processes", "know all", "after, s", "CPU by then, s",
-                "CPU then, % of a core", "one more, s (worst)");
+    std::printf("%9s %9s %8s %14s %13s %22s %13s %20s\n", "processes", "know all", "after, s",
+                "CPU by then, s", "MB by then", "CPU then, % of a core", "kB/s then", "one more, s (worst)");
   }
   for (const int count : options.processes) {
     const nlohmann::ordered_json row = measure(count, options);
     rows.push_back(row);
     if (options.json) continue;
-    std::printf("%9d %9d %8.2f %14.2f %22.1f %12.3f (%.3f)\n", count, row["know_all"].get<int>(),
-                row["until_s"].get<double>(), row["cpu_until_s"].get<double>(),
-                row["cpu_at_rest_percent"].get<double>(), row["join_median_s"].get<double>(),
+    std::printf("%9d %9d %8.2f %14.2f %13.2f %22.1f %13.1f %12.3f (%.3f)\n", count,
+                row["know_all"].get<int>(), row["until_s"].get<double>(), row["cpu_until_s"].get<double>(),
+                row["megabytes_until"].get<double>(), row["cpu_at_rest_percent"].get<double>(),
+                row["kilobytes_per_s_at_rest"].get<double>(), row["join_median_s"].get<double>(),
                 row["join_max_s"].get<double>());
     std::fflush(stdout);
   }
@@ -203,11 +310,14 @@ int main(int argc, char** argv) {
   Options options;
   return runtime::run_process(
       {"discovery_bench", "Measures the discovery time of processes on one host, and its CPU load.",
-       "--processes 4 --processes 80"},
+       "--processes 4 --processes 40 --discovery-server"},
       argc, argv,
       [&](runtime::CommandLine app) {
-        app.add_option("--processes", options.processes, "number of processes; may be repeated")
-            .range(2, 120);
+        app.add_option("--processes", options.processes,
+                       "number of processes; may be repeated; at most 120 without a server")
+            .range(2, 200);
+        app.add_flag("--discovery-server", options.server,
+                     "through a discovery server, whose traffic counts too");
         app.add_option("--seconds", options.seconds, "duration of the CPU measurement, s").range(1.0, 60.0);
         app.add_option("--patience", options.patience_s, "timeout of discovery, s").range(1.0, 600.0);
         app.add_flag("--json", options.json, "print JSON");

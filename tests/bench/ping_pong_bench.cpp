@@ -30,12 +30,15 @@
 #include "swiftlet_msgs/msg/ImuPubSubTypes.h"
 
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
+#include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/participant_qos.hpp"
 #include "swiftlet/services/dds/qos/profiles.hpp"
 #include "swiftlet/services/runtime/latency_histogram.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/security_keys.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet {
 namespace {
@@ -43,10 +46,10 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::uint32_t kProcesses = 2;  // in the domain
+constexpr const char* kVehicle = "kl1";
 namespace dds = eprosima::fastdds::dds;
 using comms::msg::ActuatorCommand;
 using comms::msg::Imu;
-using eprosima::fastrtps::types::ReturnCode_t;
 
 struct Options {
   double seconds = 5.0;
@@ -58,6 +61,7 @@ struct Options {
   // Options of the echo process.
   int echo_domain = -1;
   int echo_transport = 0;
+  std::string security;  // folder of the keys, also of the echo process; empty: none
   int echo_socket = -1;
 };
 
@@ -66,6 +70,7 @@ constexpr std::pair<const char*, comms::Transport> kTransports[] = {
     {"shm", comms::Transport::kSharedMemory},
     {"data-sharing", comms::Transport::kDataSharing}};
 constexpr const char* kSocket = "unix-socket";
+constexpr const char* kSecureUdp = "udp-security";
 
 // Makes the first calling thread real-time, once.
 class ThreadSetUp {
@@ -101,24 +106,24 @@ class BarePair final : private dds::DataReaderListener {
     settings.domain = domain;
     settings.transport = transport;
     settings.localhost_only = true;
+    settings.security = options.security;
     const int sent_deadline_ms = options.no_deadline ? 0 : sent.deadline_ms;
     const int received_deadline_ms = options.no_deadline ? 0 : received.deadline_ms;
-    participant_ = require_created(
-        dds::DomainParticipantFactory::get_instance()->create_participant(
-            static_cast<std::uint32_t>(domain),
-            comms::participant_qos(settings, kProcesses, std::make_shared<comms::DatagramGuard>())),
-        "participant");
+    participant_ = require_created(dds::DomainParticipantFactory::get_instance()->create_participant(
+                                       static_cast<std::uint32_t>(domain),
+                                       comms::participant_qos(settings, kProcesses, guard(settings))),
+                                   "participant");
     auto* const publisher =
         require_created(participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT), "publisher");
     auto* const subscriber =
         require_created(participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT), "subscriber");
     writer_ = require_created(
-        publisher->create_datawriter(topic<SentType>(sent.name),
+        publisher->create_datawriter(topic<SentType>(wire_name(sent.name)),
                                      comms::writer_qos(sent.qos, sent_deadline_ms, 0, transport)),
         "writer");
     reader_ = require_created(
         subscriber->create_datareader(
-            topic<ReceivedType>(received.name),
+            topic<ReceivedType>(wire_name(received.name)),
             comms::reader_qos(received.qos, received_deadline_ms, transport, comms::Delivery::kOwnThread),
             this, dds::StatusMask::data_available()),
         "reader");
@@ -142,6 +147,12 @@ class BarePair final : private dds::DataReaderListener {
   }
 
  private:
+  static std::string wire_name(const char* topic) { return std::string("rt/") + kVehicle + "/" + topic; }
+  static std::shared_ptr<comms::DatagramGuard> guard(const comms::NodeSettings& settings) {
+    comms::DatagramLimits limits;
+    limits.security = !settings.security.empty();
+    return std::make_shared<comms::DatagramGuard>(runtime::NetworkKeys(), limits);
+  }
   template <class Type>
   dds::Topic* topic(const std::string& name) {
     const dds::TypeSupport type(new Type());
@@ -152,7 +163,7 @@ class BarePair final : private dds::DataReaderListener {
 
   void on_data_available(dds::DataReader* reader) override {
     dds::SampleInfo info;
-    while (reader->take_next_sample(&sample_, &info) == ReturnCode_t::RETCODE_OK) {
+    while (comms::succeeded(reader->take_next_sample(&sample_, &info))) {
       if (info.valid_data) on_sample_(sample_);
     }
   }
@@ -295,7 +306,7 @@ void over_dds(const Options& options, comms::Transport transport, int rate_hz, R
                  });
   const EchoProcess process(options,
                             {"--echo-domain", std::to_string(lock.domain()), "--echo-transport",
-                             std::to_string(static_cast<int>(transport))},
+                             std::to_string(static_cast<int>(transport)), "--security", options.security},
                             -1);
   if (!tests::eventually([&] { return pair.matched(); }))
     throw std::runtime_error("the other process was not found");
@@ -304,6 +315,12 @@ void over_dds(const Options& options, comms::Transport transport, int rate_hz, R
     imu.sequence_number(sequence);
     pair.send(imu);
   });
+}
+
+void over_secure_udp(Options options, int rate_hz, RoundTrips& trips) {
+  const tests::TemporaryFolder folder;
+  options.security = tests::make_security_keys(folder.path() / "keys", kVehicle);
+  over_dds(options, comms::Transport::kUdp, rate_hz, trips);
 }
 
 void over_socket(const Options& options, int rate_hz, RoundTrips& trips) {
@@ -332,6 +349,7 @@ void over_socket(const Options& options, int rate_hz, RoundTrips& trips) {
 nlohmann::ordered_json measure(const Options& options, const std::string& name, int rate_hz) {
   RoundTrips trips(static_cast<std::uint64_t>(options.seconds * rate_hz));
   if (name == kSocket) over_socket(options, rate_hz, trips);
+  if (name == kSecureUdp) over_secure_udp(options, rate_hz, trips);
   for (const auto& [transport_name, transport] : kTransports) {
     if (name == transport_name) over_dds(options, transport, rate_hz, trips);
   }
@@ -352,6 +370,7 @@ void run(Options options) {
   if (options.echo_socket >= 0) return echo_socket(options);
   if (options.transports.empty()) {
     for (const auto& [name, transport] : kTransports) options.transports.emplace_back(name);
+    options.transports.emplace_back(kSecureUdp);
     options.transports.emplace_back(kSocket);
   }
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
@@ -377,12 +396,13 @@ void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--seconds", options.seconds, "duration of each measurement, s").range(0.1, 3600.0);
   app.add_option("--rate", options.rates_hz, "samples per second; may be repeated").range(1, 10'000);
   app.add_option("--transport", options.transports, "only these transports; may be repeated")
-      .one_of({"udp", "shm", "data-sharing", kSocket});
+      .one_of({"udp", "shm", "data-sharing", kSecureUdp, kSocket});
   app.add_flag("--json", options.json, "print JSON");
   app.add_flag("--no-deadline", options.no_deadline, "without deadline QoS");
   app.add_option("--echo-domain", options.echo_domain, "").hidden();
   app.add_option("--echo-transport", options.echo_transport, "").hidden();
   app.add_option("--echo-socket", options.echo_socket, "").hidden();
+  app.add_option("--security", options.security, "").hidden();
   runtime::add_process_options(app, options.process);
 }
 

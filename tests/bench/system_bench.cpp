@@ -43,6 +43,7 @@ using nlohmann::ordered_json;
 struct Options {
   double seconds = 5.0;
   std::vector<std::string> only;  // sections; empty: all
+  std::vector<int> vehicles{1, 2, 4, 8};
   bool json = false;
 };
 
@@ -179,53 +180,71 @@ struct VehicleFigures {
   std::uint64_t overdue = 0;   // of these, after more than a period or not at all
   std::uint64_t cycles = 0;
   std::uint64_t late_steps = 0;
-  std::array<double, 3> cpu_percent{};  // of one core, by kProcesses
-  std::array<double, 3> memory_mib{};
 };
 
-class Vehicle {
+struct FleetFigures {
+  std::vector<VehicleFigures> vehicles;
+  std::array<double, 3> cpu_percent{};  // of one core, by kProcesses
+  std::array<double, 3> memory_mib{};
+  double stalls_percent = 0.0;  // of the cycles: a core of this computer stood still
+};
+
+// Vehicles in one domain, served by one process of each role.
+class Fleet {
  public:
-  Vehicle(int number, int rate_hz, bool realtime, const fs::path& folder) {
-    network_.vehicle = "kl" + std::to_string(number);
+  Fleet(int vehicles, int rate_hz, bool realtime, const fs::path& folder) {
+    std::string list;
+    for (int i = 1; i <= vehicles; ++i) {
+      names_.push_back("kl" + std::to_string(i));
+      list += (list.empty() ? "" : ",") + names_.back();
+    }
     network_.domain = lock_.domain();
     network_.localhost_only = true;
     for (const char* name : kProcesses) {
-      std::vector<std::string> words{"--domain", std::to_string(network_.domain), "--vehicle-name",
-                                     network_.vehicle, "--localhost-only"};
+      std::vector<std::string> words{"--domain", std::to_string(network_.domain), "--vehicle-name", list,
+                                     "--localhost-only"};
       if (!realtime) words.emplace_back("--no-realtime");
-      if (name == kProcesses[0]) words.insert(words.end(), {"--imu-rate", std::to_string(rate_hz)});
+      if (name == kProcesses[0])  // side by side, inside the fence
+        words.insert(words.end(), {"--imu-rate", std::to_string(rate_hz), "--start", "-1", "-1", "--spacing",
+                                   "0.35", "--per-row", "6"});
       const std::string full = std::string("swiftlet-") + name;
-      processes_.emplace_back(
-          ground::ProcessSettings{full, program(full), words, folder / (network_.vehicle + name)});
+      processes_.emplace_back(ground::ProcessSettings{full, program(full), words, folder / full});
     }
   }
 
   void take_off() {
-    ground::Client client(network_);
-    if (!client.wait(30s, [](const ground::View& view) { return view.control.message.has_pose(); }))
-      throw std::runtime_error("no vehicle started: " + client.where());
+    const Clients clients(network_, names_);
+    for (const auto& client : clients.all) {
+      if (!client->wait(30s, [](const ground::View& view) { return view.control.message.has_pose(); }))
+        throw std::runtime_error("no vehicle started: " + client->where());
+    }
     msg::Command arm;
     arm.kind(msg::Command_Constants::ARM);
-    ask(client, arm);
-    msg::Command takeoff;
-    takeoff.kind(msg::Command_Constants::TAKEOFF);
-    takeoff.position_ned({0.0, 0.0, -1.0});
-    takeoff.speed(0.5);
-    ask(client, takeoff);
-    if (!client.wait(20s, [](const ground::View& view) {
-          return view.control.message.mode() == msg::ControlStatus_Constants::MODE_HOLDING;
-        }))
-      throw std::runtime_error("a vehicle did not take off");
+    for (const auto& client : clients.all) ask(*client, arm);
+    for (const auto& client : clients.all) {
+      msg::Command takeoff;
+      takeoff.kind(msg::Command_Constants::TAKEOFF);
+      takeoff.position_ned({0.0, 0.0, -1.0});
+      takeoff.speed(0.5);
+      ask(*client, takeoff);
+    }
+    for (const auto& client : clients.all) {
+      if (!client->wait(20s, [](const ground::View& view) {
+            return view.control.message.mode() == msg::ControlStatus_Constants::MODE_HOLDING;
+          }))
+        throw std::runtime_error("a vehicle did not take off");
+    }
   }
 
-  // Uploads a mission of this many waypoints to the hovering vehicle. Returns the times until the upload is
+  // Uploads a mission of this many waypoints to the first vehicle, which hovers. Returns the times until the upload is
   // answered and until the mission is reported as running, s.
   struct MissionStart {
     double uploaded_s = 0.0;
     double started_s = 0.0;
   };
   MissionStart start_mission(std::size_t waypoints) {
-    ground::Client client(network_);
+    const Clients clients(network_, {names_.front()});
+    ground::Client& client = *clients.all.front();
     if (!client.wait(10s, [](const ground::View& view) { return view.mission.seen(); }))
       throw std::runtime_error("a vehicle is silent");
     control::Mission mission;
@@ -253,16 +272,18 @@ class Vehicle {
   }
 
   void begin() { begin_ = read(); }
-  VehicleFigures end() {
-    VehicleFigures figures = read();
-    figures.answered -= begin_.answered;
-    figures.overdue -= begin_.overdue;
-    figures.cycles -= begin_.cycles;
-    figures.late_steps -= begin_.late_steps;
+  std::vector<VehicleFigures> end() {
+    std::vector<VehicleFigures> figures = read();
+    for (std::size_t i = 0; i < figures.size(); ++i) {
+      figures[i].answered -= begin_[i].answered;
+      figures[i].overdue -= begin_[i].overdue;
+      figures[i].cycles -= begin_[i].cycles;
+      figures[i].late_steps -= begin_[i].late_steps;
+    }
     return figures;
   }
 
-  // Whether one of its processes has ended.
+  // Whether one of the processes has ended.
   bool has_ended() {
     return std::any_of(processes_.begin(), processes_.end(),
                        [](ground::ChildProcess& process) { return process.poll().has_value(); });
@@ -275,6 +296,20 @@ class Vehicle {
   }
 
  private:
+  // A client of each vehicle, in one participant.
+  struct Clients {
+    Clients(const comms::NodeSettings& network, const std::vector<std::string>& names)
+        : participant(network, names) {
+      for (const std::string& name : names) {
+        comms::NodeSettings own = network;
+        own.vehicle = name;
+        all.push_back(std::make_unique<ground::Client>(participant, own));
+      }
+    }
+    comms::Participant participant;
+    std::vector<std::unique_ptr<ground::Client>> all;
+  };
+
   static void ask(ground::Client& client, const msg::Command& command) {
     ground::Result answer;
     if (!tests::eventually([&] { return (answer = client.command(command, 3s)).accepted(); }))
@@ -282,20 +317,24 @@ class Vehicle {
   }
 
   // Counters so far.
-  VehicleFigures read() {
-    VehicleFigures figures;
-    ground::Client client(network_);
-    if (!client.wait(
-            10s, [](const ground::View& view) { return view.vehicle.count > 1 && view.control.count > 1; }))
-      throw std::runtime_error("a vehicle is silent");
-    const ground::View view = client.view();
-    figures.vehicle = view.vehicle.message;
-    figures.control = view.control.message;
-    figures.answered = figures.vehicle.answered();
-    figures.overdue = figures.vehicle.late() + figures.vehicle.unanswered();
-    figures.cycles = figures.control.cycles();
-    figures.late_steps = figures.control.deadline_misses();
-    return figures;
+  std::vector<VehicleFigures> read() const {
+    std::vector<VehicleFigures> all;
+    const Clients clients(network_, names_);
+    for (const auto& client : clients.all) {
+      if (!client->wait(
+              10s, [](const ground::View& view) { return view.vehicle.count > 1 && view.control.count > 1; }))
+        throw std::runtime_error("a vehicle is silent");
+      const ground::View view = client->view();
+      VehicleFigures figures;
+      figures.vehicle = view.vehicle.message;
+      figures.control = view.control.message;
+      figures.answered = figures.vehicle.answered();
+      figures.overdue = figures.vehicle.late() + figures.vehicle.unanswered();
+      figures.cycles = figures.control.cycles();
+      figures.late_steps = figures.control.deadline_misses();
+      all.push_back(figures);
+    }
+    return all;
   }
 
   comms::DomainLock lock_;
@@ -304,54 +343,38 @@ class Vehicle {
     settings.name = "ground";
     return settings;
   }();
+  std::vector<std::string> names_;
   std::vector<ground::ChildProcess> processes_;
-  VehicleFigures begin_;
+  std::vector<VehicleFigures> begin_;
 };
 
 constexpr std::chrono::milliseconds kLook{100};  // period of checks on the processes
 
-// Figures of vehicles that hover side by side; counters cover the last `seconds`. stalls: percentage of
-// cycles that the machine stalls meanwhile; null: not measured.
-std::vector<VehicleFigures> hover(int vehicles, int rate_hz, bool realtime, double seconds,
-                                  bool loaded = false, double* stalls = nullptr) {
+// Figures of vehicles that hover side by side; counters cover the last `seconds`. witness: measure the stalls.
+FleetFigures hover(int vehicles, int rate_hz, bool realtime, double seconds, bool loaded = false,
+                   bool with_witness = false) {
   const tests::TemporaryFolder folder;
-  std::vector<std::unique_ptr<Vehicle>> fleet;
-  for (int i = 1; i <= vehicles; ++i)
-    fleet.push_back(std::make_unique<Vehicle>(i, rate_hz, realtime, folder.path()));
+  Fleet fleet(vehicles, rate_hz, realtime, folder.path());
   std::optional<CpuLoad> load;
   if (loaded) load.emplace();
-  for (const auto& vehicle : fleet) vehicle->take_off();
-  for (const auto& vehicle : fleet) vehicle->begin();
-  const auto usage = [&] {
-    std::vector<std::array<Usage, 3>> all;
-    all.reserve(fleet.size());
-    for (const auto& vehicle : fleet) all.push_back(vehicle->usage());
-    return all;
-  };
+  fleet.take_off();
+  fleet.begin();
   const auto start = ground::Clock::now();
-  const auto before = usage();
+  const std::array<Usage, 3> before = fleet.usage();
   std::optional<bench::StallWitness> witness;
-  if (stalls != nullptr) witness.emplace(1'000'000'000 / rate_hz);
+  if (with_witness) witness.emplace(1'000'000'000 / rate_hz);
   const auto window = std::chrono::milliseconds(std::lround(1e3 * seconds));
-  if (tests::eventually(
-          [&] {
-            return std::any_of(fleet.begin(), fleet.end(),
-                               [](const auto& vehicle) { return vehicle->has_ended(); });
-          },
-          window, kLook))
-    throw std::runtime_error("a process of a vehicle ended while it was measured");
-  if (witness) *stalls = witness->lost_percent();
+  if (tests::eventually([&] { return fleet.has_ended(); }, window, kLook))
+    throw std::runtime_error("a process ended while its vehicles were measured");
+  FleetFigures figures;
+  if (witness) figures.stalls_percent = witness->lost_percent();
   witness.reset();
-  const auto after = usage();
+  const std::array<Usage, 3> after = fleet.usage();
   const double measured_s = std::chrono::duration<double>(ground::Clock::now() - start).count();
-
-  std::vector<VehicleFigures> figures;
-  for (std::size_t i = 0; i < fleet.size(); ++i) {
-    figures.push_back(fleet[i]->end());
-    for (std::size_t k = 0; k < kProcesses.size(); ++k) {
-      figures.back().cpu_percent[k] = 100.0 * (after[i][k].cpu_s - before[i][k].cpu_s) / measured_s;
-      figures.back().memory_mib[k] = after[i][k].memory_mib;
-    }
+  figures.vehicles = fleet.end();
+  for (std::size_t k = 0; k < kProcesses.size(); ++k) {
+    figures.cpu_percent[k] = 100.0 * (after[k].cpu_s - before[k].cpu_s) / measured_s;
+    figures.memory_mib[k] = after[k].memory_mib;
   }
   return figures;
 }
@@ -359,11 +382,12 @@ std::vector<VehicleFigures> hover(int vehicles, int rate_hz, bool realtime, doub
 // ---- the sections
 
 void latency_and_load(Table& table, const Options& options) {
-  std::vector<std::pair<int, VehicleFigures>> flown;
+  std::vector<std::pair<int, FleetFigures>> flown;
   table.section("(a) sense to actuate over DDS, IMU written to command received by the plant");
   for (const int rate_hz : {500, 1000}) {
-    const VehicleFigures figures = hover(1, rate_hz, true, options.seconds).front();
-    flown.emplace_back(rate_hz, figures);
+    const FleetFigures hovered = hover(1, rate_hz, true, options.seconds);
+    const VehicleFigures& figures = hovered.vehicles.front();
+    flown.emplace_back(rate_hz, hovered);
     const json limits = json::parse(output_of(
         program("ping_pong_bench").string() + " --json --seconds " + std::to_string(options.seconds) +
         " --rate " + std::to_string(rate_hz) + " --transport udp --transport unix-socket"));
@@ -392,7 +416,7 @@ void jitter(Table& table, const Options& options) {
   table.section("(c) jitter of the control period of 2 ms");
   for (const bool loaded : {false, true}) {
     for (const bool realtime : {true, false}) {
-      const VehicleFigures figures = hover(1, 500, realtime, options.seconds, loaded).front();
+      const VehicleFigures figures = hover(1, 500, realtime, options.seconds, loaded).vehicles.front();
       const bool granted = figures.control.realtime_scheduling();
       const std::string name = std::string(loaded ? "loaded" : "idle") + ", " +
                                (granted ? "SCHED_FIFO" : "SCHED_OTHER") +
@@ -464,9 +488,9 @@ void missions(Table& table) {
   constexpr std::size_t kWaypoints = 1000;
   table.section("(h) a mission of 1,000 waypoints, to a vehicle that hovers");
   const tests::TemporaryFolder folder;
-  Vehicle vehicle(1, 500, true, folder.path());
-  vehicle.take_off();
-  const Vehicle::MissionStart took = vehicle.start_mission(kWaypoints);
+  Fleet fleet(1, 500, true, folder.path());
+  fleet.take_off();
+  const Fleet::MissionStart took = fleet.start_mission(kWaypoints);
   table.add({"until its upload is answered", 1e3 * took.uploaded_s, "ms", "", 0.0, ""});
   table.add(
       {"until the vehicle says that it flies it", 1e3 * took.started_s, "ms", "the target", 1000.0, ""});
@@ -484,29 +508,35 @@ void planning(Table& table) {
 
 constexpr double kFleetShare = 4.0;  // times longer, since the counts are small
 
+double percent(std::uint64_t part, std::uint64_t whole) {
+  return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 100.0;
+}
+
 void fleets(Table& table, const Options& options) {
-  table.section("(i) vehicles on this computer, 500 Hz each, each in a domain of its own");
-  for (const int vehicles : {1, 2, 4, 8, 16}) {
-    double stalls = 0.0;
-    const std::vector<VehicleFigures> all =
-        hover(vehicles, 500, true, kFleetShare * options.seconds, false, &stalls);
+  table.section("(i) vehicles in one domain of this computer, 500 Hz each, one process of each role");
+  for (const int vehicles : options.vehicles) {
+    const double seconds = kFleetShare * options.seconds;
+    const FleetFigures fleet = hover(vehicles, 500, true, seconds, false, true);
+    const json bare =
+        json::parse(output_of(program("fleet_bench").string() + " --json --vehicles " +
+                              std::to_string(vehicles) + " --seconds " + std::to_string(seconds)));
     double worst_overdue = 0.0;
     double worst_late = 0.0;
-    double cpu = 0.0;
-    for (const VehicleFigures& one : all) {
-      const auto share = [](std::uint64_t part, std::uint64_t whole) {
-        return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 100.0;
-      };
-      worst_overdue = std::max(worst_overdue, share(one.overdue, one.answered));
-      worst_late = std::max(worst_late, share(one.late_steps, one.cycles));
-      for (const double percent : one.cpu_percent) cpu += percent;
+    for (const VehicleFigures& one : fleet.vehicles) {
+      worst_overdue = std::max(worst_overdue, percent(one.overdue, one.answered));
+      worst_late = std::max(worst_late, percent(one.late_steps, one.cycles));
     }
+    double cpu = 0.0;
+    for (const double process : fleet.cpu_percent) cpu += process;
     const std::string name = std::to_string(vehicles) + (vehicles == 1 ? " vehicle" : " vehicles");
     table.add({name + ": answers after a period, worst", worst_overdue, "%",
-               "cores that stood still for longer", stalls, vehicles == 8 ? "at most 0.1" : ""});
+               "cores that stood still for longer", fleet.stalls_percent,
+               vehicles <= 16 ? "at most 0.1 above" : ""});
+    table.add({name + ": answers after a period, worst", worst_overdue, "%", "the messages alone",
+               bare.at("overdue_percent").get<double>(), ""});
     table.add({name + ": steps late by half a period, worst", worst_late, "%", "", 0.0, ""});
-    table.add({name + ": CPU of all processes", cpu, "% core", "all cores",
-               100.0 * std::thread::hardware_concurrency(), ""});
+    table.add({name + ": CPU of all processes", cpu, "% core", "the messages alone",
+               bare.at("cpu_percent").get<double>(), ""});
   }
 }
 
@@ -530,6 +560,11 @@ void add_options(runtime::CommandLine app, Options& options) {
       .range(1.0, 3600.0);
   app.add_option("--only", options.only, "only these sections; may be repeated")
       .one_of({"latency", "jitter", "simulation", "planning", "missions", "fleet"});
+  app.add_option("--vehicles", options.vehicles,
+                 "numbers of vehicles of the section fleet; may be repeated; more than the cores can serve "
+                 "stop the computer for "
+                 "minutes, because they have real-time priority")
+      .range(1, 36);
   app.add_flag("--json", options.json, "print JSON");
 }
 

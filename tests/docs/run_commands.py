@@ -292,7 +292,8 @@ class Page:
             for words in commands_of(block.text):
                 if words[0] == "swiftlet-control":
                     named = words.index("--vehicle-name") + 1 if "--vehicle-name" in words else 0
-                    self.await_pose(words[named] if named else "kl1", block, log)
+                    for vehicle in (words[named] if named else "kl1").split(","):
+                        self.await_pose(vehicle, block, log)
 
     def await_pose(self, vehicle, block, log):
         """A reader of the manual types the next command seconds later; the test waits until the vehicle is ready for it."""

@@ -10,6 +10,7 @@
 #include <sys/mman.h>
 #include <thread>
 #include <unistd.h>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -260,6 +261,7 @@ class SteppedClock : public Failsafe {
   static void stop_preloading() {
     unsetenv("LD_PRELOAD");
     unsetenv("SWIFTLET_CLOCK_SHIFT");
+    unsetenv("SWIFTLET_CLOCK_DRIFT_PPM");
   }
   void step_clock(std::int64_t seconds) { *shift_s_ = *shift_s_ + seconds; }
 
@@ -284,6 +286,47 @@ TEST_F(SteppedClock, OfAllProcessesDoesNotDisturbTheFlight) {
   }
   EXPECT_LT(farthest_m, 0.05);
   EXPECT_EQ(mode_log(), "holding: take-off completed\nholding: requested\n");
+}
+
+// Motion capture stamps its frames with the clock of its host: 3 s ahead, 50 ppm fast, and set in flight.
+TEST_F(SteppedClock, OfMotionCaptureIsTranslatedToTheVehicles) {
+  Inbox<std::int64_t> stamps_ns;
+  const auto poses = watcher_->subscribe<msg::MocapPose>(
+      comms::topics::kMocapPose, [&](const auto& pose) { stamps_ns.put(pose.stamp_ns()); });
+  step_clock(3);
+  setenv("SWIFTLET_CLOCK_DRIFT_PPM", "50", 1);
+  mocap_ = start("swiftlet-mocap", {"--frame-clock", "host"});
+  stop_preloading();
+  control_ = start("swiftlet-control");
+  plant_ = start("swiftlet-plant");
+  hover();
+  for (const std::int64_t step : {1, -1}) {
+    const msg::ClockStatus before = client_->view().clock.message;
+    step_clock(step);
+    ASSERT_TRUE(eventually(
+        [&] {
+          const msg::ClockStatus& clock = client_->view().clock.message;
+          const double stepped_s = 1e-9 * static_cast<double>(clock.offset_ns() - before.offset_ns());
+          // The simulated vehicle's clock stands still while its host does: that is a step too, but a short one.
+          return clock.known() && clock.steps() > before.steps() &&
+                 std::abs(stepped_s - static_cast<double>(step)) < 0.5;
+        },
+        kTimeout))
+        << mocap_->errors();
+    wait_vehicle_time(1.0);
+  }
+  EXPECT_TRUE(settles_at(0, 0, -1));
+  EXPECT_EQ(mode_log(), "holding: take-off completed\n") << mocap_->errors();
+  EXPECT_GT(lowest_m(), 0.95);
+
+  // Frames are due every 10 ms of the vehicle's clock; ground truth reaches motion capture a little later.
+  constexpr std::int64_t kPeriodNs = 10'000'000;
+  std::vector<std::int64_t> late_ns;
+  for (const std::int64_t stamp_ns : stamps_ns.items())
+    late_ns.push_back((stamp_ns + kPeriodNs / 2) % kPeriodNs - kPeriodNs / 2);
+  std::sort(late_ns.begin(), late_ns.end());
+  EXPECT_GT(late_ns[late_ns.size() / 2], -500'000);
+  EXPECT_LT(late_ns[late_ns.size() / 2], 2'000'000);
 }
 
 TEST_F(SteppedClock, OfOneProcessDoesNotDisturbTheFlight) {

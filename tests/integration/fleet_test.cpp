@@ -22,16 +22,6 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using nlohmann::json;
 
-// The control process of a vehicle among the children of `swiftlet fly`.
-pid_t control_of(const Program& fly, const std::string& vehicle) {
-  for (const pid_t child : children_of(fly.pid())) {
-    const std::string words = command_line_of(child);
-    if (words.find("swiftlet-control") != std::string::npos && words.find(vehicle) != std::string::npos)
-      return child;
-  }
-  return -1;
-}
-
 double first_east_m(const fs::path& flight_csv) {
   std::ifstream file(flight_csv);
   std::string field;
@@ -80,22 +70,61 @@ TEST_F(FleetFlight, StartsTogetherSideBySide) {
   EXPECT_NE(listed.output.find("record/kl1  record/kl2"), std::string::npos) << listed.output;
 }
 
+TEST_F(FleetFlight, ThreeProcessesServeTheNumberOfVehiclesThatIsAskedFor) {
+  constexpr int kVehicles = 4;
+  Program fly(
+      "swiftlet",
+      {"fly", folder_.write("hop.yaml", kHopMission), "--vehicles", std::to_string(kVehicles), "--clock",
+       "lockstep", "--spacing", "0.5", "--per-row", "2", "--record", record().string(), "--json"},
+      folder_.path());
+  ASSERT_TRUE(eventually([&] { return children_of(fly.pid()).size() == 3; }, kStuck)) << fly.errors();
+  ASSERT_EQ(fly.wait(kStuck), 0) << fly.errors();
+  const json report = json::parse(fly.output());
+  ASSERT_EQ(report.at("vehicles").size(), std::size_t{kVehicles});
+  for (std::size_t i = 0; i < std::size_t{kVehicles}; ++i) {
+    const json& one = report.at("vehicles")[i];
+    EXPECT_EQ(one.at("vehicle_name"), "kl" + std::to_string(i + 1));
+    EXPECT_EQ(one.at("completed"), true);
+    EXPECT_EQ(one.at("start_m"), json({i < 2 ? -0.25 : 0.25, i % 2 == 0 ? -0.25 : 0.25}));
+    EXPECT_LT(one.at("rms_3d_m"), 0.01);
+  }
+}
+
 TEST_F(FleetFlight, LandsTheOthersWhenOneFails) {
   Program fly("swiftlet", arguments({}), folder_.path());
   ASSERT_TRUE(eventually(
       [&] { return fly.errors().find("2/3 waypoint") != std::string::npos || fly.exit_code(); }, kStuck));
-  const pid_t control = control_of(fly, "kl2");
+  const std::string text = fly.errors();
+  const std::size_t domain = text.find(" in domain ");
+  ASSERT_NE(domain, std::string::npos) << text;
+  ASSERT_EQ(run_program("swiftlet",
+                        {"stop", "--yes", "--vehicle-name", "kl2", "--localhost-only", "--domain",
+                         std::to_string(std::stoi(text.substr(domain + 11)))},
+                        folder_.path())
+                .exit_code,
+            0);
+  EXPECT_EQ(fly.wait(kStuck), 1);
+  const std::string errors = fly.errors();
+  EXPECT_NE(errors.find("kl2, hop: NOT completed: "), std::string::npos) << errors;
+  EXPECT_NE(errors.find("kl1, hop: NOT completed: kl2 failed: "), std::string::npos) << errors;
+  EXPECT_NE(errors.find("; landed"), std::string::npos) << errors;
+  EXPECT_NE(fly.output().find("0 of 2 flights completed"), std::string::npos) << fly.output();
+}
+
+TEST_F(FleetFlight, EndsWhenAProcessThatServesAllDies) {
+  Program fly("swiftlet", arguments({}), folder_.path());
+  ASSERT_TRUE(eventually(
+      [&] { return fly.errors().find("2/3 waypoint") != std::string::npos || fly.exit_code(); }, kStuck));
+  const pid_t control = child_of(fly.pid(), "swiftlet-control");
   ASSERT_GT(control, 0) << fly.errors();
   kill(control, SIGKILL);
   EXPECT_EQ(fly.wait(kStuck), 1);
   const std::string errors = fly.errors();
-  EXPECT_NE(errors.find("kl2, hop: NOT completed: swiftlet-control was killed by signal 9"),
-            std::string::npos)
-      << errors;
-  EXPECT_NE(errors.find("kl1, hop: NOT completed: kl2 failed: swiftlet-control was killed by signal 9"),
-            std::string::npos)
-      << errors;
-  EXPECT_NE(errors.find("; landed"), std::string::npos) << errors;
+  for (const char* const vehicle : {"kl1", "kl2"}) {
+    const std::size_t reason = errors.find(vehicle + std::string(", hop: NOT completed: "));
+    ASSERT_NE(reason, std::string::npos) << errors;
+    EXPECT_NE(errors.find("swiftlet-control was killed by signal 9", reason), std::string::npos) << errors;
+  }
   EXPECT_NE(fly.output().find("0 of 2 flights completed"), std::string::npos) << fly.output();
 }
 

@@ -484,7 +484,8 @@ TEST_F(Online, NamesTopicsFoundWhenControlIsMissing) {
       [&] {
         const ProgramResult result = swiftlet({"arm", "--timeout", "1"});
         return result.exit_code == 1 &&
-               result.errors.find("processes found: plant; topics found: battery, ground_truth, imu, ") !=
+               result.errors.find(
+                   "processes found: plant; topics found: battery, clock_reply, ground_truth, imu, ") !=
                    std::string::npos;
       },
       kStuck));

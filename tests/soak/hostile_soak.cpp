@@ -14,7 +14,7 @@ constexpr double kMemoryGrowth_mib = 16.0;
 constexpr double kLargestDeviation_m = 0.05;
 
 int run(const HostileSettings& settings) {
-  const tests::TemporaryFolder folder;
+  tests::TemporaryFolder folder;
   const HostileResult result = fly_under_attack(settings, folder.path());
   const auto row = [](const char* what, const std::string& value) {
     std::printf("  %-28s %s\n", what, value.c_str());
@@ -42,6 +42,10 @@ int run(const HostileSettings& settings) {
                     result.memory_growth_mib < kMemoryGrowth_mib &&
                     result.largest_deviation_m < kLargestDeviation_m;
   std::printf("%s\n", good ? "the attack did not disturb the flight" : "THE ATTACK DISTURBED THE FLIGHT");
+  if (!good) {
+    folder.keep();
+    std::printf("logs: %s\n", folder.path().c_str());
+  }
   return good ? 0 : 1;
 }
 

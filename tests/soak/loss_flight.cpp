@@ -6,10 +6,8 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "tests/support/network_namespace.hpp"
-#include "tests/support/program.hpp"
 
 namespace swiftlet::soak {
 namespace {
@@ -17,12 +15,8 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using tests::HostNetwork;
-using tests::Program;
-
-enum Host { kVehicle, kControl, kGround, kHosts };
 
 constexpr auto kRequestTimeout = 30s;
-constexpr auto kFlightTimeout = 240s;
 
 void lose_datagrams(const HostNetwork& network, int percent, const std::filesystem::path& folder) {
   const std::filesystem::path rules = folder / "loss.nft";
@@ -36,7 +30,7 @@ void lose_datagrams(const HostNetwork& network, int percent, const std::filesyst
   }
   file << "}\n";
   file.close();
-  for (int host = 0; host < kHosts; ++host) network.run(host, "nft -f " + rules.string());
+  for (int host = 0; host < NetworkFlight::kHosts; ++host) network.run(host, "nft -f " + rules.string());
 }
 
 // Waypoints in random places of the fence.
@@ -56,55 +50,30 @@ std::filesystem::path write_long_mission(const LossSettings& settings, const std
 }
 
 // Duration of the tool; negative if it fails.
-double ask(const std::vector<std::string>& words, const std::filesystem::path& folder, std::string& fault) {
+double ask(const NetworkFlight& flight, const std::vector<std::string>& words, std::string& fault) {
   const auto begin = Clock::now();
-  const tests::ProgramResult result = tests::run_program("swiftlet", words, folder, kRequestTimeout);
+  const tests::ProgramResult result = flight.ground(words, kRequestTimeout);
   if (result.exit_code == 0) return std::chrono::duration<double>(Clock::now() - begin).count();
   fault += words[0] + " " + words[1] + ": " + result.errors;
   return -1.0;
 }
 
-void fly(const LossSettings& settings, const std::filesystem::path& folder, LossResult& result) {
-  const tests::ProgramResult flight = tests::run_program(
-      "swiftlet", {"fly", settings.mission, "--attach", "--json", "--record", (folder / "flight").string()},
-      folder, kFlightTimeout);
-  const auto report = nlohmann::json::parse(flight.output, nullptr, false);
-  if (report.is_discarded() || !report.is_object()) {
-    result.fault += "fly: " + flight.errors;
-    return;
-  }
-  const auto number = [&](const char* key) {
-    return report.contains(key) && report[key].is_number() ? report[key].get<double>() : 0.0;
-  };
-  result.completed = report.value("completed", false);
-  if (!result.completed) result.fault += report.value("reason", "no reason");
-  result.rms_m = number("rms_3d_m");
-  result.peak_m = number("peak_3d_m");
-  result.longest_gap_s = number("longest_gap_s");
-}
-
 }  // namespace
 
 bool LossResult::good() const {
-  return upload_s >= 0.0 && clear_s >= 0.0 && completed && rms_m < kLargestRms_m;
+  return upload_s >= 0.0 && clear_s >= 0.0 && flight.completed && flight.rms_m < kLargestRms_m;
 }
 
 LossResult fly_with_losses(const LossSettings& settings, const std::filesystem::path& folder) {
-  const HostNetwork network(HostNetwork::Layout::kSwitch, kHosts);
-  lose_datagrams(network, settings.percent, folder);
+  NetworkFlight flight(folder);
+  lose_datagrams(flight.network(), settings.percent, folder);
   const std::string long_mission = write_long_mission(settings, folder).string();
-  const auto start = [&](Host host, const char* program, const std::vector<std::string>& options) {
-    const HostNetwork::Inside inside(network, host);
-    return Program(program, options, folder);
-  };
-  const Program plant = start(kVehicle, "swiftlet-plant", {"--seed", std::to_string(settings.seed)});
-  const Program mocap = start(kVehicle, "swiftlet-mocap", {"--seed", std::to_string(settings.seed)});
-  const Program control = start(kControl, "swiftlet-control", {});
-  const HostNetwork::Inside inside(network, kGround);
+  flight.start(settings.seed);
   LossResult result;
-  result.upload_s = ask({"mission", "upload", long_mission, "--timeout", "10"}, folder, result.fault);
-  result.clear_s = ask({"mission", "clear", "--timeout", "10"}, folder, result.fault);
-  fly(settings, folder, result);
+  result.upload_s = ask(flight, {"mission", "upload", long_mission, "--timeout", "10"}, result.fault);
+  result.clear_s = ask(flight, {"mission", "clear", "--timeout", "10"}, result.fault);
+  result.flight = flight.fly(settings.mission);
+  result.fault += result.flight.fault;
   return result;
 }
 

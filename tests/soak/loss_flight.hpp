@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/soak/network_flight.hpp"
+
 namespace swiftlet::soak {
 
 // Frames of IPv4 that each host loses of those that it sends, and of those that it receives, at random and independently:
@@ -18,13 +20,10 @@ struct LossSettings {
 };
 
 struct LossResult {
-  double upload_s = 0.0;   // from the start of the tool, with its discovery; negative if it failed
-  double clear_s = 0.0;    // likewise
-  bool completed = false;  // the flight
-  std::string fault;       // what failed, as the tool says it
-  double rms_m = 0.0;      // of the true position from the reference
-  double peak_m = 0.0;
-  double longest_gap_s = 0.0;  // of the telemetry on the ground
+  double upload_s = 0.0;  // from the start of the tool, with its discovery; negative if it failed
+  double clear_s = 0.0;   // likewise
+  std::string fault;      // what failed, as the tools say it
+  NetworkFlight::Result flight;
 
   bool good() const;
 };

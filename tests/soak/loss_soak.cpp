@@ -18,12 +18,17 @@ int run(const LossSettings& first, int flights) {
   for (int flight = 0; flight < flights; ++flight) {
     LossSettings settings = first;
     settings.seed += static_cast<std::uint64_t>(flight);
-    const tests::TemporaryFolder folder;
+    tests::TemporaryFolder folder;
     const LossResult result = fly_with_losses(settings, folder.path());
     good += result.good() ? 1 : 0;
     std::printf("%7llu %9.2f %9.2f %9.2f %9.2f %9.2f  %s\n", static_cast<unsigned long long>(settings.seed),
-                result.upload_s, result.clear_s, result.rms_m * 1e3, result.peak_m * 1e3,
-                result.longest_gap_s, result.good() ? "completed" : ("FAILED " + result.fault).c_str());
+                result.upload_s, result.clear_s, result.flight.rms_m * 1e3, result.flight.peak_m * 1e3,
+                result.flight.longest_gap_s,
+                result.good() ? "completed" : ("FAILED " + result.fault).c_str());
+    if (!result.good()) {
+      folder.keep();
+      std::printf("logs: %s\n", folder.path().c_str());
+    }
     std::fflush(stdout);
   }
   std::printf("%d of %d flights completed with an rms error below %.0f mm\n", good, flights,

@@ -27,8 +27,8 @@ TEST(Loss, OfFifteenPercentAtEachHostDoesNotDisturbAFlight) {
   const LossResult result = fly_with_losses(settings, folder.path());
   EXPECT_GE(result.upload_s, 0.0) << result.fault;
   EXPECT_GE(result.clear_s, 0.0) << result.fault;
-  EXPECT_TRUE(result.completed) << result.fault;
-  EXPECT_LT(result.rms_m, kLargestRmsOfAHop_m);
+  EXPECT_TRUE(result.flight.completed) << result.fault;
+  EXPECT_LT(result.flight.rms_m, kLargestRmsOfAHop_m);
 }
 
 }  // namespace

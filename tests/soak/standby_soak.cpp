@@ -8,6 +8,7 @@
 
 #include "swiftlet/services/runtime/process.hpp"
 #include "tests/support/redundant_flight.hpp"
+#include "tests/support/security_keys.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::tests {
@@ -21,6 +22,7 @@ struct Options {
   int kills = 50;
   std::uint64_t seed = 1;
   std::string plant_simulation;  // empty: the default world
+  bool security = false;
 };
 
 // Each part has half of the kills.
@@ -71,7 +73,9 @@ std::vector<Takeover> fly(const Part& part, int kills, int first, std::mt19937_6
   const TemporaryFolder folder;
   std::vector<std::string> plant;
   if (!options.plant_simulation.empty()) plant = {"--simulation", options.plant_simulation};
-  RedundantFlight flight(folder.path(), plant);
+  comms::NodeSettings network;
+  if (options.security) network.security = make_security_keys(folder.path() / "keys", network.vehicle);
+  RedundantFlight flight(folder.path(), plant, network);
   std::uniform_int_distribution<int> failover_priority(0, 1000);
   std::uniform_real_distribution<double> pause_s(0.0, 3.0);
   flight.start_controller(failover_priority(random));
@@ -133,6 +137,7 @@ int main(int argc, char** argv) {
         app.add_option("--kills", options.kills, "number of kills").range(1, 10000).show_default();
         app.add_option("--seed", options.seed, "seed of priorities and pauses").show_default();
         app.add_option("--simulation", options.plant_simulation, "the plant's simulation file");
+        app.add_flag("--security", options.security, "with DDS Security");
       },
       [&] { exit_code = tests::run(options); });
   return status != 0 ? status : exit_code;

@@ -18,16 +18,13 @@
 #include <unistd.h>
 #include <utility>
 
-#include <fastdds/rtps/common/Locator.h>
-#include <fastdds/rtps/network/SenderResource.h>
-#include <fastdds/rtps/transport/TransportInterface.h>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include "swiftlet/services/dds/fast_dds.hpp"
 
 namespace swiftlet::tests {
 namespace {
 
 namespace transport = eprosima::fastdds::rtps;
-namespace rtps = eprosima::fastrtps::rtps;
+namespace rtps = comms::rtps;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kFirstKept = 400;
@@ -300,8 +297,8 @@ Send shared_memory_sender() {
     locator.address[0] = 'U';
     to.push_back(locator);
     transport::Locators begin(to.begin()), end(to.end());
-    channels->front()->send(datagram.bytes.data(), static_cast<std::uint32_t>(datagram.bytes.size()), &begin,
-                            &end, Clock::now() + std::chrono::milliseconds(1));
+    comms::send(*channels->front(), datagram.bytes,
+                {&begin, &end, Clock::now() + std::chrono::milliseconds(1)});
   };
 }
 

@@ -139,7 +139,9 @@ HostNetwork::~HostNetwork() {
 
 std::string HostNetwork::address(int host) const { return addresses_.at(static_cast<std::size_t>(host)); }
 
-std::string HostNetwork::namespace_name(int host) const { return hosts_.at(static_cast<std::size_t>(host)); }
+std::string HostNetwork::namespace_name(int host) const {
+  return host == kCentre ? centre_ : hosts_.at(static_cast<std::size_t>(host));
+}
 
 void HostNetwork::run(int host, const std::string& command) const {
   const Inside inside(*this, host);

@@ -24,12 +24,15 @@ class HostNetwork {
   HostNetwork(const HostNetwork&) = delete;
   HostNetwork& operator=(const HostNetwork&) = delete;
 
+  // In place of a host: the switch or the router, whose interfaces are port0, port1, ...
+  static constexpr int kCentre = -1;
+
   // host: 0 .. hosts - 1
   std::string address(int host) const;         // "10.77.0.1"
-  std::string namespace_name(int host) const;  // for `ip netns exec`
+  std::string namespace_name(int host) const;  // for `ip netns exec`; also of kCentre
 
-  // Runs a command of the shell on a host, such as "ip link set eth0 down". Throws std::runtime_error if it
-  // fails.
+  // Runs a command of the shell on a host or kCentre, such as "ip link set eth0 down". Throws std::runtime_error
+  // if it fails.
   void run(int host, const std::string& command) const;
 
   // As long as it lives, this thread, the threads and the programs that it starts, and their sockets are on the

@@ -36,6 +36,7 @@ RedundantFlight::RedundantFlight(const std::filesystem::path& folder, std::vecto
     : folder_(folder),
       transport_(network_settings.transport),
       network_key_file_(network_settings.network_key_file),
+      security_(network_settings.security),
       plant_(
           "swiftlet-plant",
           [&] {
@@ -71,6 +72,7 @@ std::vector<std::string> RedundantFlight::network() const {
   std::vector<std::string> words = {"--domain", std::to_string(lock_.domain()), "--localhost-only",
                                     "--transport", transport};
   if (!network_key_file_.empty()) words.insert(words.end(), {"--network-key", network_key_file_});
+  if (!security_.empty()) words.insert(words.end(), {"--security", security_});
   return words;
 }
 
@@ -80,6 +82,7 @@ comms::NodeSettings RedundantFlight::node_settings(const char* name) const {
   settings.domain = lock_.domain();
   settings.transport = transport_;
   settings.network_key_file = network_key_file_;
+  settings.security = security_;
   settings.localhost_only = true;
   return settings;
 }

@@ -38,7 +38,7 @@ struct FlightMetrics {
 
 class RedundantFlight {
  public:
-  // Starts plant and mocap. Programs write their output into the folder. network: transport and key of all.
+  // Starts plant and mocap. Programs write their output into the folder. network: transport, key and security of all.
   explicit RedundantFlight(const std::filesystem::path& folder, std::vector<std::string> plant_options = {},
                            const comms::NodeSettings& network = {});
 
@@ -98,6 +98,7 @@ class RedundantFlight {
   std::filesystem::path folder_;
   const comms::Transport transport_;
   const std::string network_key_file_;
+  const std::string security_;
   Program plant_, mocap_;
   std::vector<std::unique_ptr<Controller>> controllers_;
 

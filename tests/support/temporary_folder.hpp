@@ -12,7 +12,7 @@
 
 namespace swiftlet::tests {
 
-// Removed with its contents, unless the test failed: its files are kept for inspection.
+// Removed with its contents, unless the test failed or keep() was called: its files are kept for inspection.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -22,12 +22,13 @@ class TemporaryFolder {
   }
   ~TemporaryFolder() {
     std::error_code ignored;
-    if (!testing::Test::HasFailure()) std::filesystem::remove_all(path_, ignored);
+    if (!kept_ && !testing::Test::HasFailure()) std::filesystem::remove_all(path_, ignored);
   }
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
+  void keep() { kept_ = true; }
 
   // Writes a file into it and returns its path.
   std::string write(const std::string& name, const std::string& text) const {
@@ -37,6 +38,7 @@ class TemporaryFolder {
 
  private:
   std::filesystem::path path_;
+  bool kept_ = false;
 };
 
 }  // namespace swiftlet::tests

@@ -84,8 +84,11 @@ void print(const NetworkFacts& facts) {
     fmt::print("host {} ({}): {}; {} of {} datagrams answered", host.name, host.address, multicast_text(host),
                host.answered, host.sent);
     if (host.answered > 0) {
-      fmt::print(", round trip {:.3f} ms ({:.3f} to {:.3f}), its clock {:+.3f} ms", host.round_trip_median_ms,
-                 host.round_trip_min_ms, host.round_trip_max_ms, host.clock_offset_ms);
+      fmt::print(
+          ", round trip {:.3f} ms ({:.3f} to {:.3f}), its clock {:+.3f} ms (within {:.3f} ms), drift {:+.1f} "
+          "ppm (within {:.1f} ppm)",
+          host.round_trip_median_ms, host.round_trip_min_ms, host.round_trip_max_ms, host.clock_offset_ms,
+          host.clock_uncertainty_ms, host.clock_drift_ppm, host.clock_drift_uncertainty_ppm);
     }
     fmt::print("\n");
   }
@@ -105,12 +108,20 @@ ordered_json to_json(const comms::ProbedHost& host) {
                        {"round_trip_median_ms", nullptr},
                        {"round_trip_min_ms", nullptr},
                        {"round_trip_max_ms", nullptr},
-                       {"clock_offset_ms", nullptr}};
+                       {"clock_offset_ms", nullptr},
+                       {"clock_uncertainty_ms", nullptr},
+                       {"clock_drift_ppm", nullptr},
+                       {"clock_drift_uncertainty_ppm", nullptr},
+                       {"clock_steps", nullptr}};
   if (host.answered == 0) return json;
   json["round_trip_median_ms"] = host.round_trip_median_ms;
   json["round_trip_min_ms"] = host.round_trip_min_ms;
   json["round_trip_max_ms"] = host.round_trip_max_ms;
   json["clock_offset_ms"] = host.clock_offset_ms;
+  json["clock_uncertainty_ms"] = host.clock_uncertainty_ms;
+  json["clock_drift_ppm"] = host.clock_drift_ppm;
+  json["clock_drift_uncertainty_ppm"] = host.clock_drift_uncertainty_ppm;
+  json["clock_steps"] = host.clock_steps;
   return json;
 }
 
@@ -161,7 +172,8 @@ Command add_doctor_network_command(runtime::CommandLine doctor) {
   app.footer(
       "Run it on two hosts at the same time, with the options of the network of the other processes: it "
       "measures "
-      "multicast both ways, round trip, loss and the offset of the clocks between them.\nExit code 1 if "
+      "multicast both ways, round trip, loss, and offset and drift of the clocks between them.\nExit code 1 "
+      "if "
       "there is a "
       "fault.\nexample: swiftlet doctor network --time 10");
   return {app, [options] { return diagnose(*options); }};

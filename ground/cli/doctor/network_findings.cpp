@@ -86,6 +86,8 @@ void judge_hosts(const NetworkFacts& facts, std::vector<NetworkFinding>& found) 
       found.push_back(
           {false, fmt::format("the clock of {} is {:.0f} ms off: logs do not compare; flights do not need it",
                               name, host.clock_offset_ms)});
+    if (host.clock_steps > 0)
+      found.push_back({false, "the clock of " + name + " stepped while it was measured: something sets it"});
   }
   for (const std::string& peer : facts.probe.silent_peers)
     found.push_back(

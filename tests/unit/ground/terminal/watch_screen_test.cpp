@@ -81,6 +81,25 @@ TEST(WatchScreen, ShowsTheKeysBelow) {
   EXPECT_EQ(watch_screen(in_flight(), facts(), kNow, 40, 3).back().text, "h hold l land s stop q quit");
 }
 
+TEST(WatchScreen, ShowsTheClockOfMotionCapture) {
+  View view = in_flight();
+  const auto text = [&] { return text_of(watch_screen(view, facts(), kNow, 80, 60)); };
+  EXPECT_EQ(text().find("clock  "), std::string::npos);
+  msg::ClockStatus clock;
+  clock.known(true);
+  clock.offset_ns(3'000'524'000);
+  clock.drift(50.2e-6);
+  clock.steps(1);
+  hear(view.clock, clock);
+  EXPECT_NE(text().find("clock       +3.000524 s, +50.2 ppm, set once\n"), std::string::npos) << text();
+  EXPECT_TRUE(warnings_of(view, kNow).empty());
+  view.clock.message.steps(2);
+  view.clock.message.known(false);
+  EXPECT_NE(text().find(" ppm, set 2 times\n"), std::string::npos) << text();
+  EXPECT_EQ(warnings_of(view, kNow),
+            std::vector<std::string>({"poses are withheld: the clock of motion capture is unknown"}));
+}
+
 TEST(WatchScreen, SaysThatLinesAreCutOrLeftOut) {
   const auto narrow = watch_screen(in_flight(), facts(), kNow, 30, 60);
   EXPECT_EQ(narrow.back().text, "terminal too small, 80x24 sho" + std::string(kCut));

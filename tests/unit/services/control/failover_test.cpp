@@ -29,6 +29,12 @@ class Vehicle {
     Failover failover;
     bool runs = true;  // false: dead or stopped
     bool receives_heartbeats = true;
+    std::int64_t delay_ns = 0;  // of its network, from sample to command
+    struct Command {
+      std::int64_t arrival_ns, stamp_ns;
+      std::uint32_t term;
+    };
+    std::deque<Command> outbox{};                                     // under way
     std::deque<std::pair<std::int64_t, plant::ObeyedCommand>> inbox;  // samples, by stamp
   };
 
@@ -49,6 +55,10 @@ class Vehicle {
     for (const auto& c : controllers_) {
       if (c->runs) answer(*c);
     }
+    for (const auto& c : controllers_) {
+      for (; !c->outbox.empty() && c->outbox.front().arrival_ns <= stamp_ns_; c->outbox.pop_front())
+        command(*c, c->outbox.front());
+    }
   }
 
   void answer(Controller& c) {
@@ -56,7 +66,7 @@ class Vehicle {
       const auto [stamp_ns, obeyed] = c.inbox.front();
       c.inbox.pop_front();
       const Role role = c.failover.sample(stamp_ns, obeyed, now_ns_);
-      if (role == Role::kActive) command(c, stamp_ns);
+      if (role == Role::kActive) c.outbox.push_back({stamp_ns + c.delay_ns, stamp_ns, c.failover.term()});
       for (const auto& other : controllers_) {
         if (other.get() != &c && other->runs && other->receives_heartbeats && c.receives_heartbeats)
           other->failover.heard({c.id, c.n, c.failover.term(), role, now_ns_});
@@ -65,16 +75,16 @@ class Vehicle {
   }
 
   // As in the vehicle's watchdog.
-  void command(const Controller& c, std::int64_t stamp_ns) {
-    if (!obeys_ || (obeyed_.any && stamp_ns < obeyed_.stamp_ns)) return;
-    if (obeyed_.any && c.failover.term() < obeyed_.term && stamp_ns_ - obeyed_.stamp_ns < ms(200)) {
+  void command(const Controller& c, const Controller::Command& command) {
+    if (!obeys_ || (obeyed_.any && command.stamp_ns < obeyed_.stamp_ns)) return;
+    if (obeyed_.any && command.term < obeyed_.term && stamp_ns_ - obeyed_.stamp_ns < ms(200)) {
       ++refused_;
       return;
     }
-    if (obeyed_.any) longest_gap_ns_ = std::max(longest_gap_ns_, stamp_ns - obeyed_.stamp_ns);
+    if (obeyed_.any) longest_gap_ns_ = std::max(longest_gap_ns_, stamp_ns_ - obeyed_.stamp_ns);
     if (commander_ != c.id) ++changes_;
     commander_ = c.id;
-    obeyed_ = {true, true, c.failover.term(), stamp_ns};
+    obeyed_ = {true, true, command.term, command.stamp_ns};
   }
 
   void restart() {
@@ -142,6 +152,23 @@ TEST(Failover, StandbyTakesOverWithinItsPatience) {
   EXPECT_TRUE(standby.failover.continues());
   EXPECT_LE(vehicle.longest_gap_ns(), Failover::kPatienceNs + 2 * kPeriodNs);
   EXPECT_GT(standby.failover.term(), first.failover.term());
+}
+
+// The commands of the active controller arrive late, those of the standby on the vehicle's host do not.
+TEST(Failover, StandbyBesideTheVehicleWaitsForAControllerBehindASlowNetwork) {
+  Vehicle vehicle;
+  auto& far = vehicle.add(7, 5);
+  far.delay_ns = ms(100);
+  vehicle.run(2000);
+  const auto& near = vehicle.add(8, 5);
+  vehicle.run(5000);
+  EXPECT_EQ(vehicle.commander(), 7U);
+  EXPECT_EQ(near.failover.role(), Role::kStandby);
+  far.runs = false;
+  far.outbox.clear();
+  vehicle.run(1000);
+  EXPECT_EQ(vehicle.commander(), 8U);
+  EXPECT_LE(vehicle.longest_gap_ns(), ms(100) + Failover::kPatienceNs + 3 * kPeriodNs);
 }
 
 TEST(Failover, StandbyOfHigherPriorityTakesOver) {

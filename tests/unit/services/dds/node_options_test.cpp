@@ -80,5 +80,18 @@ TEST_F(NodeOptions, WinOverTheEnvironment) {
   unsetenv("ROS_DISCOVERY_SERVER");
 }
 
+TEST_F(NodeOptions, TakeTheProfileOfEitherFastDds) {
+  setenv("FASTRTPS_DEFAULT_PROFILES_FILE", "of_2.xml", 1);
+  EXPECT_TRUE(parses(""));
+  EXPECT_EQ(settings_.network.dds_profile, "of_2.xml");
+  setenv("FASTDDS_DEFAULT_PROFILES_FILE", "of_3.xml", 1);
+  EXPECT_TRUE(parses(""));
+  EXPECT_EQ(settings_.network.dds_profile, "of_3.xml");
+  EXPECT_TRUE(parses("--dds-profile mine.xml"));
+  EXPECT_EQ(settings_.network.dds_profile, "mine.xml");
+  unsetenv("FASTDDS_DEFAULT_PROFILES_FILE");
+  unsetenv("FASTRTPS_DEFAULT_PROFILES_FILE");
+}
+
 }  // namespace
 }  // namespace swiftlet::comms

@@ -46,6 +46,9 @@ SWIFTLET_TOPIC_OF(Imu)
 SWIFTLET_TOPIC_OF(ActuatorCommand)
 SWIFTLET_TOPIC_OF(MocapPose)
 SWIFTLET_TOPIC_OF(RotorSpeeds)
+SWIFTLET_TOPIC_OF(ClockRequest)
+SWIFTLET_TOPIC_OF(ClockReply)
+SWIFTLET_TOPIC_OF(ClockStatus)
 SWIFTLET_TOPIC_OF(Setpoint)
 SWIFTLET_TOPIC_OF(Battery)
 SWIFTLET_TOPIC_OF(Estimate)
@@ -61,12 +64,37 @@ SWIFTLET_TOPIC_OF(Trajectory)
 SWIFTLET_TOPIC_OF(CommandAck)
 #undef SWIFTLET_TOPIC_OF
 
+TEST(Node, ACallbackThatThrowsEndsItsSubscriptionAlone) {
+  const DomainLock lock;
+  Participant there(settings(lock, "there"), {"kl1", "kl2"});
+  Node here(settings(lock, "here"));
+  Inbox<std::string> faults;
+  std::atomic<int> ill_calls{0};
+  Node ill(there, "kl1", [&](const std::string& fault) { faults.put(fault); });
+  Node well(there, "kl1");
+  Inbox<msg::Imu> inbox;
+  const auto throws = ill.subscribe<msg::Imu>(topics::kImu, [&](const msg::Imu&) {
+    ++ill_calls;
+    throw std::runtime_error("the step failed");
+  });
+  const auto receives = well.subscribe<msg::Imu>(topics::kImu, [&](const msg::Imu& imu) { inbox.put(imu); });
+  auto publisher = here.publish(topics::kImu);
+  ASSERT_TRUE(eventually([&] { return publisher.matched() == 2; }));
+  ASSERT_TRUE(eventually([&] {
+    publisher.publish(example<msg::Imu>());
+    return faults.size() > 0 && inbox.size() > 5;
+  }));
+  EXPECT_EQ(faults.items(), std::vector<std::string>({"the step failed"}));
+  EXPECT_EQ(ill_calls, 1);
+}
+
 template <class T>
 class EachTopic : public testing::Test {};
-using Messages = testing::Types<msg::Imu, msg::ActuatorCommand, msg::MocapPose, msg::RotorSpeeds,
-                                msg::Setpoint, msg::Battery, msg::Estimate, msg::Reference, msg::GroundTruth,
-                                msg::ControlStatus, msg::MissionStatus, msg::VehicleInfo, msg::GroundLink,
-                                msg::Command, msg::Mission, msg::Trajectory, msg::CommandAck>;
+using Messages =
+    testing::Types<msg::Imu, msg::ActuatorCommand, msg::MocapPose, msg::RotorSpeeds, msg::Setpoint,
+                   msg::Battery, msg::Estimate, msg::Reference, msg::GroundTruth, msg::ControlStatus,
+                   msg::MissionStatus, msg::VehicleInfo, msg::GroundLink, msg::Command, msg::Mission,
+                   msg::Trajectory, msg::CommandAck, msg::ClockRequest, msg::ClockReply, msg::ClockStatus>;
 TYPED_TEST_SUITE(EachTopic, Messages);
 
 TYPED_TEST(EachTopic, ArrivesUnchanged) {

@@ -106,20 +106,31 @@ TEST_F(Sources, StayAfterARejoin) {
 }
 
 TEST_F(Sources, EndAProcessThatIsNotTheFirst) {
-  Node first(settings("plant", "imu"));
-  const SoleSource source(first, [] {});
+  Participant first(settings("plant", "imu"), {"kl1"});
+  const SoleSource source(first, "imu", [] {});
   EXPECT_NO_THROW(source.check());
   std::string refusal;
   eventually([&] {
-    Node second(settings("impostor", "imu"));
+    Participant second(settings("impostor", "imu"), {"kl7", "kl1"});
     try {
-      const SoleSource refused(second, [] {});
+      const SoleSource refused(second, "imu", [] {});
     } catch (const std::runtime_error& error) {
       refusal = error.what();
     }
     return !refusal.empty();
   });
   EXPECT_EQ(refusal, lives("plant") + "; choose another --vehicle-name or --domain");
+}
+
+TEST_F(Sources, AVehicleIsFreeWhenItsLastNodeHasEnded) {
+  Participant plant(settings("plant", "imu"), {"kl1", "kl2"});
+  auto first = std::make_unique<Node>(plant, "kl1");
+  const Node second(plant, "kl2");
+  ASSERT_EQ(plant.become_source({"imu"}), std::nullopt);
+  ASSERT_EQ(refusal_of(settings("impostor", "imu")), lives("plant"));
+  first.reset();
+  EXPECT_TRUE(eventually([&] { return !Node(settings("plant", "imu")).become_source(); }));
+  EXPECT_NE(refusal_of(settings("impostor", "imu", "kl2")), "");
 }
 
 TEST_F(Sources, AReservedFlightExcludesAnotherAndLivingVehicles) {

@@ -88,6 +88,7 @@ TEST(NetworkFindings, HintAtLossDelayClockAndSize) {
   facts.probe.hosts[0].answered = 15;
   facts.probe.hosts[0].round_trip_median_ms = 25.0;
   facts.probe.hosts[0].clock_offset_ms = -1500.0;
+  facts.probe.hosts[0].clock_steps = 1;
   EXPECT_TRUE(faults(facts).empty());
   EXPECT_EQ(hints(facts),
             (std::vector<std::string>{
@@ -96,7 +97,8 @@ TEST(NetworkFindings, HintAtLossDelayClockAndSize) {
                 "lab2 (10.0.0.2) lost 5 of 20 datagrams",
                 "lab2 (10.0.0.2) answers after 25.0 ms: too late for control of a vehicle there",
                 "the clock of lab2 (10.0.0.2) is -1500 ms off: logs do not compare; flights do not need "
-                "it"}));
+                "it",
+                "the clock of lab2 (10.0.0.2) stepped while it was measured: something sets it"}));
 }
 
 TEST(NetworkFindings, AreFaultsWithoutInterfaceOrAnswer) {
