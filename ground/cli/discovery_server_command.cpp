@@ -12,7 +12,6 @@
 #include "swiftlet/services/dds/discovery/discovery_servers.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
 #include "swiftlet/services/dds/node_options.hpp"
-#include "swiftlet/services/dds/security/security_qos.hpp"
 #include "swiftlet/services/runtime/stop_signal.hpp"
 
 namespace swiftlet::ground {
@@ -69,15 +68,7 @@ class Register {
   int present_ = 0;
 };
 
-// Not while the command line is parsed: the folder may also come from the environment of another command.
-void check_security(const std::string& folder) {
-  if (folder.empty()) return;
-  if (const std::string fault = comms::fault_of_security(folder, "discovery-server"); !fault.empty())
-    throw std::invalid_argument("--security: " + fault);
-}
-
 int serve(const comms::DiscoveryServerSettings& settings) {
-  check_security(settings.security);
   runtime::StopSignal stop;
   Register processes;
   const comms::DiscoveryServer server(settings,
@@ -112,7 +103,6 @@ Command add_discovery_server_command(runtime::CommandLine root) {
       .repeated()
       .check(comms::fault_of_interface, "NAME|ADDRESS");
   comms::add_network_key_option(app, settings->network_key_file);
-  comms::add_security_option(app, settings->security);
   app.footer(
       "It prints a line for each process that joins or leaves, until Ctrl-C. It carries no samples: a flight "
       "goes "

@@ -111,18 +111,14 @@ void add_node_options(runtime::CommandLine app, NodeSettings& settings, const Na
   add_network_options(app, settings);
   add_profile_option(app, settings);
   add_network_key_option(app, settings.network_key_file);
-  add_security_option(app, settings.security)
+  app.add_option("--security", settings.security,
+                 "Authenticate, encrypt, and let each role write its own topics only: folder made by "
+                 "`swiftlet keys create`; not with --discovery-server")
+      .environment("SWIFTLET_SECURITY")
+      .excludes(app.option("--discovery-server"))
       .check(
           [process = settings.name](const std::string& given) { return fault_of_security(given, process); },
           "DIR");
-}
-
-runtime::Option add_security_option(runtime::CommandLine app, std::string& folder) {
-  return app
-      .add_option("--security", folder,
-                  "Authenticate, encrypt, and let each role write its own topics only: folder made by "
-                  "`swiftlet keys create`")
-      .environment("SWIFTLET_SECURITY");
 }
 
 void add_service_options(runtime::CommandLine app, NodeSettings& settings) {

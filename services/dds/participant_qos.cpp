@@ -1,5 +1,6 @@
 #include "swiftlet/services/dds/participant_qos.hpp"
 
+#include <stdexcept>
 #include <string>
 
 #include "swiftlet/services/dds/datagram/guarded_transport.hpp"
@@ -38,7 +39,13 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
   const DdsProfile profile = file.empty() ? DdsProfile{} : load_dds_profile(file);
   dds::DomainParticipantQos qos = profile.participant;
   qos.name(settings.name);
-  if (!settings.security.empty()) set_security(settings.security, settings.name, qos);
+  if (!settings.security.empty()) {
+    if (!settings.network.discovery_servers.empty())
+      throw std::runtime_error(
+          "--security and --discovery-server exclude each other: a discovery server of Fast DDS 2.9 has no "
+          "security");
+    set_security(settings.security, settings.name, qos);
+  }
 
   auto& builtin = qos.wire_protocol().builtin;
   builtin.discovery_config.leaseDuration = duration(kLivelinessLease);

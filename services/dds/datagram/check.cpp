@@ -65,6 +65,12 @@ bool skip_bitmap(ByteReader& in) {
   return numbers <= kMostNumbers;
 }
 
+// With security, what may stand outside an encrypted message: announcements, handshakes, and what is itself encrypted.
+bool may_be_clear(std::uint8_t kind) {
+  return kind == kPad || kind == kInfoTimestamp || kind == kInfoDestination || kind == kData ||
+         (kind >= kSecureBody && kind <= kSecureRtpsPrefix);
+}
+
 // Checks one datagram. All check functions return the broken rule, or nullptr.
 class DatagramCheck {
  public:
@@ -83,6 +89,7 @@ class DatagramCheck {
  private:
   const char* check_header();
   const char* check_next();
+  const char* check_encryption(std::uint8_t kind);
   const char* check_body(Submessage& submessage);
   const char* check_acknack(ByteReader body);
   const char* check_heartbeat(ByteReader body);
@@ -98,6 +105,7 @@ class DatagramCheck {
   const DatagramLimits& limits_;
   ByteReader rest_;
   CheckedDatagram result_;
+  bool encrypted_ = false;  // with security: what follows is the content of an encrypted message
 };
 
 const char* DatagramCheck::check_header() {
@@ -123,12 +131,25 @@ const char* DatagramCheck::check_next() {
   if (!rest_.ok()) return "submessage header too short (8.3.3.3)";
   if (length == 0 && header[0] != kPad && header[0] != kInfoTimestamp) length = rest_.rest();  // to the end
   if (length > rest_.rest()) return "submessage longer than the message (9.4.5.1.3)";
-  if (length % 4 != 0 && length != rest_.rest())
+  if (length % 4 != 0 && length != rest_.rest() && !encrypted_)
     return "submessage whose length is not a multiple of 4 (9.4.5.1.3)";
   Submessage submessage{header[0], header[1],
                         ByteReader(rest_.data(), length, (header[1] & kLittleEndianFlag) != 0)};
   rest_.skip(length);
+  if (const char* const fault = check_encryption(submessage.kind)) return fault;
   return check_body(submessage);
+}
+
+const char* DatagramCheck::check_encryption(std::uint8_t kind) {
+  const bool is_of_security = kind >= kSecureBody && kind <= kSecureRtpsPostfix;
+  if (!limits_.security)
+    return is_of_security ? "encrypted submessage, but security is off (DDS Security 7.3.6)" : nullptr;
+  if (encrypted_) {
+    const bool belongs = kind == kSecureBody || kind == kSecureRtpsPostfix;
+    return belongs ? nullptr : "submessage beside the content of an encrypted message (DDS Security 7.3.6)";
+  }
+  encrypted_ = kind == kSecureRtpsPrefix;
+  return may_be_clear(kind) ? nullptr : "submessage that is not encrypted (DDS Security 7.3.6)";
 }
 
 const char* DatagramCheck::check_body(Submessage& submessage) {
@@ -159,15 +180,9 @@ const char* DatagramCheck::check_body(Submessage& submessage) {
       return "INFO_SRC, with which a datagram names another participant as its source (8.3.8.10)";
     case kStatistics:
       return "statistics submessage that is not the last (vendor-specific)";
-    case kSecureRtpsPrefix:
-      if (limits_.security) rest_.skip(rest_.rest());  // the security plugin checks what follows
-      break;
     default:
-      break;
+      return nullptr;  // receivers skip other kinds (8.3.4.1), and the security plugin checks its own
   }
-  if (submessage.kind >= kSecureBody && submessage.kind <= kSecureRtpsPostfix && !limits_.security)
-    return "encrypted submessage, but security is off (DDS Security 7.3.6)";
-  return nullptr;  // receivers skip other kinds (8.3.4.1)
 }
 
 const char* DatagramCheck::note(const EntityId& writer, std::uint32_t number) {
@@ -216,7 +231,7 @@ const char* DatagramCheck::check_gap(ByteReader body) {
   if (!start.in_range || !base.in_range) return "GAP with a sequence number out of range (8.3.5.5)";
   if (start.value == 0 || base.value < start.value) return "GAP that ends before it begins (8.3.8.4.3)";
   if (base.value - start.value > (is_builtin(writer) ? kLongestBuiltinGap : kLongestGap))
-    return "GAP of more than 256 samples (8.3.8.4)";
+    return "GAP of more than 256 samples, or of discovery 65,536 (8.3.8.4)";
   return note(writer, base.value);
 }
 
@@ -244,8 +259,10 @@ const char* DatagramCheck::check_data(Submessage& submessage) {
   if (submessage.has(kDataFlag) && submessage.has(kKeyFlag)) return "DATA with both data and key (8.3.8.2.2)";
   const std::optional<BuiltinTopic> topic = topic_of(reader, writer);
   if (!topic) return "DATA between endpoints that do not belong together (9.3.1.3)";
-  if (*topic == BuiltinTopic::kSecurity && !limits_.security)
-    return "DATA of DDS Security, but security is off (DDS Security 7.4)";
+  const bool of_security = *topic == BuiltinTopic::kSecurity || *topic == BuiltinTopic::kHandshake;
+  if (of_security && !limits_.security) return "DATA of DDS Security, but security is off (DDS Security 7.4)";
+  if (limits_.security && *topic != BuiltinTopic::kParticipant && *topic != BuiltinTopic::kHandshake)
+    return "DATA that is not encrypted (DDS Security 7.4)";
   const bool relays = limits_.discovery_servers && is_discovery_server(result_.source);
   const ListContext context{result_.source, *topic, limits_.security, relays};
   bool names_key = false;
@@ -277,6 +294,7 @@ const char* DatagramCheck::check_payload(Submessage& submessage, const ListConte
     for (std::size_t i = 0; i < hidden.count; ++i)
       result_.hidden[result_.hidden_count++] = static_cast<std::size_t>(hidden.at[i] - begin_);
   }
+  if (context.topic == BuiltinTopic::kHandshake) return check_handshake_payload(payload);
   if (context.topic == BuiltinTopic::kLiveliness) return check_liveliness_payload(payload, context);
   return nullptr;
 }

@@ -12,7 +12,7 @@
 namespace swiftlet::comms {
 
 struct DatagramLimits {
-  // With DDS Security, participants sign or encrypt datagrams as a whole, and the security plugin checks these.
+  // With DDS Security every message is encrypted, but for announcements and handshakes. Fast DDS takes others for genuine.
   bool security = false;
   // Discovery servers announce other participants than themselves.
   bool discovery_servers = false;

@@ -9,9 +9,11 @@ namespace {
 
 constexpr std::uint16_t kSentinel = 0x0001;
 constexpr std::uint16_t kKeyHash = 0x0070;
-constexpr int kMostParameters = 256;  // of a list
-// Leases of a participant: a short one would end between two announcements; the longest default of a vendor.
+constexpr int kMostParameters = 256;      // of a list
+constexpr std::uint32_t kMostTokens = 8;  // of a handshake
+// A shorter lease of a participant would end between two of its announcements.
 constexpr std::int32_t kShortestLease_s = 1;
+// The longest lease that an implementation of DDS has by default.
 constexpr std::int32_t kLongestLease_s = 300;
 
 // What a parameter holds.
@@ -120,7 +122,7 @@ bool skip_token(ByteReader& in) {
   if (!in.ok() || count > in.rest() / 8) return false;
   for (std::uint32_t i = 0; i < count; ++i) {
     if (!skip_string(in) || !skip_sequence(in, 1)) return false;
-    in.skip(in.rest() % 4);  // up to the next multiple of 4: the length of a parameter is one
+    in.skip(in.rest() % 4);  // up to the next multiple of 4: the length of the whole is one
   }
   return true;
 }
@@ -261,6 +263,24 @@ const char* check_liveliness_payload(ByteReader payload, const ListContext& cont
     return "liveliness of another participant (8.4.13)";
   ByteReader data(payload.data(), payload.rest(), encapsulation[1] == 1);
   return skip_sequence(data, 1) ? nullptr : "liveliness message too short (9.6.3.1)";
+}
+
+const char* check_handshake_payload(ByteReader payload) {
+  constexpr std::size_t kMessageIdentityBytes = 24;
+  constexpr std::size_t kGuidBytes = 16;
+  const std::size_t bytes = payload.rest();
+  const std::uint8_t* const encapsulation = payload.take(4);
+  if (encapsulation == nullptr || encapsulation[0] != 0 || encapsulation[1] > 1 || bytes % 4 != 0)
+    return "handshake that is not CDR (DDS Security 7.4.4)";
+  ByteReader in(payload.data(), payload.rest(), encapsulation[1] == 1);
+  in.skip(2 * kMessageIdentityBytes + 3 * kGuidBytes);
+  if (!skip_string(in)) return "handshake too short (DDS Security 7.4.4)";
+  const std::uint32_t tokens = in.u32();
+  if (!in.ok() || tokens > kMostTokens) return "handshake with too many tokens (DDS Security 7.4.4)";
+  for (std::uint32_t i = 0; i < tokens; ++i) {
+    if (!skip_token(in) || !in.ok()) return "handshake whose content exceeds its length (DDS Security 7.4.4)";
+  }
+  return nullptr;
 }
 
 }  // namespace swiftlet::comms

@@ -37,5 +37,7 @@ const char* check_discovery_payload(ByteReader payload, const ListContext& conte
                                     HiddenParameters& hidden, std::uint64_t& digest);
 // Of the topic kLiveliness.
 const char* check_liveliness_payload(ByteReader payload, const ListContext& context);
+// Of the topic kHandshake: ParticipantGenericMessage of DDS Security 1.1, 7.4.4.
+const char* check_handshake_payload(ByteReader payload);
 
 }  // namespace swiftlet::comms

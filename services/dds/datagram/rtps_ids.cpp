@@ -3,8 +3,6 @@
 namespace swiftlet::comms {
 namespace {
 
-// Of discovery, liveliness or security: the upper two bits of the last byte.
-
 struct BuiltinWriter {
   EntityId writer;
   BuiltinTopic topic;
@@ -14,7 +12,7 @@ constexpr BuiltinWriter kWriters[] = {
     {{0x00, 0x00, 0x03, 0xc2}, BuiltinTopic::kEndpoint},
     {{0x00, 0x00, 0x04, 0xc2}, BuiltinTopic::kEndpoint},
     {{0x00, 0x02, 0x00, 0xc2}, BuiltinTopic::kLiveliness},
-    {{0x00, 0x02, 0x01, 0xc3}, BuiltinTopic::kSecurity},
+    {{0x00, 0x02, 0x01, 0xc3}, BuiltinTopic::kHandshake},
     {{0xff, 0x02, 0x02, 0xc3}, BuiltinTopic::kSecurity},
     {{0xff, 0x01, 0x01, 0xc2}, BuiltinTopic::kSecurity},
     {{0xff, 0x00, 0x03, 0xc2}, BuiltinTopic::kSecurity},

@@ -23,7 +23,8 @@ enum class BuiltinTopic {
   kParticipant,  // SPDP: a participant announces itself
   kEndpoint,     // SEDP: a participant announces a writer or reader
   kLiveliness,   // a participant asserts that it is alive
-  kSecurity,     // handshake and keys of DDS Security
+  kHandshake,    // DDS Security: participants authenticate each other
+  kSecurity,     // DDS Security: keys, and the encrypted forms of the topics above
 };
 
 // By the kind in the last byte (9.3.1.2). The readers of Fast DDS accept samples of a writer without a kind from anyone.

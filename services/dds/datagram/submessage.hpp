@@ -21,9 +21,12 @@ enum SubmessageKind : std::uint8_t {
   kHeartbeatFrag = 0x13,
   kData = 0x15,
   kDataFrag = 0x16,
-  kSecureBody = 0x30,         // the first and
-  kSecureRtpsPostfix = 0x34,  // the last of DDS Security
+  // Of DDS Security (7.3.6.2):
+  kSecureBody = 0x30,
+  kSecurePrefix = 0x31,
+  kSecurePostfix = 0x32,
   kSecureRtpsPrefix = 0x33,
+  kSecureRtpsPostfix = 0x34,
   kStatistics = 0x80,  // of Fast DDS built with statistics, which appends it to every message
 };
 

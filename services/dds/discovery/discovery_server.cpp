@@ -20,7 +20,6 @@
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/periodic_task.hpp"
 #include "swiftlet/services/dds/qos/duration.hpp"
-#include "swiftlet/services/dds/security/security_qos.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -49,7 +48,6 @@ dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings,
                                      const std::shared_ptr<DatagramGuard>& guard) {
   dds::DomainParticipantQos qos;
   qos.name(kName);
-  if (!settings.security.empty()) set_security(settings.security, kName, qos);
   auto& protocol = qos.wire_protocol();
   // The processes know the server by this prefix, that of ROS 2.
   eprosima::fastdds::rtps::get_server_client_default_guidPrefix(settings.number, protocol.prefix);
@@ -73,7 +71,6 @@ dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings,
 std::shared_ptr<DatagramGuard> guard_of(const DiscoveryServerSettings& settings) {
   DatagramLimits limits;
   limits.discovery_servers = true;
-  limits.security = !settings.security.empty();
   const std::string& file = settings.network_key_file;
   return std::make_shared<DatagramGuard>(
       file.empty() ? runtime::NetworkKeys() : runtime::read_network_keys(file), limits);

@@ -15,7 +15,6 @@ struct DiscoveryServerSettings {
   int port = 0;
   std::vector<std::string> interfaces{};  // as in NetworkSettings
   std::string network_key_file{};         // as in NodeSettings
-  std::string security{};                 // as in NodeSettings
 };
 
 // A process registered at the server, or is gone.

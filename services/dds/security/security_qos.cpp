@@ -20,8 +20,7 @@ std::string security_role(const std::string& folder, const std::string& process)
   for (const char* const role : {roles::kVehicle, roles::kMocap, roles::kControl}) {
     if (process == role) return role;
   }
-  const bool commands = runtime::SecurityFolder{folder}.has(roles::kGround) && process != "discovery-server";
-  return commands ? roles::kGround : roles::kObserver;
+  return runtime::SecurityFolder{folder}.has(roles::kGround) ? roles::kGround : roles::kObserver;
 }
 
 std::string fault_of_security(const std::string& folder, const std::string& process) {

@@ -235,9 +235,60 @@ TEST(Datagram, SecurityTokensAreForSecurity) {
   EXPECT_EQ(fault_of(with(token), true), "");
   EXPECT_NE(fault_of(with(vast), true), "");
   EXPECT_TRUE(refuses(RtpsMessage().add(0x33, 0, ByteWriter().zeros(20)), "security is off"));
-  EXPECT_EQ(
-      fault_of(RtpsMessage().add(0x33, 0, ByteWriter().zeros(20)).add(0x0c, 0, ByteWriter().zeros(20)), true),
-      "");
+}
+
+TEST(Datagram, WithSecurityOnlyAnnouncementsAndHandshakesAreClear) {
+  const RtpsMessage encrypted = RtpsMessage()
+                                    .add(0x33, 0, ByteWriter().zeros(20))
+                                    .add(0x30, 0, ByteWriter().zeros(21))
+                                    .add(0x34, 0, ByteWriter().zeros(20))
+                                    .add(0x80, 0, ByteWriter().zeros(56));
+  EXPECT_EQ(fault_of(encrypted, true), "");
+  EXPECT_EQ(check(encrypted, true).length, encrypted.bytes().size() - 60);
+  EXPECT_EQ(fault_of(announcement(kAlice, participant_parameters(kAlice)), true), "");
+  const RtpsMessage sample =
+      RtpsMessage().add(0x15, 4, data_fields(kUserReader, kUserWriter, 7).u32(0x0100).zeros(60));
+  EXPECT_EQ(fault_of(sample), "");
+  EXPECT_NE(fault_of(sample, true), "") << "a forged sample";
+  EXPECT_NE(fault_of(endpoint_data(endpoint_parameters()), true), "") << "a forged endpoint";
+  const ByteWriter endpoints = ByteWriter().bytes(kUserReader).bytes(kUserWriter);
+  EXPECT_NE(
+      fault_of(RtpsMessage().add(0x07, 0, ByteWriter(endpoints).number(0, 1).number(0, 9).u32(3)), true), "");
+  EXPECT_NE(fault_of(RtpsMessage().add(0x06, 0, ByteWriter(endpoints).number(0, 4).u32(0).u32(3)), true), "");
+  EXPECT_NE(
+      fault_of(RtpsMessage().add(0x08, 0, ByteWriter(endpoints).number(0, 4).number(0, 9).u32(0)), true), "");
+}
+
+// Fast DDS looks for its statistics before it decrypts, and asserts that they are the last.
+TEST(Datagram, NothingStandsBesideTheContentOfAnEncryptedMessage) {
+  const auto with = [](const RtpsMessage& more) { return fault_of(more, true); };
+  const RtpsMessage prefix = RtpsMessage().add(0x33, 0, ByteWriter().zeros(20));
+  EXPECT_NE(with(RtpsMessage(prefix).add(0x80, 0, ByteWriter().zeros(56)).add(0x01, 0, ByteWriter())), "");
+  EXPECT_NE(with(RtpsMessage(prefix).add(0x0c, 0, ByteWriter().zeros(20))), "");
+  EXPECT_NE(with(RtpsMessage(prefix).add(0x15, 4, data_fields(kUserReader, kUserWriter, 7).zeros(64))), "");
+}
+
+TEST(Datagram, CountsOfAHandshakeAreBounded) {
+  constexpr EntityId kHandshakeReader{0x00, 0x02, 0x01, 0xc4};
+  constexpr EntityId kHandshakeWriter{0x00, 0x02, 0x01, 0xc3};
+  const auto handshake = [&](const ByteWriter& tokens) {
+    return fault_of(RtpsMessage().add(0x15, 4,
+                                      data_fields(kHandshakeReader, kHandshakeWriter, 1)
+                                          .u32(0x0100)
+                                          .zeros(96)
+                                          .string("dds.sec.auth")
+                                          .bytes(tokens.take())),
+                    true);
+  };
+  const ByteWriter token =
+      ByteWriter().string("DDS:Auth:PKI-DH:1.0+Req").u32(0).u32(1).string("c.id").u32(6).zeros(8);
+  EXPECT_EQ(handshake(ByteWriter().u32(1).bytes(token.take())), "");
+  EXPECT_NE(handshake(ByteWriter().u32(2).bytes(token.take())), "") << "a token is missing";
+  EXPECT_NE(handshake(ByteWriter().u32(0x10000000)), "") << "tokens";
+  EXPECT_NE(handshake(ByteWriter().u32(1).string("x").u32(0x10000000).u32(0)), "") << "properties";
+  EXPECT_NE(handshake(ByteWriter().u32(1).string("x").u32(0).u32(0x08000000)), "") << "binary properties";
+  EXPECT_NE(handshake(ByteWriter().u32(1).string("x").u32(0).u32(1).string("c.id").u32(0x7fffffff)), "")
+      << "value";
 }
 
 TEST(Datagram, TypeDescriptionsAreHiddenFromTheMiddleware) {
