@@ -38,6 +38,7 @@ using Extension = std::unique_ptr<X509_EXTENSION, FreeBy<X509_EXTENSION_free>>;
 
 constexpr long kClocksDiffer_s = 3600L;  // a certificate is valid from this long before it was made
 constexpr int kSerialBits = 127;
+constexpr const char* kNoCertificate = "is not a certificate";
 
 [[noreturn]] void fail(const char* what) {
   char reason[256];
@@ -66,18 +67,30 @@ std::string text_of(const Bio& bio) {
   return {data, static_cast<std::size_t>(size)};
 }
 
+// These return null if the text is something else.
+Certificate find_certificate(const std::string& pem) {
+  return Certificate(PEM_read_bio_X509(reader_of(pem).get(), nullptr, nullptr, nullptr));
+}
+Key find_key(const std::string& pem) {
+  char no_password[] = "";  // without one, OpenSSL asks the terminal
+  return Key(PEM_read_bio_PrivateKey(reader_of(pem).get(), nullptr, nullptr, no_password));
+}
+Revocations find_revocations(const std::string& pem) {
+  return Revocations(PEM_read_bio_X509_CRL(reader_of(pem).get(), nullptr, nullptr, nullptr));
+}
+
 Certificate certificate_of(const std::string& pem) {
-  Certificate certificate(PEM_read_bio_X509(reader_of(pem).get(), nullptr, nullptr, nullptr));
+  Certificate certificate = find_certificate(pem);
   require(certificate != nullptr, "read a certificate");
   return certificate;
 }
 Key key_of(const std::string& pem) {
-  Key key(PEM_read_bio_PrivateKey(reader_of(pem).get(), nullptr, nullptr, nullptr));
+  Key key = find_key(pem);
   require(key != nullptr, "read a private key");
   return key;
 }
 Revocations revocations_of(const std::string& pem) {
-  Revocations list(PEM_read_bio_X509_CRL(reader_of(pem).get(), nullptr, nullptr, nullptr));
+  Revocations list = find_revocations(pem);
   require(list != nullptr, "read a list of revoked certificates");
   return list;
 }
@@ -139,6 +152,13 @@ Certificate new_certificate(EVP_PKEY* key, const std::string& common_name, int d
   return certificate;
 }
 
+// A certificate is not valid for longer than its authority.
+void limit_end(X509* certificate, const X509* authority) {
+  const ASN1_TIME* const end = X509_get0_notAfter(authority);
+  if (ASN1_TIME_compare(X509_get0_notAfter(certificate), end) > 0)
+    require(X509_set1_notAfter(certificate, end) == 1, "make a certificate");
+}
+
 Key new_key() {
   Key key(EVP_EC_gen("P-256"));
   require(key != nullptr, "make a private key");
@@ -162,6 +182,12 @@ Credential issue(const Credential& authority, const std::string& common_name, in
   const Key issuer_key = key_of(authority.private_key);
   const Key key = new_key();
   const Certificate certificate = new_certificate(key.get(), common_name, days, issuer.get());
+  limit_end(certificate.get(), issuer.get());
+  add_extension(certificate.get(), issuer.get(), NID_basic_constraints, "critical,CA:FALSE");
+  add_extension(certificate.get(), issuer.get(), NID_key_usage, "critical,digitalSignature");
+  // Without emailProtection, OpenSSL refuses it as the signer of S/MIME: Fast DDS 2.9 takes every other certificate of the
+  // authority for a signer of permissions.
+  add_extension(certificate.get(), issuer.get(), NID_ext_key_usage, "critical,clientAuth,serverAuth");
   require(X509_sign(certificate.get(), issuer_key.get(), EVP_sha256()) != 0, "sign a certificate");
   return {pem_of(certificate.get()), pem_of(key.get())};
 }
@@ -214,27 +240,29 @@ std::string revoke(const Credential& authority, const std::string& list, const s
   return signed_list(revocations.get(), authority);
 }
 
-std::string last_day_of(const std::string& certificate) {
+namespace {
+
+std::string last_day_of(const X509* certificate) {
   std::tm time{};
-  require(ASN1_TIME_to_tm(X509_get0_notAfter(certificate_of(certificate).get()), &time) == 1, "read a time");
+  require(ASN1_TIME_to_tm(X509_get0_notAfter(certificate), &time) == 1, "read a time");
   char day[16];
   std::strftime(day, sizeof day, "%Y-%m-%d", &time);
   return day;
 }
 
-std::string fault_of_certificate(const std::string& certificate, const std::string& authority_certificate,
-                                 const std::string& revocation_list) {
-  const Certificate tested = certificate_of(certificate);
-  const Certificate authority = certificate_of(authority_certificate);
-  const Revocations revocations = revocations_of(revocation_list);
-  const Store store(X509_STORE_new());
+Store store_of(X509* authority) {
+  Store store(X509_STORE_new());
+  require(store != nullptr && X509_STORE_add_cert(store.get(), authority) == 1, "check a certificate");
+  return store;
+}
+
+// As Fast DDS checks identities: for no purpose in particular.
+std::string fault_of(X509* certificate, X509_STORE* store) {
   const StoreContext context(X509_STORE_CTX_new());
-  require(store != nullptr && context != nullptr && X509_STORE_add_cert(store.get(), authority.get()) == 1 &&
-              X509_STORE_add_crl(store.get(), revocations.get()) == 1 &&
-              X509_STORE_set_flags(store.get(), X509_V_FLAG_CRL_CHECK) == 1 &&
-              X509_STORE_CTX_init(context.get(), store.get(), tested.get(), nullptr) == 1,
+  require(context != nullptr && X509_STORE_CTX_init(context.get(), store, certificate, nullptr) == 1,
           "check a certificate");
   if (X509_verify_cert(context.get()) == 1) return {};
+  ERR_clear_error();
   const int error = X509_STORE_CTX_get_error(context.get());
   if (error == X509_V_ERR_CERT_HAS_EXPIRED) return "has expired on " + last_day_of(certificate);
   if (error == X509_V_ERR_CERT_NOT_YET_VALID) return "is not valid yet; is the clock of this host right?";
@@ -242,10 +270,88 @@ std::string fault_of_certificate(const std::string& certificate, const std::stri
   return std::string("is not valid: ") + X509_verify_cert_error_string(error);
 }
 
+}  // namespace
+
+std::string last_day_of(const std::string& certificate) {
+  return last_day_of(certificate_of(certificate).get());
+}
+
+std::string serial_number_of(const std::string& certificate) {
+  const Bio out = memory();
+  require(i2a_ASN1_INTEGER(out.get(), X509_get0_serialNumber(certificate_of(certificate).get())) > 0,
+          "read a serial number");
+  return text_of(out);
+}
+
+std::string subject_name_of(const std::string& certificate) {
+  const Bio out = memory();
+  require(X509_NAME_print_ex(out.get(), X509_get_subject_name(certificate_of(certificate).get()), 0,
+                             XN_FLAG_RFC2253 & ~ASN1_STRFLGS_ESC_MSB) > 0,
+          "read a name");
+  return text_of(out);
+}
+
+std::string fault_of_authority(const std::string& certificate) {
+  const Certificate authority = find_certificate(certificate);
+  if (authority == nullptr) return kNoCertificate;
+  return fault_of(authority.get(), store_of(authority.get()).get());
+}
+
+std::string fault_of_certificate(const std::string& certificate, const std::string& authority_certificate,
+                                 const std::string& revocation_list) {
+  const Certificate tested = find_certificate(certificate);
+  if (tested == nullptr) return kNoCertificate;
+  const Store store = store_of(certificate_of(authority_certificate).get());
+  require(X509_STORE_add_crl(store.get(), revocations_of(revocation_list).get()) == 1 &&
+              X509_STORE_set_flags(store.get(), X509_V_FLAG_CRL_CHECK) == 1,
+          "check a certificate");
+  return fault_of(tested.get(), store.get());
+}
+
+bool is_issued_by(const std::string& certificate, const std::string& authority_certificate) {
+  const Certificate issued = find_certificate(certificate);
+  const Certificate authority = certificate_of(authority_certificate);
+  const bool by_authority =
+      issued != nullptr && X509_verify(issued.get(), X509_get0_pubkey(authority.get())) == 1;
+  ERR_clear_error();
+  return by_authority;
+}
+
+bool is_list_of(const std::string& revocation_list, const std::string& authority_certificate) {
+  const Revocations list = find_revocations(revocation_list);
+  const Certificate authority = certificate_of(authority_certificate);
+  const bool by_authority =
+      list != nullptr && X509_CRL_verify(list.get(), X509_get0_pubkey(authority.get())) == 1;
+  ERR_clear_error();
+  return by_authority;
+}
+
+bool is_revoked(const std::string& certificate, const std::string& revocation_list) {
+  X509_REVOKED* entry = nullptr;
+  return X509_CRL_get0_by_cert(revocations_of(revocation_list).get(), &entry,
+                               certificate_of(certificate).get()) == 1;
+}
+
 bool belongs(const std::string& private_key, const std::string& certificate) {
-  const bool same = X509_check_private_key(certificate_of(certificate).get(), key_of(private_key).get()) == 1;
+  const Certificate of = find_certificate(certificate);
+  const Key key = find_key(private_key);
+  const bool same = of != nullptr && key != nullptr && X509_check_private_key(of.get(), key.get()) == 1;
   ERR_clear_error();
   return same;
+}
+
+std::optional<std::string> signed_text(const std::string& document,
+                                       const std::string& authority_certificate) {
+  const Store store = store_of(certificate_of(authority_certificate).get());
+  BIO* content = nullptr;
+  const Signature signature(SMIME_read_PKCS7(reader_of(document).get(), &content));
+  const Bio owned_content(content);
+  const Bio out = memory();
+  const bool valid = signature != nullptr &&
+                     PKCS7_verify(signature.get(), nullptr, store.get(), content, out.get(), PKCS7_TEXT) == 1;
+  ERR_clear_error();
+  if (!valid) return std::nullopt;
+  return text_of(out);
 }
 
 }  // namespace swiftlet::runtime

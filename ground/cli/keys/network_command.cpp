@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "swiftlet/ground/cli/keys/keys_commands.hpp"
@@ -18,8 +19,10 @@ struct Options {
 };
 
 int make(const std::string& file) {
-  if (std::filesystem::exists(file))
+  std::error_code fault;
+  if (std::filesystem::exists(file, fault))
     throw InputError(file + " exists; --exchange add begins to exchange its key");
+  if (fault) throw InputError(file + ": cannot be read: " + fault.message());
   runtime::write_network_keys(file, {runtime::random_network_key()});
   std::printf("made %s; copy it to each host, and start every process with --network-key %s\n", file.c_str(),
               file.c_str());

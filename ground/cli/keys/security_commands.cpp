@@ -55,27 +55,28 @@ int create(const Options& options) {
       "  mocap      swiftlet-mocap\n"
       "  control    swiftlet-control\n"
       "  ground     tools that command\n"
-      "  observer   tools that only read, and `swiftlet discovery-server`\n"
+      "  observer   tools that only read\n"
       "then start every process with --security %s\n",
       options.folder.c_str(), options.folder.c_str());
   return kDone;
 }
 
 int renew(const Options& options) {
-  on_input([&] { runtime::renew_identity({options.folder}, options.role, options.days); });
-  std::printf("renewed %s/%s; copy it to its host, and restart the processes there\n", options.folder.c_str(),
-              options.role.c_str());
+  const runtime::SecurityFolder folder{options.folder};
+  std::string end;
+  on_input([&] { end = runtime::renew_identity(folder, options.role, options.days); });
+  std::printf("renewed %s, valid until %s; copy it to its host, and restart the processes there\n",
+              (folder.path / options.role).c_str(), end.c_str());
   return kDone;
 }
 
 int revoke(const Options& options) {
   const runtime::SecurityFolder folder{options.folder};
-  on_input([&] { runtime::revoke_identity(folder, folder.certificate(options.role)); });
+  on_input([&] { runtime::revoke_role(folder, options.role); });
   std::printf(
-      "revoked %s/%s; copy %s to each host, and restart the processes there; `swiftlet keys renew` makes the "
-      "next "
-      "one\n",
-      options.folder.c_str(), options.role.c_str(), folder.revoked().c_str());
+      "revoked every certificate of %s; copy %s to each host, and restart the processes there; "
+      "`swiftlet keys renew` makes the next one\n",
+      (folder.path / options.role).c_str(), folder.revoked().c_str());
   return kDone;
 }
 
@@ -88,7 +89,10 @@ void add_role(runtime::CommandLine app, Options& options) {
 }
 
 void add_days(runtime::CommandLine app, Options& options) {
-  app.add_option("--days", options.days, "time after which the certificate expires, days")
+  app.add_option(
+         "--days", options.days,
+         "time after which the certificate expires, days; at the latest with its authority, ten years "
+         "after `swiftlet keys create`")
       .range(1, kMostDays)
       .show_default();
 }
@@ -121,7 +125,8 @@ Command add_keys_renew_command(runtime::CommandLine keys) {
 
 Command add_keys_revoke_command(runtime::CommandLine keys) {
   const auto options = std::make_shared<Options>();
-  const runtime::CommandLine app = keys.add_subcommand("revoke", "Declare the certificate of a role invalid");
+  const runtime::CommandLine app =
+      keys.add_subcommand("revoke", "Declare all certificates of a role invalid");
   add_folder(app, *options);
   add_role(app, *options);
   app.footer("example: swiftlet keys revoke lab ground && swiftlet keys renew lab ground");
