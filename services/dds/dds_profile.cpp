@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <initializer_list>
 #include <memory>
+#include <mutex>
 #include <string_view>
 #include <tinyxml2.h>
 #include <utility>
@@ -27,14 +28,16 @@ constexpr const char* kUseBuiltinTransports = "useBuiltinTransports";
 constexpr const char* kUserTransports = "userTransports";
 constexpr const char* kTransportId = "transport_id";
 
-// The messages of Fast DDS while it reads a file.
-class MessageCollector final : public dds::LogConsumer {
+// The errors of Fast DDS while it reads a file. Its warnings do not make a file wrong.
+class ErrorCollector final : public dds::LogConsumer {
  public:
-  explicit MessageCollector(std::vector<std::string>& messages) : messages_(messages) {}
-  void Consume(const dds::Log::Entry& entry) override { messages_.push_back(entry.message); }
+  explicit ErrorCollector(std::vector<std::string>& errors) : errors_(errors) {}
+  void Consume(const dds::Log::Entry& entry) override {
+    if (entry.kind == dds::Log::Kind::Error) errors_.push_back(entry.message);
+  }
 
  private:
-  std::vector<std::string>& messages_;
+  std::vector<std::string>& errors_;
 };
 
 class ProfileFile {
@@ -99,9 +102,9 @@ class ProfileFile {
   }
 
   void check_participant(const Element& profiles, const Element& rtps) const {
-    // No flow controllers: see kHasFlowControllers.
-    require_known(rtps, {"allocation", "sendSocketBufferSize", "listenSocketBufferSize",
-                         "throughputController", "propertiesPolicy", kUserTransports, kUseBuiltinTransports});
+    // No flow controllers, see kHasFlowControllers; those of 2.9 may end the process with a failed assertion.
+    require_known(rtps, {"allocation", "sendSocketBufferSize", "listenSocketBufferSize", "propertiesPolicy",
+                         kUserTransports, kUseBuiltinTransports});
     const Element* const builtin = rtps.FirstChildElement(kUseBuiltinTransports);
     if (builtin != nullptr && builtin->BoolText(false)) fail(*builtin, "is true, must be false");
     const Element* const transports = rtps.FirstChildElement(kUserTransports);
@@ -135,23 +138,25 @@ class ProfileFile {
   tinyxml2::XMLDocument document_;
 };
 
-// Throws with the first message of Fast DDS, which names the element.
+// Throws with the first error of Fast DDS, which names the element.
 void load_into_fast_dds(const std::string& file) {
-  std::vector<std::string> messages;
+  std::vector<std::string> errors;
   dds::Log::Flush();
   dds::Log::ClearConsumers();
-  dds::Log::RegisterConsumer(std::make_unique<MessageCollector>(messages));
+  dds::Log::RegisterConsumer(std::make_unique<ErrorCollector>(errors));
   const ReturnCode loaded = dds::DomainParticipantFactory::get_instance()->load_XML_profiles_file(file);
   dds::Log::Flush();
-  log_fast_dds_to_stderr();
-  if (!succeeded(loaded) || !messages.empty())
+  log_fast_dds();
+  if (!succeeded(loaded) || !errors.empty())
     throw runtime::ConfigError(file, 0, "",
-                               "is refused by Fast DDS: " + (messages.empty() ? "" : messages.front()));
+                               "is refused by Fast DDS: " + (errors.empty() ? "" : errors.front()));
 }
 
 }  // namespace
 
 DdsProfile load_dds_profile(const std::string& file) {
+  static std::mutex mutex;  // Fast DDS has one log and one list of profiles
+  const std::lock_guard<std::mutex> lock(mutex);
   set_up_fast_dds();
   const std::string name = ProfileFile(file).checked_profile();
   load_into_fast_dds(file);

@@ -16,11 +16,9 @@ struct DdsProfile {
 };
 
 // Reads the participant profile of a file: the only one, or that with is_default_profile="true". It may set
-//   rtps: allocation, sendSocketBufferSize, listenSocketBufferSize, throughputController (Fast DDS 2.9 only),
-//         propertiesPolicy, userTransports with one UDPv4 transport
+//   rtps: allocation, sendSocketBufferSize, listenSocketBufferSize, propertiesPolicy, userTransports with one UDPv4 transport
 //   transport_descriptor: sendBufferSize, receiveBufferSize, TTL, maxMessageSize, output_port, interfaceWhiteList
-// Throws runtime::ConfigError with file, line and element for everything else, and for what Fast DDS refuses. Not
-// thread-safe.
+// Throws runtime::ConfigError with file, line and element for everything else, and for what Fast DDS refuses.
 DdsProfile load_dds_profile(const std::string& file);
 
 }  // namespace swiftlet::comms

@@ -1,5 +1,6 @@
 #include "swiftlet/services/dds/fast_dds_library.hpp"
 
+#include <atomic>
 #include <cstdlib>
 #include <memory>
 
@@ -13,14 +14,35 @@ namespace swiftlet::comms {
 
 namespace dds = eprosima::fastdds::dds;
 
-void log_fast_dds_to_stderr() {
+namespace {
+
+std::atomic<FastDdsWarningListener> warning_listener{nullptr};
+
+class Consumer final : public dds::StdoutErrConsumer {
+ public:
+  void Consume(const dds::Log::Entry& entry) override {
+    if (entry.kind == dds::Log::Kind::Error) return StdoutErrConsumer::Consume(entry);
+    if (const FastDdsWarningListener listener = warning_listener)
+      listener(entry.context.category, entry.message);
+  }
+};
+
+}  // namespace
+
+void log_fast_dds() {
   dds::Log::ClearConsumers();
-  dds::Log::RegisterConsumer(std::make_unique<dds::StdoutErrConsumer>());
+  dds::Log::RegisterConsumer(std::make_unique<Consumer>());
+}
+
+void hear_fast_dds_warnings(FastDdsWarningListener listener) {
+  set_up_fast_dds();
+  warning_listener = listener;
+  dds::Log::SetVerbosity(dds::Log::Kind::Warning);
 }
 
 void set_up_fast_dds() {
   static const bool done = [] {
-    log_fast_dds_to_stderr();
+    log_fast_dds();
     dds::Log::SetVerbosity(dds::Log::Kind::Error);
     // Otherwise Fast DDS makes a client of a server of each participant that uses multicast, peers or the loopback
     // interface. The options have read the variable.

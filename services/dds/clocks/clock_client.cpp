@@ -47,9 +47,10 @@ std::optional<std::int64_t> ClockClient::to_vehicle(std::int64_t own_ns) {
 
 void ClockClient::take(const msg::ClockReply& reply) {
   const std::int64_t now_ns = own_ns_();
-  if (reply.client() != id_ || reply.sequence_number() <= last_answered_) return;
-  last_answered_ = reply.sequence_number();
+  const std::uint64_t number = reply.sequence_number();
+  if (reply.client() != id_ || number <= last_answered_ || number > requests_sent_) return;
   if (filter_.add({reply.sent_ns(), reply.received_ns(), reply.answered_ns(), now_ns}) != nullptr) return;
+  last_answered_ = number;
   const ClockEstimate& clock = *filter_.estimate();
   const bool is_certain = filter_.exchanges() >= ClockFilter::kStepExchanges && !filter_.is_in_doubt();
   latest_.put({clock, is_certain});

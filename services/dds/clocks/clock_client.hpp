@@ -1,6 +1,7 @@
 // Translates the stamps of a clock of its own to the vehicle's clock.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -45,7 +46,7 @@ class ClockClient {
 
   // Of the thread that asks.
   Knowledge known_;
-  std::uint64_t requests_sent_ = 0;
+  std::atomic<std::uint64_t> requests_sent_{0};  // read by the other thread
   Time due_;
 
   // Of the thread that receives.

@@ -1,10 +1,10 @@
 #include "swiftlet/services/dds/security/refused_peers.hpp"
 
 #include <iterator>
-#include <memory>
+#include <sstream>
+#include <utility>
 
 #include <fastdds/dds/log/Log.hpp>
-#include <fastdds/dds/log/StdoutErrConsumer.hpp>
 #include <spdlog/spdlog.h>
 
 #include "swiftlet/services/dds/fast_dds_library.hpp"
@@ -12,65 +12,63 @@
 namespace swiftlet::comms {
 namespace {
 
-namespace dds = eprosima::fastdds::dds;
+// Categories of messages in the log of Fast DDS: its own, and that of note().
+constexpr const char* kReason = "SECURITY_AUTHENTICATION";
+constexpr const char* kRefusal = "SWIFTLET_REFUSAL";
+constexpr std::size_t kMostReasons = 64;
 
-constexpr const char* kAuthentication = "SECURITY_AUTHENTICATION";
-
-// The last one that Fast DDS gave.
-struct Reason {
+// Fast DDS logs the reason of a refusal without a GUID, and then reports the refusal in the same thread, in which note() logs
+// the GUID. So each reason stands directly before its GUID in the log.
+struct Reasons {
   std::mutex mutex;
-  std::string text;
-  RefusedPeers::Time at;
+  std::string last;  // its GUID follows
+  std::map<std::string, std::string> by_guid;
 };
 
 // Lives as long as the log of Fast DDS, which is until the end of the process.
-Reason& last_reason() {
-  static auto* const reason = new Reason;
-  return *reason;
+Reasons& reasons() {
+  static auto* const all = new Reasons;
+  return *all;
 }
 
-// Keeps the reasons of refusals, which are warnings, and writes errors to standard error.
-class ReasonConsumer final : public dds::StdoutErrConsumer {
- public:
-  void Consume(const dds::Log::Entry& entry) override {
-    if (entry.context.category == nullptr || entry.context.category != std::string(kAuthentication)) {
-      if (entry.kind == dds::Log::Kind::Error) StdoutErrConsumer::Consume(entry);
-      return;
-    }
-    Reason& reason = last_reason();
-    const std::lock_guard<std::mutex> lock(reason.mutex);
-    reason.text = entry.message;
-    reason.at = std::chrono::steady_clock::now();
-  }
-};
+void take_warning(const std::string& category, const std::string& message) {
+  Reasons& known = reasons();
+  const std::lock_guard<std::mutex> lock(known.mutex);
+  if (category == kReason) known.last = message;
+  if (category != kRefusal || known.last.empty()) return;
+  if (known.by_guid.size() >= kMostReasons) known.by_guid.clear();
+  known.by_guid[message] = std::exchange(known.last, {});
+}
 
-// "; certificate has expired", or empty if Fast DDS gave none since then.
-std::string reason_since(RefusedPeers::Time since) {
-  Reason& reason = last_reason();
-  const std::lock_guard<std::mutex> lock(reason.mutex);
-  if (reason.text.empty() || reason.at < since) return {};
-  const std::size_t open = reason.text.find('(');
-  const std::size_t close = reason.text.find(')', open);
-  if (open == std::string::npos || close == std::string::npos) return ": " + reason.text;
-  return ": its " + reason.text.substr(open + 1, close - open - 1);
+// ": its certificate has expired", of "Invalidation error of certificate  (certificate has expired)".
+std::string in_words(const std::string& reason) {
+  const std::size_t open = reason.find('(');
+  const std::size_t close = reason.rfind(')');
+  if (reason.rfind("Invalidation error of certificate", 0) != 0 || open == std::string::npos ||
+      close == std::string::npos)
+    return ": " + reason;
+  const std::string why = reason.substr(open + 1, close - open - 1);
+  return (why.rfind("certificate", 0) == 0 ? ": its " : ": ") + why;
+}
+
+// Empty if Fast DDS gave none.
+std::string logged_reason(const RefusedPeers::Guid& guid) {
+  std::ostringstream text;
+  text << guid;
+  Reasons& known = reasons();
+  const std::lock_guard<std::mutex> lock(known.mutex);
+  const auto found = known.by_guid.find(text.str());
+  return found == known.by_guid.end() ? "" : in_words(found->second);
 }
 
 }  // namespace
 
-RefusedPeers::RefusedPeers() {
-  set_up_fast_dds();
-  static const bool done = [] {
-    dds::Log::ClearConsumers();
-    dds::Log::RegisterConsumer(std::make_unique<ReasonConsumer>());
-    dds::Log::SetVerbosity(dds::Log::Kind::Warning);
-    return true;
-  }();
-  static_cast<void>(done);
-}
+RefusedPeers::RefusedPeers() { hear_fast_dds_warnings(&take_warning); }
 
 RefusedPeers::~RefusedPeers() = default;
 
 void RefusedPeers::note(const Guid& guid, const std::string& peer, const char* reason, Time now) {
+  if (*reason == '\0') EPROSIMA_LOG_WARNING(SWIFTLET_REFUSAL, guid);
   const std::lock_guard<std::mutex> lock(mutex_);
   if (written_.count(guid) > 0 || due_.size() + written_.size() >= kMostLines) return;
   due_.emplace(guid, Refusal{peer, reason, now});
@@ -86,8 +84,8 @@ void RefusedPeers::write_due(Time now) {
       ++it;
       continue;
     }
-    const std::string known = reason_since(refusal.at - kReasonTime);
-    spdlog::warn("refused {}{}", refusal.peer, known.empty() ? refusal.reason : known);
+    const std::string logged = logged_reason(guid);
+    spdlog::warn("refused {}{}", refusal.peer, logged.empty() ? refusal.reason : logged);
     written_[guid] = now;
     it = due_.erase(it);
   }

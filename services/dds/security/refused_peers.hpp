@@ -2,7 +2,6 @@
 #pragma once
 
 #include <chrono>
-#include <deque>
 #include <map>
 #include <mutex>
 #include <string>
@@ -23,8 +22,8 @@ class RefusedPeers {
   RefusedPeers(const RefusedPeers&) = delete;
   RefusedPeers& operator=(const RefusedPeers&) = delete;
 
-  // peer: "ground (process 12 on host lab2)", as it announces itself, which nothing proves. reason: ": why", or empty if
-  // Fast DDS knows it.
+  // peer: "ground (process 12 on host lab2)", as it announces itself, which nothing proves. reason: ": why", unless Fast DDS
+  // logged another one. Empty: Fast DDS refuses it; then call this in the thread in which it says so.
   void note(const Guid& guid, const std::string& peer, const char* reason, Time now);
   // Logs those of more than kReasonTime ago, each at most once in kRepeatTime, and all together at most kMostLines in that
   // time.
