@@ -118,6 +118,9 @@ void Participant::Impl::stop_serving(const std::string& vehicle) {
     std::vector<std::string> vehicles = split_names(announcement_.vehicles);
     vehicles.erase(std::remove(vehicles.begin(), vehicles.end(), vehicle), vehicles.end());
     announcement_.vehicles = join_names(vehicles);
+    for (const auto& [guid, peer] : peers_) {
+      if (!is_own(peer)) rediscovery_.gone(guid.guidPrefix);
+    }
   }
   if (session_ != nullptr) session_->announce(announcement_);
 }

@@ -112,16 +112,17 @@ struct Participant::Impl final : public DiscoveryListener {
   std::string in_use_by(const std::string& vehicle, const std::string& topic, const Peer& source) const;
 
   const std::shared_ptr<DatagramGuard> guard_;
-  std::mutex session_mutex_;  // guards session_ and endpoints_
+  std::mutex session_mutex_;  // guards session_, endpoints_ and nodes_of_
   std::unique_ptr<ParticipantSession> session_;
   std::vector<Endpoint*> endpoints_;
-
-  mutable std::mutex peers_mutex_;       // guards all below; locked after session_mutex_
-  Announcement announcement_;            // of this process; changed with both mutexes locked
   std::map<std::string, int> nodes_of_;  // number of the nodes that serve a vehicle
+
+  mutable std::mutex peers_mutex_;  // guards all below; locked after session_mutex_
+  Announcement announcement_;       // of this process; changed with both mutexes locked
   std::chrono::steady_clock::time_point established_at_;
   std::function<void(const std::string&)> on_lost_source_;
-  std::map<Guid, Peer> peers_;  // of any vehicle; with security only authenticated ones
+  // Of any vehicle; with security only authenticated ones, whose announcements are not encrypted.
+  std::map<Guid, Peer> peers_;
   // With security.
   struct Stranger {
     Peer peer;

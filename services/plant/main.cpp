@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -101,8 +102,11 @@ void check(const Options& options, std::size_t vehicles) {
 }
 
 std::string trace_of(const std::string& vehicle, std::string path) {
-  const std::size_t at = path.find(kNameInTrace);
-  return at == std::string::npos ? path : path.replace(at, std::string(kNameInTrace).size(), vehicle);
+  const std::size_t length = std::string_view(kNameInTrace).size();
+  for (std::size_t at = path.find(kNameInTrace); at != std::string::npos;
+       at = path.find(kNameInTrace, at + vehicle.size()))
+    path.replace(at, length, vehicle);
+  return path;
 }
 
 // Throws as the loaders do, and std::invalid_argument.

@@ -24,7 +24,7 @@ RealtimeLoop::RealtimeLoop(SimulatedVehicle& vehicle, const plant::SimulationSet
                            comms::Node& node, const runtime::RealtimeSettings& realtime)
     : vehicle_(vehicle),
       speed_(speed),
-      step_ns_(scaled(settings.step_ns, speed)),
+      steps_per_sample_(plant::period_ns(settings.imu.rate_hz) / settings.step_ns),
       sample_period_ns_(scaled(plant::period_ns(settings.imu.rate_hz), speed)),
       imu_period_ns_(plant::period_ns(settings.imu.rate_hz)),
       mocap_(foreseen_frames(settings)),
@@ -50,8 +50,9 @@ void RealtimeLoop::run(const std::atomic<bool>& stop) {
 // Makes the steps up to the next IMU sample at once, since each wake-up costs more than a step. Each obeys the commands that
 // had arrived when it was due.
 void RealtimeLoop::step_to_sample(std::int64_t sample_due_ns) {
-  for (std::int64_t due_ns = sample_due_ns - sample_period_ns_ + step_ns_;; due_ns += step_ns_) {
-    const bool is_last = due_ns > sample_due_ns - step_ns_;
+  for (std::int64_t left = steps_per_sample_ - 1; left >= 0; --left) {
+    const bool is_last = left == 0;
+    const std::int64_t due_ns = sample_due_ns - sample_period_ns_ * left / steps_per_sample_;
     while (received_.read_available() > 0 && (is_last || received_.front().received_ns <= due_ns)) {
       vehicle_.obey(received_.front());
       received_.pop();
@@ -59,7 +60,6 @@ void RealtimeLoop::step_to_sample(std::int64_t sample_due_ns) {
     vehicle_.step();
     publish();
     vehicle_.report();
-    if (is_last) return;
   }
 }
 

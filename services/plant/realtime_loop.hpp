@@ -35,7 +35,7 @@ class RealtimeLoop {
 
   SimulatedVehicle& vehicle_;
   double speed_;
-  std::int64_t step_ns_;           // computer's clock
+  std::int64_t steps_per_sample_;
   std::int64_t sample_period_ns_;  // of the IMU, computer's clock
   std::int64_t imu_period_ns_;
   // When motion capture needs the truth; without a value always, as its frames cannot be foreseen.

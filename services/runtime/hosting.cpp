@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <stdexcept>
 #include <thread>
 
@@ -64,17 +65,13 @@ class Running {
 
 using Fleet = std::vector<std::unique_ptr<Running>>;
 
-// Ends the vehicles that have failed, and keeps their sentences.
-void end_failed(Fleet& fleet, std::size_t vehicles, std::vector<std::string>& failures) {
-  for (auto one = fleet.begin(); one != fleet.end();) {
-    if (!(*one)->has_failed()) {
-      ++one;
-      continue;
-    }
-    failures.push_back((*one)->failure());
-    if (vehicles > 1) spdlog::error("{}; this vehicle ends, {} go on", failures.back(), fleet.size() - 1);
-    one = fleet.erase(one);
-  }
+// Takes the vehicles that have failed out of the fleet.
+Fleet take_failed(Fleet& fleet) {
+  const auto first =
+      std::stable_partition(fleet.begin(), fleet.end(), [](const auto& one) { return !one->has_failed(); });
+  Fleet failed(std::make_move_iterator(first), std::make_move_iterator(fleet.end()));
+  fleet.erase(first, fleet.end());
+  return failed;
 }
 
 std::string join(const std::vector<std::string>& sentences) {
@@ -108,11 +105,14 @@ void host(std::vector<std::unique_ptr<HostedVehicle>> vehicles, StopSignal& stop
   std::vector<std::string> failures;
   do {
     for (const auto& one : fleet) one->attend();
-    end_failed(fleet, count, failures);
+    for (const auto& one : take_failed(fleet)) {
+      failures.push_back(one->failure());
+      if (count > 1) spdlog::error("{}; this vehicle ends, {} go on", failures.back(), fleet.size());
+    }
   } while (!fleet.empty() && !stop.wait_for(period));
   for (const auto& one : fleet) one->request_stop();
   for (const auto& one : fleet) one->end();
-  end_failed(fleet, count, failures);
+  for (const auto& one : take_failed(fleet)) failures.push_back(one->failure());
   if (failures.empty()) return;
   if (count == 1) throw std::runtime_error(failures.front());
   throw std::runtime_error(std::to_string(failures.size()) + " of " + std::to_string(count) +

@@ -3,12 +3,16 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
 
 namespace swiftlet::runtime {
 namespace {
@@ -21,25 +25,29 @@ struct Trace {
   std::atomic<int> attended{0};
   std::atomic<bool> logged_end{false};
   std::atomic<bool> destroyed{false};
+  std::atomic<bool> released{false};  // lets a vehicle go on that blocks
 };
 
 // Steps until the stop, and fails where it is told to.
 class SteppingVehicle final : public HostedVehicle {
  public:
-  enum class Fault { kNone, kRunThrows, kAttendThrows, kReported, kLags };
+  enum class Fault { kNone, kRunThrows, kAttendThrows, kReported, kFailsAtOnce, kStopThrows, kBlocks };
 
   SteppingVehicle(const std::string& name, Trace& trace, Fault fault)
-      : HostedVehicle(name), trace_(trace), fault_(fault) {}
+      : HostedVehicle(name), trace_(trace), fault_(fault) {
+    if (fault == Fault::kFailsAtOnce) fail("it cannot start");
+  }
   ~SteppingVehicle() override { trace_.destroyed = true; }
 
   void run(const std::atomic<bool>& stop) override {
+    while (fault_ == Fault::kBlocks && !trace_.released) std::this_thread::yield();
     while (!stop) {
       if (++trace_.steps < kGoodSteps) continue;
       if (fault_ == Fault::kRunThrows) throw std::runtime_error("its step failed");
       if (fault_ == Fault::kReported) fail("its callback failed");
-      if (fault_ == Fault::kLags) trace_.steps = kGoodSteps;  // makes no progress
       std::this_thread::yield();
     }
+    if (fault_ == Fault::kStopThrows) throw std::runtime_error("its end failed");
   }
   void attend() override {
     ++trace_.attended;
@@ -49,6 +57,7 @@ class SteppingVehicle final : public HostedVehicle {
   void log_end() override { trace_.logged_end = true; }
 
   static constexpr int kGoodSteps = 100;
+  static constexpr int kGoodTurns = 2;
 
  private:
   Trace& trace_;
@@ -57,8 +66,12 @@ class SteppingVehicle final : public HostedVehicle {
 
 using Fault = SteppingVehicle::Fault;
 
-// Hosts vehicles with these faults until every failing one is destroyed and the others have stepped on after that.
-// Returns the sentence of the end; empty if none failed.
+bool ends_early(Fault fault) {
+  return fault != Fault::kNone && fault != Fault::kBlocks && fault != Fault::kStopThrows;
+}
+
+// Hosts vehicles with these faults until every one that ends early is destroyed, and those without a fault have stepped and
+// were attended after that. Those that block do so until then. Returns the sentence of the end; empty if none failed.
 std::string host_all(const std::vector<Fault>& faults, std::vector<Trace>& traces) {
   StopSignal stop;
   std::vector<std::unique_ptr<HostedVehicle>> vehicles;
@@ -66,19 +79,20 @@ std::string host_all(const std::vector<Fault>& faults, std::vector<Trace>& trace
     vehicles.push_back(std::make_unique<SteppingVehicle>("kl" + std::to_string(i + 1), traces[i], faults[i]));
   std::thread observer([&] {
     const auto deadline = std::chrono::steady_clock::now() + 20s;
-    const auto fails = [&](std::size_t i) { return faults[i] != Fault::kNone && faults[i] != Fault::kLags; };
     const auto settled = [&] {
       for (std::size_t i = 0; i < faults.size(); ++i) {
-        if (fails(i) && !traces[i].destroyed) return false;
+        if (ends_early(faults[i]) && !traces[i].destroyed) return false;
       }
       return true;
     };
     while (!settled() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
-    std::vector<int> before;
-    for (const Trace& trace : traces) before.push_back(trace.steps);
+    std::vector<std::pair<int, int>> before;
+    for (const Trace& trace : traces) before.emplace_back(trace.steps, trace.attended);
     const auto go_on = [&] {
       for (std::size_t i = 0; i < faults.size(); ++i) {
-        if (faults[i] == Fault::kNone && traces[i].steps < before[i] + SteppingVehicle::kGoodSteps)
+        const auto [steps, attended] = before[i];
+        if (faults[i] == Fault::kNone && (traces[i].steps < steps + SteppingVehicle::kGoodSteps ||
+                                          traces[i].attended < attended + SteppingVehicle::kGoodTurns))
           return false;
       }
       return true;
@@ -86,6 +100,7 @@ std::string host_all(const std::vector<Fault>& faults, std::vector<Trace>& trace
     while (!go_on() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
     EXPECT_TRUE(settled());
     EXPECT_TRUE(go_on());
+    for (Trace& trace : traces) trace.released = true;
     stop.request();
   });
   std::string sentence;
@@ -121,10 +136,28 @@ TEST(Hosting, OneThatFailsEndsAloneHoweverItFails) {
   }
 }
 
-TEST(Hosting, OneThatMakesNoProgressHoldsUpNoOther) {
-  std::vector<Trace> traces(2);
-  EXPECT_EQ(host_all({Fault::kLags, Fault::kNone}, traces), "");
-  EXPECT_LE(traces[0].steps, SteppingVehicle::kGoodSteps + 1);
+// GIVEN a vehicle whose thread does not return WHEN another one fails THEN that one is destroyed at once, and a third one
+// goes on.
+TEST(Hosting, OneThatBlocksHoldsUpNoOther) {
+  std::vector<Trace> traces(3);
+  EXPECT_EQ(host_all({Fault::kBlocks, Fault::kRunThrows, Fault::kNone}, traces),
+            "1 of 3 vehicles failed: kl2: its step failed");
+  EXPECT_TRUE(traces[0].logged_end);
+}
+
+TEST(Hosting, SaysHowManyGoOn) {
+  const auto before = spdlog::default_logger();
+  std::ostringstream text;
+  auto sink = std::make_shared<spdlog::sinks::ostream_sink_mt>(text);
+  sink->set_pattern("%v");
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", sink));
+  std::vector<Trace> traces(3);
+  EXPECT_EQ(host_all({Fault::kFailsAtOnce, Fault::kFailsAtOnce, Fault::kStopThrows}, traces),
+            "3 of 3 vehicles failed: kl1: it cannot start; kl2: it cannot start; kl3: its end failed");
+  spdlog::set_default_logger(before);
+  EXPECT_EQ(
+      text.str(),
+      "kl1: it cannot start; this vehicle ends, 1 go on\nkl2: it cannot start; this vehicle ends, 1 go on\n");
 }
 
 TEST(Hosting, EndsAtOnceWhenAllHaveFailed) {
