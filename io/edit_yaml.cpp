@@ -13,6 +13,7 @@ namespace swiftlet::runtime {
 namespace {
 
 struct Replacement {
+  std::string key;
   std::size_t begin = 0;
   std::size_t length = 0;
   std::string value;
@@ -48,8 +49,8 @@ std::size_t scalar_length(std::string_view text) {
   const char first = text.front();
   if (first == '"' || first == '\'') return text.find(first, 1) + 1;
   std::size_t end = text.find_first_of(",]}\n");
-  end = std::min({end, text.find(" #"), text.size()});
-  while (end > 0 && text[end - 1] == ' ') --end;
+  end = std::min({end, text.find(" #"), text.find("\t#"), text.size()});
+  while (end > 0 && (text[end - 1] == ' ' || text[end - 1] == '\t')) --end;
   return end;
 }
 
@@ -66,10 +67,16 @@ std::string with_scalars(const std::string& text, const std::string& file_name,
   std::vector<Replacement> replacements;
   for (const auto& [key, value] : values) {
     const auto begin = static_cast<std::size_t>(find(root, key, file_name).Mark().pos);
-    replacements.push_back({begin, scalar_length(std::string_view(text).substr(begin)), value});
+    replacements.push_back({key, begin, scalar_length(std::string_view(text).substr(begin)), value});
   }
   std::sort(replacements.begin(), replacements.end(),
             [](const Replacement& a, const Replacement& b) { return a.begin > b.begin; });
+  const auto same =
+      std::adjacent_find(replacements.begin(), replacements.end(),
+                         [](const Replacement& a, const Replacement& b) { return a.begin == b.begin; });
+  if (same != replacements.end())
+    throw ConfigError(file_name + ": " + same->key +
+                      " shares its value with another key by an alias: write both out");
   std::string out = text;
   for (const Replacement& one : replacements) out.replace(one.begin, one.length, one.value);
   return out;

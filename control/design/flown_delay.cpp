@@ -53,7 +53,7 @@ double least_flown_delay_margin(const ControlGains& gains, const ObservedRotors&
         std::all_of(loops.begin(), loops.end(), [](const FlownLoop& flown) { return is_stable(flown.loop); });
     if (!stable) return std::max(0.0, delay_s - kLeastDelayAccuracy_s);
   }
-  return std::numeric_limits<double>::infinity();
+  return kLongestDelay_s;
 }
 
 }  // namespace swiftlet::control

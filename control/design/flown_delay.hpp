@@ -15,7 +15,7 @@ constexpr double kLongestDelay_s = 0.5;
 // takes half a period of the IMU of it, because a command holds until the next one.
 std::array<double, 6> flown_delay_margins(const ControlDesign& design, const ControlSettings& settings);
 
-// The least of them, rounded down to kLeastDelayAccuracy_s.
+// The least of them, rounded down to kLeastDelayAccuracy_s; kLongestDelay_s if it is longer.
 constexpr double kLeastDelayAccuracy_s = 1e-3;
 double least_flown_delay_margin(const ControlGains& gains, const ObservedRotors& rotors);
 

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/control/design/flown_delay.hpp"
 #include "swiftlet/control/supervision/events.hpp"
 #include "swiftlet/control/supervision/request_status.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
@@ -216,11 +217,12 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Comma
   return json;
 }
 
-// "loop delay p50 2 ms, p95 2 ms, unstable from 52 ms on".
+// "p50 2 ms, p95 2 ms, unstable from 52 ms on".
 std::string delay_text(const msg::ControlStatus& control) {
-  const std::string margin = std::isfinite(control.delay_margin_s())
-                                 ? fmt::format("unstable from {:.0f} ms on", 1e3 * control.delay_margin_s())
-                                 : "stable with any";
+  const double margin_ms = 1e3 * control.delay_margin_s();
+  const std::string margin = control.delay_margin_s() < control::kLongestDelay_s
+                                 ? fmt::format("unstable from {:.0f} ms on", margin_ms)
+                                 : fmt::format("stable up to {:.0f} ms", margin_ms);
   if (control.loop_delay_p95_s() < 0.0) return "not measured, " + margin;
   return fmt::format("p50 {:.0f} ms, p95 {:.0f} ms, {}", 1e3 * control.loop_delay_p50_s(),
                      1e3 * control.loop_delay_p95_s(), margin);

@@ -1,7 +1,5 @@
 #include "swiftlet/ground/tuning/delay_design.hpp"
 
-#include <algorithm>
-
 #include <fmt/core.h>
 
 #include "swiftlet/control/design/control_gains.hpp"
@@ -30,10 +28,8 @@ constexpr NamedRpt kPositionAxes[] = {{"x", &control::PositionSettings::x},
 
 double least_margin_s(const plant::Vehicle& vehicle, const control::ControlSettings& settings) {
   const control::ControlDesign design = control::design(vehicle, settings);
-  const double margin_s =
-      control::least_flown_delay_margin(control::control_gains(design, settings),
-                                        {design.rotor_lag_s, settings.estimator.rotor_speed_bandwidth});
-  return std::min(margin_s, control::kLongestDelay_s);  // longer ones are not examined
+  return control::least_flown_delay_margin(control::control_gains(design, settings),
+                                           {design.rotor_lag_s, settings.estimator.rotor_speed_bandwidth});
 }
 
 }  // namespace

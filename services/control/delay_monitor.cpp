@@ -24,7 +24,7 @@ const DelayMonitor::Report& DelayMonitor::update(const LoopDelay::Figures& measu
         "the loop's delay is {:.0f} ms, and {:.0f} ms make it unstable: fly gains for this delay, see "
         "`swiftlet tune delay --help`",
         1e3 * report_.p95_s, 1e3 * report_.margin_s);
-  } else if (was_near && !report_.near_margin) {
+  } else if (was_near && !report_.near_margin && is_measured) {
     spdlog::info("the loop's delay is {:.0f} ms again", 1e3 * report_.p95_s);
   }
   return report_;

@@ -12,7 +12,7 @@ class DelayMonitor {
   struct Report {
     double p50_s = -1.0;  // measured; -1: not known
     double p95_s = -1.0;
-    double margin_s = 0.0;  // least delay with which a loop is unstable; infinite if there is none
+    double margin_s = 0.0;  // control::least_flown_delay_margin()
     bool near_margin = false;
   };
 

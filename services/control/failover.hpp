@@ -56,8 +56,8 @@ class Failover {
   // Silence of the active controller, on the vehicle's clock, after which a standby takes over: the first in
   // rank after kPatienceNs, each further one kPerRankNs later. A standby that does not know the state of the
   // flight waits for kUnknownFlightPatienceNs: those that know it take over first. Over a slow network
-  // commands are always old: the first one waits at least kBeyondDelayNs longer than 95 % of them need, and
-  // kUnknownDelayNs as long as that is not measured.
+  // commands are always old: the first one waits at least kBeyondDelayNs longer than 95 % of them need, but at
+  // most kUnknownDelayNs, and that long while it is not measured.
   static constexpr std::int64_t kPatienceNs = 25'000'000;
   static constexpr std::int64_t kBeyondDelayNs = 15'000'000;
   static constexpr std::int64_t kUnknownDelayNs = 250'000'000;

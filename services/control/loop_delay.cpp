@@ -5,7 +5,10 @@ namespace swiftlet::services {
 void LoopDelay::sample(std::int64_t stamp_ns, const plant::ObeyedCommand& obeyed) {
   const bool restarted = stamp_ns < last_stamp_ns_;
   if (!started_ || restarted) *this = {};
-  if (!started_) window_end_ns_ = stamp_ns + kFirstWindowNs;
+  if (!started_) {
+    window_end_ns_ = stamp_ns + kFirstWindowNs;
+    last_obeyed_ns_ = obeyed.any ? obeyed.stamp_ns : -1;  // may have been obeyed long before
+  }
   started_ = true;
   last_stamp_ns_ = stamp_ns;
   if (obeyed.any && obeyed.stamp_ns != last_obeyed_ns_) {

@@ -114,6 +114,7 @@ void Telemetry::take(const Snapshot& snapshot) {
   const bool role_changed = snapshot.role != last_.role;
   if (snapshot.role == Role::kStandby) {
     last_ = snapshot;
+    update_delay();  // the margin of new gains takes time, which a takeover must not
     if (role_changed) change_role();
     return;
   }
@@ -163,6 +164,10 @@ void Telemetry::publish_sampled(const Snapshot& snapshot) {
   references_.publish(reference);
 }
 
+const DelayMonitor::Report& Telemetry::update_delay() {
+  return delay_monitor_.update(last_.loop_delay, last_.gains, last_.status.gains_progress >= 1.0);
+}
+
 void Telemetry::publish_status() {
   const control::Status& status = last_.status;
   comms::msg::ControlStatus message;
@@ -194,8 +199,7 @@ void Telemetry::publish_status() {
   message.setpoints_accepted(last_.setpoints.accepted);
   message.setpoints_refused(last_.setpoints.refused);
   message.setpoint_refusal() = last_.setpoints.refusal.reason;
-  const DelayMonitor::Report& delay =
-      delay_monitor_.update(last_.loop_delay, last_.gains, status.gains_progress >= 1.0);
+  const DelayMonitor::Report& delay = update_delay();
   message.loop_delay_p50_s(delay.p50_s);
   message.loop_delay_p95_s(delay.p95_s);
   message.delay_margin_s(delay.margin_s);

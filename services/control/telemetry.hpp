@@ -45,6 +45,7 @@ class Telemetry {
   void publish_plan();
   void answer_requests(const std::vector<RequestResult>& answers);
   void log_imu_silence();
+  const DelayMonitor::Report& update_delay();
   void publish_sampled(const Snapshot& snapshot);
   void publish_status();
   void publish_mission();

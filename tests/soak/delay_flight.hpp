@@ -34,7 +34,9 @@ struct DelayResult {
   std::uint64_t overtaken = 0;   // frames
   std::uint64_t duplicated = 0;  // frames
 
-  bool good() const { return flight.completed && flight.rms_m < kLargestRms_m; }
+  bool good() const {
+    return flight.completed && flight.fault.empty() && flight.rms_m < kLargestRms_m && !after.near_margin;
+  }
   static constexpr double kLargestRms_m = 0.1;  // the tolerance of the missions
 };
 

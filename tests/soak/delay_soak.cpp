@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
       argc, argv,
       [&](runtime::CommandLine app) {
         app.add_option("--delay", delays_ms, "delay each way, ms; the jitter is a fifth of it")
-            .range(0, 100)
+            .range(0, 80)
             .show_default();
         app.add_option("--duplicated", settings.duplicated, "frames that arrive twice, %")
             .range(0, 100)

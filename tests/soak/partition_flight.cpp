@@ -93,13 +93,13 @@ class PartitionFlight {
   PartitionResult fly() {
     take_off();
     PartitionResult result;
-    const bool realtime = control().realtime_scheduling();
+    result.had_priority = control().realtime_scheduling();
     cut(result);
     result.outcome = outcome(result);
     result.reason = control().reason().c_str();
     result.standby_took_over = result.standby_took_over || standby_flies();
     result.healed = eventually([this] { return healed(); }, kHeals, 20ms);
-    result.priority_kept = control().realtime_scheduling() == realtime;
+    result.priority_kept = control().realtime_scheduling() == result.had_priority;
     return result;
   }
 

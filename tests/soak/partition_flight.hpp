@@ -36,9 +36,9 @@ struct PartitionResult {
   std::string reason;              // of the last mode
   double deviation_m = 0.0;        // largest distance from the reference, as long as it flies the mission
   bool standby_took_over = false;
-  bool healed = false;  // after the cut, all processes hear each other again
-  bool priority_kept =
-      false;  // the flight threads of the controller that flies have the same scheduling as before
+  bool healed = false;         // after the cut, all processes hear each other again
+  bool had_priority = false;   // the flight threads of the controller that flies, before the cut
+  bool priority_kept = false;  // they have the same scheduling as before
 };
 
 // Starts all processes on hosts of their own, flies laps, and cuts the network in flight. Programs write their output into

@@ -23,6 +23,7 @@ bool fly_row(const Partition& partition) {
   if (fault.empty() && result.outcome != partition.expected)
     fault = std::string("expected: ") + to_string(partition.expected);
   if (fault.empty() && !result.healed) fault = "some do not hear each other again";
+  if (fault.empty() && !result.had_priority) fault = "the real-time priority was not granted";
   if (fault.empty() && !result.priority_kept) fault = "the real-time priority was lost";
   std::printf("%-40s %-9s %9s %9.1f  %-60s %s\n", partition.name().c_str(),
               result.outcome ? to_string(*result.outcome) : "-",

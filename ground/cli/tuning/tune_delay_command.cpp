@@ -6,7 +6,6 @@
 #include <string>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "swiftlet/control/design/flown_loops.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
@@ -22,6 +21,9 @@
 
 namespace swiftlet::ground {
 namespace {
+
+// A standby waits at most 0.25 s for the command of a controller that flies, and would take over at longer delays.
+constexpr double kLongestTunedDelay_s = 0.2;
 
 struct Options {
   double delay_s = 0.0;
@@ -55,7 +57,11 @@ int design_delay(const Options& options) {
   }
   design.settings.name = std::filesystem::path(options.output).stem();
   const std::string slowed_text = runtime::with_scalars(text, control_file, slowed_values(design.settings));
-  runtime::parse_control_settings(slowed_text, options.output);  // refuses a name that is none
+  // Refuses a name that is none.
+  const control::ControlSettings written = runtime::parse_control_settings(slowed_text, options.output);
+  if (slowed_values(written) != slowed_values(design.settings))
+    throw InputError(control_file.string() +
+                     ": its values cannot be replaced in place; write each on a line of its own");
   runtime::write_atomically(options.output, slowed_text);
   std::printf("%s", table(design, options.delay_s).c_str());
   std::fprintf(stderr, "wrote %s\n", options.output.c_str());
@@ -74,7 +80,7 @@ Command add_tune_delay_command(runtime::CommandLine tune) {
       "example: swiftlet tune delay 0.04 --out slow.yaml");
   app.add_option("delay", options->delay_s,
                  "delay from an IMU sample to the rotors, s; both ways of the network")
-      .range(0.001, 0.25)
+      .range(0.001, kLongestTunedDelay_s)
       .required();
   app.add_option("--control", options->control,
                  "control settings file, or the name of one in config/control, to begin with")

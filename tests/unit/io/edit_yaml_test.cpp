@@ -42,6 +42,7 @@ TEST(EditYaml, RefusesWhatItDoesNotFind) {
   EXPECT_EQ(refusal("name.first"), "f.yaml: name.first is missing");
   EXPECT_EQ(refusal("roll.q"), "f.yaml: roll.q is no single value");
   EXPECT_THROW(with_scalars("a: [1", "f", {{"a", "1"}}), ConfigError);
+  EXPECT_THROW(with_scalars("a: &v 1\nb: *v\n", "f", {{"a", "2"}, {"b", "2"}}), ConfigError);
 }
 
 }  // namespace

@@ -55,6 +55,15 @@ TEST(LoopDelay, BeginsAnewWhenTheVehicleRestarts) {
   EXPECT_EQ(delay.figures().p50_ns, -1);
 }
 
+TEST(LoopDelay, IgnoresTheCommandThatWasObeyedBeforeTheFirstSample) {
+  LoopDelay delay;
+  std::int64_t stamp_ns = ms(65'000);
+  delay.sample(stamp_ns, {true, true, 1, ms(5000)});
+  stamp_ns += kPeriodNs;
+  run(delay, stamp_ns, ms(110), ms(70));
+  EXPECT_EQ(delay.figures().p95_ns, ms(70));
+}
+
 class DelayMargin : public testing::Test {
  protected:
   const control::ControlSettings settings_ =
