@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <deque>
+#include <exception>
 #include <future>
 #include <memory>
 #include <optional>
@@ -117,16 +118,23 @@ void fly_together(std::deque<ProcessFlight>& flights, ProcessGroup& processes, c
   for (const ProcessFlight& flight : flights) names.push_back(flight.vehicle_name());
   FleetProgress shares(progress, names);
   StartBarrier barrier(flights.size());
-  for_each_at_once(flights.size(), [&](std::size_t i) {
-    try {
-      flights[i].fly(interrupts, &barrier, shares.of(i));
-    } catch (const std::exception& error) {
-      barrier.fail(names[i] + " failed: " + error.what());
-      throw;
-    }
+  std::exception_ptr fault;
+  try {
+    for_each_at_once(flights.size(),
+                     [&](std::size_t i) { flights[i].fly(interrupts, &barrier, shares.of(i)); });
+  } catch (const std::exception&) {
+    fault = std::current_exception();  // once the records are written
+  }
+  std::vector<std::string> errors = processes.stop();
+  const bool any_failed = std::any_of(flights.begin(), flights.end(), [](const ProcessFlight& flight) {
+    return !flight.report().reason.empty();
   });
-  const std::vector<std::string> errors = processes.stop();
+  if (any_failed) {  // the exit status of a process that serves several may be due to that flight
+    for (const std::string& error : errors) progress.say(error);
+    errors.clear();
+  }
   for_each_at_once(flights.size(), [&](std::size_t i) { flights[i].finish(errors, shares.of(i)); });
+  if (fault) std::rethrow_exception(fault);
 }
 
 std::vector<std::string> vehicles_of(const FlyOptions& options) {

@@ -69,6 +69,10 @@ void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* barrier, Pro
     if (exited_process && report_.reason.find(*exited_process) == std::string::npos)
       report_.reason = *exited_process + "; " + report_.reason;
     if (barrier != nullptr) barrier->fail(network_.vehicle + " failed: " + report_.reason);
+  } catch (const std::exception& error) {
+    report_.reason = error.what();
+    if (barrier != nullptr) barrier->fail(network_.vehicle + " failed: " + report_.reason);
+    throw;
   }
   report_.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
   if (!record_.truth.empty()) report_.simulated_s = static_cast<double>(record_.truth.back().stamp_ns) * 1e-9;

@@ -5,8 +5,8 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::chrono::seconds kGrace{
-    30};  // a busy machine, or its disk, may delay a process by many seconds
+// A busy machine, or its disk, may delay a process by many seconds.
+constexpr std::chrono::seconds kGrace{30};
 
 }  // namespace
 
@@ -39,7 +39,8 @@ std::vector<std::string> ProcessGroup::stop() {
     const bool ended = child.wait(left).has_value();
     const ProcessEnd end = child.stop(std::chrono::milliseconds::zero());
     if (!ended) {
-      errors.push_back(child.name() + " did not end within 30 s of SIGTERM and was killed");
+      errors.push_back(child.name() + " did not end within " + std::to_string(kGrace.count()) +
+                       " s of SIGTERM and was killed");
     } else if (end.by_signal || end.code != 0) {
       errors.push_back(child.name() + " " + end.to_string());
     }
