@@ -167,10 +167,10 @@ class Participant {
   std::vector<std::string> qos_conflicts_seen() const;
 
   // Checks that this process is the only source of settings.source_of for the vehicles that it serves, and that
-  // none of `excluded` has a source either. Blocks for kSourceSearchTime. Returns a sentence that names the
-  // vehicle, the other process and its host, if there is one; then this process must not publish the topic.
-  // A process that joined at the same time is refused on one side only. on_lost: called with such a sentence
-  // if an earlier source is discovered only within kSourceProbation after; the process must end then. It runs
+  // none of `excluded` has a source either. Blocks for kSourceSearchTime, with security for kSecureSourceSearchTime.
+  // Returns a sentence that names the vehicle, the other process and its host, if there is one; then this process must
+  // not publish the topic. A process that joined at the same time is refused on one side only. on_lost: called with such
+  // a sentence if an earlier source is discovered only within kSourceProbation after; the process must end then. It runs
   // in a middleware thread and must not call this class.
   std::optional<std::string> become_source(const std::vector<std::string>& excluded,
                                            std::function<void(const std::string&)> on_lost = {});

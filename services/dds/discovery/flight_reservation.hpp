@@ -12,9 +12,10 @@ namespace swiftlet::comms {
 
 class FlightReservation {
  public:
-  // network.vehicle is ignored. Blocks for kSourceSearchTime. Throws std::runtime_error with a sentence if a
-  // process publishes as one of the vehicles or as its motion capture, or if another flight has reserved one
-  // of the names. Of two flights that start at the same time, one is refused, here or when its plant starts.
+  // network.vehicle is ignored. Blocks for kSourceSearchTime, with security for kSecureSourceSearchTime. Throws
+  // std::runtime_error with a sentence if a process publishes as one of the vehicles or as its motion capture, or if another
+  // flight has reserved one of the names. Of two flights that start at the same time, one is refused, here or when its plant
+  // starts.
   FlightReservation(const NodeSettings& network, const std::vector<std::string>& vehicles);
 
  private:
