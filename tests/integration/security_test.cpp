@@ -48,13 +48,30 @@ class Security : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(Security, StandbyTakesOverAndGroundMayNotFlyTheVehicle) {
+TEST_F(Security, StandbyTakesOverAndNeitherStrangersNorGroundFlyTheVehicle) {
   RedundantFlight flight(folder_.path(), {}, secured(keys("lab")));
   flight.start_controller(5);
   flight.start_controller(1);
   flight.wait_for_roles(1, 1);
   flight.fly(square_laps(0.5, 50));
   flight.wait("the vehicle flies a side", [&] { return flight.z_ned() < -0.98 && flight.speed() > 0.3; });
+
+  comms::NodeSettings open = flight.node_settings("stranger");
+  open.security.clear();
+  comms::Node stranger(open);
+  comms::Publisher<msg::ActuatorCommand> commands = stranger.publish(comms::topics::kActuatorCommand);
+  msg::ActuatorCommand stop;
+  stop.rotor_state(msg::ActuatorCommand_Constants::ROTORS_OFF);
+  stop.rotor_count(4);
+  stop.term(0xfffffff0U);
+  const std::int64_t from_ns = flight.stamp_ns();
+  flight.wait("a second in which a stranger sends commands", [&] {
+    stop.stamp_ns(flight.stamp_ns());
+    commands.publish(stop);
+    return flight.stamp_ns() > from_ns + kSecond;
+  });
+  EXPECT_EQ(commands.matched(), 0);
+  EXPECT_LT(flight.z_ned(), -0.98) << "the vehicle obeyed a stranger";
 
   comms::Node ground(flight.node_settings("ground"));
   EXPECT_THROW(ground.publish(comms::topics::kActuatorCommand), std::runtime_error);
