@@ -13,7 +13,7 @@ HostedPlant::HostedPlant(const comms::Participant& participant, const std::strin
   comms::log_peers(node_);
   if (settings.clock == runtime::Clock::kRealtime) {
     const double speed = settings.speed > 0.0 ? settings.speed : 1.0;
-    realtime_loop_.emplace(simulated_, settings.simulation, speed, node_, settings.realtime);
+    realtime_loop_.emplace(simulated_, settings.simulation, speed, settings.phase, node_, settings.realtime);
   } else {
     LockstepSettings lockstep = settings.lockstep;
     lockstep.speed = settings.speed;

@@ -23,6 +23,7 @@ struct PlantSettings {
   plant::SimulationSettings simulation;
   runtime::Clock clock = runtime::Clock::kRealtime;
   double speed = 0.0;  // 0: real time, or in lockstep no limit
+  double phase = 0.0;  // of the IMU samples in real time, 0 .. 1
   LockstepSettings lockstep;
   runtime::RealtimeSettings realtime;
   std::uint64_t seed = 1;

@@ -132,15 +132,16 @@ PlantSettings load(const Options& options) {
 }
 
 // The settings of the i-th vehicle.
-PlantSettings settings_of(const std::string& name, std::size_t i, const Options& options,
+PlantSettings settings_of(const std::vector<std::string>& names, std::size_t i, const Options& options,
                           PlantSettings settings) {
   settings.seed = options.seed + i;
+  settings.phase = static_cast<double>(i) / static_cast<double>(names.size());
   const std::size_t row = options.per_row > 0 ? i / static_cast<std::size_t>(options.per_row) : 0;
   const std::size_t column = i - row * static_cast<std::size_t>(options.per_row);
   settings.initial.position_ned.head<2>() =
       Eigen::Vector2d(options.start[0] + static_cast<double>(row) * options.spacing_m,
                       options.start[1] + static_cast<double>(column) * options.spacing_m);
-  settings.lockstep.trace = trace_of(name, options.lockstep.trace);
+  settings.lockstep.trace = trace_of(names[i], options.lockstep.trace);
   return settings;
 }
 
@@ -164,7 +165,7 @@ void run(const Options& options) {
     const std::string log_label = runtime::log_label_of(names[i], names.size());
     const runtime::LogLabel label(log_label);
     vehicles.push_back(
-        std::make_unique<HostedPlant>(participant, names[i], settings_of(names[i], i, options, settings)));
+        std::make_unique<HostedPlant>(participant, names[i], settings_of(names, i, options, settings)));
   }
   spdlog::info("ready: {}, vehicle {}, domain {}, clock {}, IMU at {:g} Hz, seed {}", settings.vehicle.name,
                fmt::join(names, ","), network.domain, runtime::to_string(options.clock),

@@ -21,9 +21,10 @@ std::optional<plant::MocapSchedule> foreseen_frames(const plant::SimulationSetti
 }  // namespace
 
 RealtimeLoop::RealtimeLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings, double speed,
-                           comms::Node& node, const runtime::RealtimeSettings& realtime)
+                           double phase, comms::Node& node, const runtime::RealtimeSettings& realtime)
     : vehicle_(vehicle),
       speed_(speed),
+      phase_(phase),
       steps_per_sample_(plant::period_ns(settings.imu.rate_hz) / settings.step_ns),
       sample_period_ns_(scaled(plant::period_ns(settings.imu.rate_hz), speed)),
       imu_period_ns_(plant::period_ns(settings.imu.rate_hz)),
@@ -36,7 +37,9 @@ RealtimeLoop::RealtimeLoop(SimulatedVehicle& vehicle, const plant::SimulationSet
 
 void RealtimeLoop::run(const std::atomic<bool>& stop) {
   if (realtime_.enabled) runtime::make_this_thread_realtime(realtime_);
-  runtime::PeriodicTimer timer(sample_period_ns_, sample_period_ns_);
+  static const std::int64_t origin_ns = runtime::monotonic_ns();
+  const auto phase_ns = std::llround(phase_ * static_cast<double>(sample_period_ns_));
+  runtime::PeriodicTimer timer(sample_period_ns_, sample_period_ns_, origin_ns + phase_ns);
   set_origin(timer.tick_ns());
   publish();
   while (!stop.load(std::memory_order_relaxed)) {

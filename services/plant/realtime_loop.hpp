@@ -17,12 +17,13 @@ namespace swiftlet::services {
 
 class RealtimeLoop {
  public:
-  // speed: simulated time per real time, > 0. The vehicle must outlive the loop.
+  // speed: simulated time per real time, > 0. phase: of the IMU samples, 0 .. 1 of their period after a time that all
+  // loops of the process share: those of several vehicles are best spread over it. The vehicle must outlive the loop.
   RealtimeLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings, double speed,
-               comms::Node& node, const runtime::RealtimeSettings& realtime);
+               double phase, comms::Node& node, const runtime::RealtimeSettings& realtime);
 
-  // Steps until `stop`. If it falls behind by more than an IMU period, it delays simulated time instead of
-  // catching up: a burst of samples could not be answered.
+  // Steps until `stop`. If it falls behind by more than an IMU period, it delays simulated time by whole periods
+  // instead of catching up: a burst of samples could not be answered.
   void run(const std::atomic<bool>& stop);
 
  private:
@@ -35,6 +36,7 @@ class RealtimeLoop {
 
   SimulatedVehicle& vehicle_;
   double speed_;
+  double phase_;
   std::int64_t steps_per_sample_;
   std::int64_t sample_period_ns_;  // of the IMU, computer's clock
   std::int64_t imu_period_ns_;

@@ -19,8 +19,11 @@ std::int64_t read(clockid_t clock) noexcept {
 std::int64_t monotonic_ns() noexcept { return read(CLOCK_MONOTONIC); }
 std::int64_t system_ns() noexcept { return read(CLOCK_REALTIME); }
 
-PeriodicTimer::PeriodicTimer(std::int64_t period_ns, std::int64_t max_lateness_ns)
-    : period_ns_(period_ns), max_lateness_ns_(max_lateness_ns), next_ns_(monotonic_ns()) {}
+PeriodicTimer::PeriodicTimer(std::int64_t period_ns, std::int64_t max_lateness_ns, std::int64_t origin_ns)
+    : period_ns_(period_ns), max_lateness_ns_(max_lateness_ns), next_ns_(origin_ns) {
+  const std::int64_t passed_ns = monotonic_ns() - origin_ns;
+  if (passed_ns > 0) next_ns_ += passed_ns - passed_ns % period_ns;
+}
 
 std::int64_t PeriodicTimer::wait() noexcept {
   next_ns_ += period_ns_;
@@ -29,8 +32,9 @@ std::int64_t PeriodicTimer::wait() noexcept {
   }
   const std::int64_t lateness = monotonic_ns() - next_ns_;
   if (lateness <= max_lateness_ns_) return 0;
-  next_ns_ += lateness;
-  return lateness;
+  const std::int64_t left_out = lateness - lateness % period_ns_;
+  next_ns_ += left_out;
+  return left_out;
 }
 
 }  // namespace swiftlet::runtime

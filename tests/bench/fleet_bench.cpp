@@ -106,8 +106,9 @@ struct Mocap {
 // Publishes IMU samples and rotor speeds of its vehicle, truth for every fifth one, and counts late answers.
 class Plant {
  public:
+  // phase: of the samples, 0 .. 1 of their period, as in swiftlet-plant.
   Plant(const comms::Participant& participant, const std::string& name,
-        const runtime::RealtimeSettings& realtime)
+        const runtime::RealtimeSettings& realtime, double phase)
       : node_(participant, name),
         imu_(node_.publish(topics::kImu)),
         truth_(node_.publish(topics::kGroundTruth)),
@@ -120,7 +121,7 @@ class Plant {
           answers_.answered(command.imu_sequence_number(), runtime::monotonic_ns());
         },
         comms::Delivery::kOwnThread);
-    thread_ = std::thread([this, realtime] { run(realtime); });
+    thread_ = std::thread([this, realtime, phase] { run(realtime, phase); });
   }
   ~Plant() {
     end_ = true;
@@ -145,9 +146,11 @@ class Plant {
   }
 
  private:
-  void run(const runtime::RealtimeSettings& realtime) {
+  void run(const runtime::RealtimeSettings& realtime, double phase) {
     if (realtime.enabled) runtime::make_this_thread_realtime(realtime);
-    runtime::PeriodicTimer timer(kPeriodNs, kPeriodNs);
+    static const std::int64_t origin_ns = runtime::monotonic_ns();
+    runtime::PeriodicTimer timer(
+        kPeriodNs, kPeriodNs, origin_ns + static_cast<std::int64_t>(phase * static_cast<double>(kPeriodNs)));
     msg::Imu imu;
     msg::GroundTruth truth;
     msg::RotorSpeeds rotor_speeds;
@@ -242,7 +245,11 @@ void run(const Options& options) {
   const runtime::RealtimeSettings realtime =
       runtime::prepare_realtime(options.process.realtime, runtime::Clock::kRealtime);
   const comms::Participant participant(settings("plant", lock.domain()), names(options.vehicles));
-  const auto vehicles = serve<Plant>(participant, options.vehicles, realtime);
+  std::vector<std::unique_ptr<Plant>> vehicles;
+  for (const std::string& name : names(options.vehicles)) {
+    const double phase = static_cast<double>(vehicles.size()) / options.vehicles;
+    vehicles.push_back(std::make_unique<Plant>(participant, name, realtime, phase));
+  }
   for (const auto& vehicle : vehicles) {
     if (!tests::eventually([&] { return vehicle->connected(); }))
       throw std::runtime_error("the processes did not discover each other");

@@ -49,6 +49,18 @@ TEST(PeriodicTimer, SkipsTicksThatAreTooLate) {
   EXPECT_GE(monotonic_ns() - start, 4 * kMillisecond + skipped_ns + 2 * kMillisecond);  // no burst
 }
 
+TEST(PeriodicTimer, KeepsItsPhase) {
+  const std::int64_t origin = monotonic_ns() - 5 * kMillisecond;
+  PeriodicTimer timer(2 * kMillisecond, 2 * kMillisecond, origin);
+  EXPECT_EQ((timer.tick_ns() - origin) % (2 * kMillisecond), 0);
+  EXPECT_GE(timer.tick_ns() - origin, 4 * kMillisecond);
+  timer.wait();
+  while (monotonic_ns() < timer.tick_ns() + 7 * kMillisecond) {
+  }
+  EXPECT_GT(timer.wait(), 0);
+  EXPECT_EQ((timer.tick_ns() - origin) % (2 * kMillisecond), 0);
+}
+
 TEST(Semaphore, WakesAWaitingThread) {
   Semaphore semaphore;
   std::thread poster([&] { semaphore.post(); });
