@@ -212,28 +212,11 @@ class Fleet {
     }
   }
 
+  // A few at a time: the clients are a load too.
   void take_off() {
-    const Clients clients(network_, names_);
-    for (const auto& client : clients.all) {
-      if (!client->wait(30s, [](const ground::View& view) { return view.control.message.has_pose(); }))
-        throw std::runtime_error("no vehicle started: " + client->where());
-    }
-    msg::Command arm;
-    arm.kind(msg::Command_Constants::ARM);
-    for (const auto& client : clients.all) ask(*client, arm);
-    for (const auto& client : clients.all) {
-      msg::Command takeoff;
-      takeoff.kind(msg::Command_Constants::TAKEOFF);
-      takeoff.position_ned({0.0, 0.0, -1.0});
-      takeoff.speed(0.5);
-      ask(*client, takeoff);
-    }
-    for (const auto& client : clients.all) {
-      if (!client->wait(20s, [](const ground::View& view) {
-            return view.control.message.mode() == msg::ControlStatus_Constants::MODE_HOLDING;
-          }))
-        throw std::runtime_error("a vehicle did not take off");
-    }
+    for (std::size_t i = 0; i < names_.size(); i += kTogether)
+      take_off({names_.begin() + static_cast<std::ptrdiff_t>(i),
+                names_.begin() + static_cast<std::ptrdiff_t>(std::min(i + kTogether, names_.size()))});
   }
 
   // Uploads a mission of this many waypoints to the first vehicle, which hovers. Returns the times until the upload is
@@ -271,7 +254,15 @@ class Fleet {
     return took;
   }
 
-  void begin() { begin_ = read(); }
+  // The discovery of the one who counts is over when all have been heard a few times.
+  void begin() {
+    counting_.emplace(network_, names_);
+    for (const std::string& name : names_) counters_.push_back(std::make_unique<Counters>(*counting_, name));
+    for (const auto& heard : counters_) {
+      if (!heard->vehicle.wait_for_count(3)) throw std::runtime_error("a vehicle is silent");
+    }
+    begin_ = read();
+  }
   std::vector<VehicleFigures> end() {
     std::vector<VehicleFigures> figures = read();
     for (std::size_t i = 0; i < figures.size(); ++i) {
@@ -296,6 +287,32 @@ class Fleet {
   }
 
  private:
+  static constexpr std::size_t kTogether = 4;
+
+  void take_off(const std::vector<std::string>& names) {
+    const Clients clients(network_, names);
+    for (const auto& client : clients.all) {
+      if (!client->wait(30s, [](const ground::View& view) { return view.control.message.has_pose(); }))
+        throw std::runtime_error("no vehicle started: " + client->where());
+    }
+    msg::Command arm;
+    arm.kind(msg::Command_Constants::ARM);
+    for (const auto& client : clients.all) ask(*client, arm);
+    for (const auto& client : clients.all) {
+      msg::Command takeoff;
+      takeoff.kind(msg::Command_Constants::TAKEOFF);
+      takeoff.position_ned({0.0, 0.0, -1.0});
+      takeoff.speed(0.5);
+      ask(*client, takeoff);
+    }
+    for (const auto& client : clients.all) {
+      if (!client->wait(20s, [](const ground::View& view) {
+            return view.control.message.mode() == msg::ControlStatus_Constants::MODE_HOLDING;
+          }))
+        throw std::runtime_error("a vehicle did not take off");
+    }
+  }
+
   // A client of each vehicle, in one participant.
   struct Clients {
     Clients(const comms::NodeSettings& network, const std::vector<std::string>& names)
@@ -316,18 +333,31 @@ class Fleet {
       throw std::runtime_error(answer.reason);
   }
 
-  // Counters so far.
+  // Hears the counters of a vehicle, and nothing else, which would be a load.
+  struct Counters {
+    Counters(const comms::Participant& participant, const std::string& name)
+        : node(participant, name),
+          vehicle_info(node.subscribe<msg::VehicleInfo>(
+              comms::topics::kVehicleInfo, [this](const msg::VehicleInfo& info) { vehicle.put(info); })),
+          control_status(node.subscribe<msg::ControlStatus>(
+              comms::topics::kControlStatus,
+              [this](const msg::ControlStatus& status) { control.put(status); })) {}
+    comms::Node node;
+    tests::Inbox<msg::VehicleInfo> vehicle;
+    tests::Inbox<msg::ControlStatus> control;
+    comms::Subscription vehicle_info, control_status;
+  };
+
+  // The next counters of each vehicle.
   std::vector<VehicleFigures> read() const {
     std::vector<VehicleFigures> all;
-    const Clients clients(network_, names_);
-    for (const auto& client : clients.all) {
-      if (!client->wait(
-              10s, [](const ground::View& view) { return view.vehicle.count > 1 && view.control.count > 1; }))
+    for (const auto& heard : counters_) {
+      if (!heard->vehicle.wait_for_count(heard->vehicle.size() + 1) ||
+          !heard->control.wait_for_count(heard->control.size() + 1))
         throw std::runtime_error("a vehicle is silent");
-      const ground::View view = client->view();
       VehicleFigures figures;
-      figures.vehicle = view.vehicle.message;
-      figures.control = view.control.message;
+      figures.vehicle = heard->vehicle.items().back();
+      figures.control = heard->control.items().back();
       figures.answered = figures.vehicle.answered();
       figures.overdue = figures.vehicle.late() + figures.vehicle.unanswered();
       figures.cycles = figures.control.cycles();
@@ -345,6 +375,8 @@ class Fleet {
   }();
   std::vector<std::string> names_;
   std::vector<ground::ChildProcess> processes_;
+  std::optional<comms::Participant> counting_;
+  std::vector<std::unique_ptr<Counters>> counters_;
   std::vector<VehicleFigures> begin_;
 };
 
