@@ -41,7 +41,7 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
   qos.name(settings.name);
   if (!settings.security.empty()) {
     if (!settings.network.discovery_servers.empty())
-      throw std::runtime_error(
+      throw std::invalid_argument(
           "--security and --discovery-server exclude each other: a discovery server of Fast DDS 2.9 has no "
           "security");
     set_security(settings.security, settings.name, qos);
