@@ -4,6 +4,8 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
@@ -208,6 +210,11 @@ class ServingProcess {
   ServingProcess& operator=(const ServingProcess&) = delete;
 
   pid_t pid() const { return pid_; }
+  bool has_ended() const {
+    siginfo_t ended{};
+    return ::waitid(P_PID, static_cast<id_t>(pid_), &ended, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+           ended.si_pid == pid_;
+  }
 
  private:
   [[noreturn]] void serve_until_closed(const char* name, int domain, const Options& options) {
@@ -258,7 +265,9 @@ void run(const Options& options) {
   for (const auto& vehicle : vehicles) vehicle->reset();
   const auto start = std::chrono::steady_clock::now();
   const double before_s = all_cpu_s();
-  std::this_thread::sleep_for(std::chrono::duration<double>(options.seconds));
+  const auto window = std::chrono::milliseconds(std::lround(1e3 * options.seconds));
+  if (tests::eventually([&] { return control.has_ended() || mocap.has_ended(); }, window, 100ms))
+    throw std::runtime_error("a process ended while the messages were measured");
   const double passed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const double cpu_percent = 100.0 * (all_cpu_s() - before_s) / passed_s;
   double overdue_percent = 0.0;

@@ -61,7 +61,7 @@ class ComposeFiles(unittest.TestCase):
 
     def test_profiles_add_services(self):
         self.assertEqual(set(read("hil.yaml", ADDRESSES).services), {"control", "ground"})
-        self.assertEqual(set(read("hil.yaml", ADDRESSES, ["rehearsal"]).services), {"control", "ground", "vehicle", "mocap"})
+        self.assertEqual(set(read("hil.yaml", ADDRESSES, ["simulated"]).services), {"control", "ground", "vehicle", "mocap"})
 
     def refusal(self, text):
         with tempfile.TemporaryDirectory() as folder:
