@@ -79,7 +79,7 @@ struct SimulationSettings {
   std::string name = "default";
   std::int64_t step_ns = 1'000'000;    // integration step
   double command_timeout_s = 0.5;      // the vehicle stops its rotors after this time without a valid command
-  double rotor_speed_rate_hz = 500.0;  // of rotor speed samples; 0: the vehicle does not measure them
+  double rotor_speed_rate_hz = 100.0;  // of rotor speed samples; 0: the vehicle does not measure them
   ImuSettings imu;
   MocapSettings mocap;
   SupplySettings supply;
