@@ -1,7 +1,7 @@
-// Time and traffic until the processes of one host have discovered each other, with --localhost-only or through a discovery
-// server, and the CPU load and traffic afterwards. The processes form a fleet: two of every four announce
-// themselves as plant and motion capture do. As root, in a network namespace of its own, so that no other traffic is
-// counted.
+// Time and traffic until the processes of a fleet have discovered each other, on one host with --localhost-only, on several
+// by multicast, or through a discovery server, and the CPU load and traffic afterwards. Two of every four processes
+// announce themselves as plant and motion capture do. As root, in network namespaces of its own, so that no other traffic
+// is counted.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -10,7 +10,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <memory>
 #include <net/if.h>
+#include <optional>
 #include <sched.h>
 #include <sstream>
 #include <stdexcept>
@@ -30,7 +32,9 @@
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/process.hpp"
+#include "tests/bench/process_usage.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/network_namespace.hpp"
 
 namespace swiftlet {
 namespace {
@@ -42,6 +46,7 @@ constexpr std::chrono::seconds kFirstAnnouncements{2};  // duration of the faste
 
 struct Options {
   std::vector<int> processes{4, 40, 80};
+  int hosts = 1;
   double seconds = 5.0;
   double patience_s = 120.0;
   bool server = false;
@@ -71,22 +76,61 @@ struct Traffic {
   double packets = 0.0;
 };
 
-// What the loopback interface of this network has carried so far.
-Traffic traffic() {
-  std::ifstream file("/proc/self/net/dev");
+// What the interfaces of this network have received so far.
+Traffic received() {
+  std::ifstream file("/proc/thread-self/net/dev");
+  Traffic all;
   for (std::string line; std::getline(file, line);) {
-    const std::size_t name = line.find("lo:");
-    if (name == std::string::npos) continue;
-    Traffic carried;
-    std::istringstream(line.substr(name + 3)) >> carried.bytes >> carried.packets;
-    return carried;
+    const std::size_t name_end = line.find(':');
+    if (name_end == std::string::npos) continue;
+    Traffic one;
+    std::istringstream(line.substr(name_end + 1)) >> one.bytes >> one.packets;
+    all.bytes += one.bytes;
+    all.packets += one.packets;
   }
-  throw std::runtime_error("/proc/self/net/dev has no loopback interface");
+  return all;
 }
 
+// The hosts of the fleet: this one, or several on a switch.
+class Hosts {
+ public:
+  explicit Hosts(int count) : count_(count) {
+    if (count > 1) {
+      switch_.emplace(tests::HostNetwork::Layout::kSwitch, count);
+    } else if (!enter_own_network()) {
+      std::fprintf(stderr, "discovery_bench: not root: the traffic of other programs is counted too\n");
+    }
+  }
+
+  int count() const { return count_; }
+  std::string server_address() const { return switch_ ? switch_->address(0) : "127.0.0.1"; }
+  // Moves this process, which has one thread, to a host.
+  void enter(int host) {
+    if (switch_) inside_ = std::make_unique<tests::HostNetwork::Inside>(*switch_, host);
+  }
+  // What all hosts have received so far.
+  Traffic traffic() const {
+    if (!switch_) return received();
+    Traffic all;
+    for (int host = 0; host < count_; ++host) {
+      const tests::HostNetwork::Inside inside(*switch_, host);
+      const Traffic one = received();
+      all.bytes += one.bytes;
+      all.packets += one.packets;
+    }
+    return all;
+  }
+
+ private:
+  const int count_;
+  std::optional<tests::HostNetwork> switch_;
+  std::unique_ptr<tests::HostNetwork::Inside> inside_;
+};
+
 struct Network {
+  Hosts& hosts;
   int domain = 0;
-  bool server = false;  // or --localhost-only
+  bool server = false;  // or multicast
 };
 
 // A discovery server in a process of its own. Ends with its input.
@@ -99,6 +143,7 @@ class ServerProcess {
     pid_ = ::fork();
     if (pid_ == 0) {
       ::close(input_[1]);
+      network.hosts.enter(0);
       comms::DiscoveryServerSettings settings;
       settings.domain = network.domain;
       settings.port = comms::kDiscoveryServerPort;
@@ -130,11 +175,12 @@ class ServerProcess {
 
 // Runs until its standard input is closed; writes a byte once it has discovered all others.
 [[noreturn]] void run_process_of_fleet(int number, int count, const Network& network, int input, int output) {
+  network.hosts.enter(number % network.hosts.count());
   comms::NodeSettings settings;
   settings.name = "process" + std::to_string(number);
   settings.domain = network.domain;
-  settings.localhost_only = !network.server;
-  if (network.server) settings.network.discovery_servers = "127.0.0.1";
+  settings.localhost_only = !network.server && network.hosts.count() == 1;
+  if (network.server) settings.network.discovery_servers = network.hosts.server_address();
   if (number % 4 < 2) settings.announcement_period = comms::kFixturePeriod;
   comms::Node node(settings);
   const auto imu = node.publish(comms::topics::kImu);
@@ -228,15 +274,9 @@ class Fleet {
 
   // CPU time of all processes so far.
   double time_s() const {
-    double ticks = 0.0;
-    for (const pid_t pid : processes_) {
-      std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
-      std::string word;
-      for (int i = 1; i <= 15 && file >> word; ++i) {
-        if (i >= 14) ticks += std::stod(word);  // user, system
-      }
-    }
-    return ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
+    double all_s = 0.0;
+    for (const pid_t pid : processes_) all_s += usage_of(pid).cpu_s;
+    return all_s;
   }
 
  private:
@@ -244,30 +284,31 @@ class Fleet {
   std::vector<pid_t> processes_;
 };
 
-nlohmann::ordered_json measure(int count, const Options& options) {
+nlohmann::ordered_json measure(int count, Hosts& hosts, const Options& options) {
   const comms::DomainLock lock;
-  const Network network{lock.domain(), options.server};
+  const Network network{hosts, lock.domain(), options.server};
   const ServerProcess server(network);
   const auto start = Clock::now();
-  const Traffic at_start = traffic();
+  const Traffic at_start = hosts.traffic();
   const Fleet fleet(count, network);
   const int known = fleet.wait_until_known(std::chrono::duration<double>(options.patience_s));
   const double found_s = std::chrono::duration<double>(Clock::now() - start).count();
   const double finding_s = fleet.time_s();
-  const Traffic when_found = traffic();
+  const Traffic when_found = hosts.traffic();
   fleet.wait_while_running(kFirstAnnouncements);
   const double before_s = fleet.time_s();
-  const Traffic before = traffic();
+  const Traffic before = hosts.traffic();
   const auto rest = Clock::now();
   fleet.wait_while_running(
       std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(options.seconds)));
   const double rest_s = std::chrono::duration<double>(Clock::now() - rest).count();
   const double cpu_s = fleet.time_s() - before_s;
-  const Traffic after = traffic();
+  const Traffic after = hosts.traffic();
   std::vector<double> joins_s;
   for (int i = 0; i < (known == count ? kJoins : 0); ++i) joins_s.push_back(fleet.join_s(network));
   std::sort(joins_s.begin(), joins_s.end());
   return {{"processes", count},
+          {"hosts", hosts.count()},
           {"know_all", known},
           {"until_s", found_s},
           {"cpu_until_s", finding_s},
@@ -281,15 +322,14 @@ nlohmann::ordered_json measure(int count, const Options& options) {
 
 void run(const Options& options) {
   runtime::log_to_stderr();
-  if (!enter_own_network())
-    std::fprintf(stderr, "discovery_bench: not root: the traffic of other programs is counted too\n");
+  Hosts hosts(options.hosts);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   if (!options.json) {
     std::printf("%9s %9s %8s %14s %13s %22s %13s %20s\n", "processes", "know all", "after, s",
                 "CPU by then, s", "MB by then", "CPU then, % of a core", "kB/s then", "one more, s (worst)");
   }
   for (const int count : options.processes) {
-    const nlohmann::ordered_json row = measure(count, options);
+    const nlohmann::ordered_json row = measure(count, hosts, options);
     rows.push_back(row);
     if (options.json) continue;
     std::printf("%9d %9d %8.2f %14.2f %13.2f %22.1f %13.1f %12.3f (%.3f)\n", count,
@@ -309,13 +349,15 @@ int main(int argc, char** argv) {
   using namespace swiftlet;
   Options options;
   return runtime::run_process(
-      {"discovery_bench", "Measures the discovery time of processes on one host, and its CPU load.",
+      {"discovery_bench", "Measures the discovery time of the processes of a fleet, and its CPU load.",
        "--processes 4 --processes 40 --discovery-server"},
       argc, argv,
       [&](runtime::CommandLine app) {
         app.add_option("--processes", options.processes,
-                       "number of processes; may be repeated; at most 120 without a server")
+                       "number of processes; may be repeated; a host has ports for 120 of a domain")
             .range(2, 200);
+        app.add_option("--hosts", options.hosts, "hosts on a switch that share the processes; as root")
+            .range(1, 8);
         app.add_flag("--discovery-server", options.server,
                      "through a discovery server, whose traffic counts too");
         app.add_option("--seconds", options.seconds, "duration of the CPU measurement, s").range(1.0, 60.0);

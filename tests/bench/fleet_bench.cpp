@@ -8,7 +8,6 @@
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -27,6 +26,7 @@
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "swiftlet/services/runtime/process.hpp"
+#include "tests/bench/process_usage.hpp"
 #include "tests/support/eventually.hpp"
 
 namespace swiftlet {
@@ -105,7 +105,7 @@ struct Mocap {
   comms::Subscription truth;
 };
 
-// Publishes IMU samples and rotor speeds of its vehicle, truth for every fifth one, and counts late answers.
+// Publishes IMU samples of its vehicle, for every fifth one truth and rotor speeds, and counts late answers.
 class Plant {
  public:
   // phase: of the samples, 0 .. 1 of their period, as in swiftlet-plant.
@@ -166,7 +166,8 @@ class Plant {
         answers_.written(sequence, runtime::monotonic_ns());
       }
       imu_.publish(imu);
-      if (sequence % kSamplesPerPose == 0) truth_.publish(truth);
+      if (sequence % kSamplesPerPose != 0) continue;
+      truth_.publish(truth);
       rotor_speeds_.publish(rotor_speeds);
     }
   }
@@ -233,17 +234,6 @@ class ServingProcess {
   pid_t pid_ = -1;
 };
 
-// CPU time of a process so far, s.
-double cpu_s(pid_t pid) {
-  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
-  std::string word;
-  double ticks = 0.0;
-  for (int i = 1; i <= 15 && file >> word; ++i) {
-    if (i >= 14) ticks += std::stod(word);  // user, system
-  }
-  return ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
-}
-
 void run(const Options& options) {
   runtime::log_to_stderr();
   const comms::DomainLock lock;
@@ -261,7 +251,9 @@ void run(const Options& options) {
     if (!tests::eventually([&] { return vehicle->connected(); }))
       throw std::runtime_error("the processes did not discover each other");
   }
-  const auto all_cpu_s = [&] { return cpu_s(control.pid()) + cpu_s(mocap.pid()) + cpu_s(::getpid()); };
+  const auto all_cpu_s = [&] {
+    return usage_of(control.pid()).cpu_s + usage_of(mocap.pid()).cpu_s + usage_of(::getpid()).cpu_s;
+  };
   for (const auto& vehicle : vehicles) vehicle->reset();
   const auto start = std::chrono::steady_clock::now();
   const double before_s = all_cpu_s();

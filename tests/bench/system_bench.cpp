@@ -7,11 +7,9 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <sys/prctl.h>
@@ -27,6 +25,7 @@
 #include "swiftlet/services/runtime/child_process.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 #include "tests/bench/longest_steps.hpp"
+#include "tests/bench/process_usage.hpp"
 #include "tests/bench/stall_witness.hpp"
 #include "tests/bench/table.hpp"
 #include "tests/support/eventually.hpp"
@@ -104,24 +103,6 @@ class CpuLoad {
 };
 
 // ---- hovering vehicles
-
-struct Usage {
-  double cpu_s = 0.0;
-  double memory_mib = 0.0;  // resident
-};
-
-Usage usage_of(pid_t pid) {
-  std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
-  std::string text;
-  std::getline(stat, text);
-  std::istringstream fields(text.substr(text.rfind(')') + 2));
-  std::vector<std::string> field;
-  for (std::string word; fields >> word;) field.push_back(word);
-  if (field.size() < 22) throw std::runtime_error("process " + std::to_string(pid) + " has ended");
-  const double ticks = static_cast<double>(::sysconf(_SC_CLK_TCK));
-  return {(std::stod(field[11]) + std::stod(field[12])) / ticks,
-          std::stod(field[21]) * static_cast<double>(::sysconf(_SC_PAGESIZE)) / (1 << 20)};
-}
 
 constexpr std::array<const char*, 3> kProcesses = {"plant", "mocap", "control"};
 

@@ -1,0 +1,36 @@
+// CPU time and memory of a process.
+#pragma once
+
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <sys/types.h>
+#include <unistd.h>
+#include <vector>
+
+namespace swiftlet {
+
+struct Usage {
+  double cpu_s = 0.0;       // user and system time of all threads
+  double memory_mib = 0.0;  // resident
+};
+
+// Throws std::runtime_error if the process has ended.
+inline Usage usage_of(pid_t pid) {
+  std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
+  std::string text;
+  std::getline(stat, text);
+  const std::size_t name_end = text.rfind(')');
+  std::vector<std::string> field;
+  if (name_end != std::string::npos) {
+    std::istringstream fields(text.substr(name_end + 1));
+    for (std::string word; fields >> word;) field.push_back(word);
+  }
+  if (field.size() < 22) throw std::runtime_error("process " + std::to_string(pid) + " has ended");
+  const auto ticks = static_cast<double>(::sysconf(_SC_CLK_TCK));
+  return {(std::stod(field[11]) + std::stod(field[12])) / ticks,
+          std::stod(field[21]) * static_cast<double>(::sysconf(_SC_PAGESIZE)) / (1 << 20)};
+}
+
+}  // namespace swiftlet
