@@ -5,7 +5,8 @@ import subprocess
 
 from manual_text import ManualError
 
-PROGRAMS = ["swiftlet", "swiftlet-plant", "swiftlet-mocap", "swiftlet-control"]
+PROGRAMS = ["swiftlet", "swiftlet-plant", "swiftlet-mocap", "swiftlet-control", "swiftlet-vehicle-template",
+            "swiftlet-microcontroller"]
 
 
 def help_of(folder, words):

@@ -100,7 +100,8 @@ TEST_F(Tool, ConfigListsAndPrintsNamedFiles) {
 
 TEST_F(Tool, ProgramsPrintTheirVersion) {
   const std::regex form("swiftlet [0-9]+\\.[0-9]+\\.[0-9]+(, commit [0-9a-f]{10}(-dirty)?)?\n");
-  for (const char* program : {"swiftlet", "swiftlet-plant", "swiftlet-mocap", "swiftlet-control"}) {
+  for (const char* program : {"swiftlet", "swiftlet-plant", "swiftlet-mocap", "swiftlet-control",
+                              "swiftlet-vehicle-template", "swiftlet-microcontroller"}) {
     const ProgramResult result = run_program(program, {"--version"}, folder_.path());
     EXPECT_EQ(result.exit_code, 0) << program;
     EXPECT_TRUE(std::regex_match(result.output, form)) << program << ": " << result.output;

@@ -16,7 +16,7 @@ std::string uri(const std::filesystem::path& file) {
 }  // namespace
 
 std::string security_role(const std::string& folder, const std::string& process) {
-  if (process == "plant") return roles::kVehicle;
+  if (process == "plant" || process == "microcontroller") return roles::kVehicle;
   for (const char* const role : {roles::kVehicle, roles::kMocap, roles::kControl}) {
     if (process == role) return role;
   }

@@ -1,0 +1,51 @@
+// The host's end of a link: a serial device or a UDP socket. It may vanish and come back. Nothing here waits.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <netinet/in.h>
+#include <string>
+
+namespace swiftlet::services {
+
+struct ByteLinkSettings {
+  std::string device;  // "/dev/ttyACM0"; empty: UDP
+  int baud = 921'600;  // of the device; see fault_of_baud()
+  std::string udp;     // HOST:PORT of the microcontroller
+
+  const std::string& name() const { return device.empty() ? udp : device; }
+};
+
+// Why the system has no such rate: a sentence; empty if it has.
+std::string fault_of_baud(int baud);
+
+// One thread. It does not allocate after construction.
+class ByteLink {
+ public:
+  // Throws std::invalid_argument for settings that cannot be, std::runtime_error for an unknown host.
+  explicit ByteLink(ByteLinkSettings settings);
+  ~ByteLink() { close(); }
+  ByteLink(const ByteLink&) = delete;
+  ByteLink& operator=(const ByteLink&) = delete;
+
+  // Opens it, without the bytes that were received before. Returns 0, or the errno of the fault.
+  int open() noexcept;
+  void close() noexcept;
+  bool is_open() const noexcept { return descriptor_ >= 0; }
+  int descriptor() const noexcept { return descriptor_; }  // for poll(); -1 while it is closed
+
+  // Returns the number of bytes read, 0 if there are none. Closes a link that has vanished.
+  std::size_t read(std::uint8_t* bytes, std::size_t room) noexcept;
+  // Bytes that the link cannot take now are lost. Returns false then.
+  bool write(const std::uint8_t* bytes, std::size_t size) noexcept;
+
+ private:
+  int open_device() noexcept;
+  int open_socket() noexcept;
+
+  const ByteLinkSettings settings_;
+  sockaddr_in far_end_{};
+  int descriptor_ = -1;
+};
+
+}  // namespace swiftlet::services
