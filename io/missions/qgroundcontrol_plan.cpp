@@ -10,9 +10,9 @@
 
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/io/config.hpp"
-#include "swiftlet/io/missions/geodesy.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
+#include "swiftlet/math/geodesy.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -44,7 +44,7 @@ constexpr int kGlobalRelative = 3;
 constexpr int kLocalEnu = 4;
 
 struct Home {
-  GeographicPosition position;
+  math::GeographicPosition position;
   double altitude_m = 0.0;
 };
 
@@ -219,8 +219,9 @@ class PlanReader {
         global_ = true;
         Eigen::Vector2d north_east = at_.head<2>();
         if (placed) {
-          north_east = north_east_of(home_->position, {params[4].number(runtime::between(-90.0, 90.0)),
-                                                       params[5].number(runtime::between(-180.0, 180.0))});
+          north_east =
+              math::north_east_of(home_->position, {params[4].number(runtime::between(-90.0, 90.0)),
+                                                    params[5].number(runtime::between(-180.0, 180.0))});
         }
         const double altitude_m = params[6].number(runtime::between(-kHighest_m, kHighest_m));
         return {north_east.x(), north_east.y(),

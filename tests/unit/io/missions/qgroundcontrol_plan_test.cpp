@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/control/planning/checks.hpp"
-#include "swiftlet/io/missions/geodesy.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "tests/unit/ground/fault.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
@@ -155,14 +154,6 @@ TEST(QGroundControlPlan, RequiresAHomeForGeographicItems) {
   text.erase(begin, text.find("],", begin) + 2 - begin);
   EXPECT_EQ(refusal([&] { qgc(text); }),
             "q.plan:3: mission: has items with geographic coordinates, must have a plannedHomePosition");
-}
-
-TEST(Geodesy, MatchesTheWgs84Ellipsoid) {
-  // A degree of latitude and of longitude at 45 deg north, WGS 84: 111,132 m and 78,847 m.
-  const GeographicPosition home{45.0, 179.9999};
-  EXPECT_NEAR(north_east_of(home, {45.01, 179.9999}).x(), 1111.32, 0.05);
-  EXPECT_NEAR(north_east_of(home, {45.0, -179.9901}).y(), 788.47, 0.05);  // across the date line
-  EXPECT_NEAR(north_east_of(home, {44.99, 179.9999}).x(), -1111.32, 0.05);
 }
 
 }  // namespace
