@@ -72,6 +72,42 @@ plant::GroundSettings read_ground(const ConfigNode& node) {
   return ground;
 }
 
+plant::SiteSettings read_site(const ConfigNode& node) {
+  plant::SiteSettings site;
+  site.latitude_deg = node.at("latitude_deg").number();
+  site.longitude_deg = node.at("longitude_deg").number();
+  site.altitude_m = node.at("altitude_m").number();
+  site.magnetic_field_ned = node.at("magnetic_field_ned_gauss").vector3();
+  return site;
+}
+
+plant::BarometerSettings read_barometer(const ConfigNode& node) {
+  plant::BarometerSettings barometer;
+  barometer.rate_hz = node.at("rate_hz").number();
+  barometer.noise_pa = node.at("noise_pa").number();
+  barometer.bias_sigma_pa = node.at("bias_pa").number();
+  barometer.bias_walk_pa = node.at("bias_walk_pa_per_sqrt_s").number();
+  return barometer;
+}
+
+plant::MagnetometerSettings read_magnetometer(const ConfigNode& node) {
+  plant::MagnetometerSettings magnetometer;
+  magnetometer.rate_hz = node.at("rate_hz").number();
+  magnetometer.noise_gauss = node.at("noise_gauss").number();
+  magnetometer.bias_sigma_gauss = node.at("bias_gauss").number();
+  return magnetometer;
+}
+
+plant::GpsSettings read_gps(const ConfigNode& node) {
+  plant::GpsSettings gps;
+  gps.rate_hz = node.at("rate_hz").number();
+  gps.position_noise_ned = node.at("position_noise_ned_m").vector3();
+  gps.position_drift_ned = node.at("position_drift_ned_m").vector3();
+  gps.drift_time_constant_s = node.at("drift_time_constant_s").number();
+  gps.velocity_noise_ned = node.at("velocity_noise_ned_m_s").vector3();
+  return gps;
+}
+
 plant::FaultKind read_fault_kind(const ConfigNode& node) {
   using Kind = plant::FaultKind;
   const auto named = [](Kind kind) { return std::make_pair(plant::to_string(kind), kind); };
@@ -149,6 +185,10 @@ plant::SimulationSettings parse_simulation_settings(std::string_view text, const
     settings.supply = read_supply(root.at("supply"));
     settings.air = read_air(root.at("air"));
     settings.ground = read_ground(root.at("ground"));
+    settings.site = read_site(root.at("site"));
+    settings.barometer = read_barometer(root.at("barometer"));
+    settings.magnetometer = read_magnetometer(root.at("magnetometer"));
+    settings.gps = read_gps(root.at("gps"));
     settings.faults = read_faults(root);
   });
   reject_violations(root, plant::validate(settings));

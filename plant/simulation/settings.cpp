@@ -25,6 +25,26 @@ void check_axes(const std::string& key, const Eigen::Vector3d& value, double min
   for (int i = 0; i < 3; ++i) check.between(key + "[" + std::to_string(i) + "]", value[i], min, max);
 }
 
+void check_navigation_sensors(const SimulationSettings& settings, RuleChecker& check) {
+  const SiteSettings& site = settings.site;
+  check.between("site.latitude_deg", site.latitude_deg, -89.0, 89.0);
+  check.between("site.longitude_deg", site.longitude_deg, -180.0, 180.0);
+  check.between("site.altitude_m", site.altitude_m, -500.0, 9000.0);
+  check_axes("site.magnetic_field_ned_gauss", site.magnetic_field_ned, -1.0, 1.0, check);
+  check.between("barometer.rate_hz", settings.barometer.rate_hz, 1.0, 1000.0);
+  check.between("barometer.noise_pa", settings.barometer.noise_pa, 0.0, 1.0e3);
+  check.between("barometer.bias_pa", settings.barometer.bias_sigma_pa, 0.0, 1.0e4);
+  check.between("barometer.bias_walk_pa_per_sqrt_s", settings.barometer.bias_walk_pa, 0.0, 100.0);
+  check.between("magnetometer.rate_hz", settings.magnetometer.rate_hz, 1.0, 1000.0);
+  check.between("magnetometer.noise_gauss", settings.magnetometer.noise_gauss, 0.0, 1.0);
+  check.between("magnetometer.bias_gauss", settings.magnetometer.bias_sigma_gauss, 0.0, 1.0);
+  check.between("gps.rate_hz", settings.gps.rate_hz, 0.0, 1000.0);
+  check_axes("gps.position_noise_ned_m", settings.gps.position_noise_ned, 0.0, 100.0, check);
+  check_axes("gps.position_drift_ned_m", settings.gps.position_drift_ned, 0.0, 100.0, check);
+  check.between("gps.drift_time_constant_s", settings.gps.drift_time_constant_s, 0.1, 1.0e4);
+  check_axes("gps.velocity_noise_ned_m_s", settings.gps.velocity_noise_ned, 0.0, 100.0, check);
+}
+
 }  // namespace
 
 std::int64_t period_ns(double rate_hz) {
@@ -76,6 +96,7 @@ std::vector<Violation> validate(const SimulationSettings& settings) {
   check.between("ground.leg_height_m", settings.ground.leg_height_m, 0.0, 1.0);
   check.between("ground.friction", settings.ground.friction, 0.0, 10.0);
 
+  check_navigation_sensors(settings, check);
   check_faults(settings.faults, step_s(settings), check);
   return check.take();
 }

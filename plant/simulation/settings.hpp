@@ -75,6 +75,38 @@ struct GroundSettings {
   double friction = 0.6;       // Coulomb coefficient
 };
 
+// The place of the origin of NED on Earth, and its magnetic field, which is uniform. The default is in Zurich:
+// declination 3.4 deg, inclination 63.2 deg, 0.482 gauss, by the World Magnetic Model 2025.
+struct SiteSettings {
+  double latitude_deg = 47.397742;
+  double longitude_deg = 8.545594;
+  double altitude_m = 488.0;                                   // above mean sea level
+  Eigen::Vector3d magnetic_field_ned{0.2174, 0.0129, 0.4304};  // gauss
+};
+
+// The following sensors are simulated for an autopilot with an estimator of its own. Their samples are taken
+// together with one of the IMU, whose rate therefore limits theirs.
+struct BarometerSettings {
+  double rate_hz = 50.0;
+  double noise_pa = 2.0;        // Pa, standard deviation of a sample
+  double bias_sigma_pa = 50.0;  // Pa, constant bias, drawn once per run
+  double bias_walk_pa = 0.5;    // Pa/sqrt(s), random walk of the bias
+};
+
+struct MagnetometerSettings {
+  double rate_hz = 100.0;
+  double noise_gauss = 0.002;       // standard deviation of a sample, each axis
+  double bias_sigma_gauss = 0.005;  // constant bias, drawn once per run for each axis
+};
+
+struct GpsSettings {
+  double rate_hz = 10.0;                                // 0: none
+  Eigen::Vector3d position_noise_ned{0.05, 0.05, 0.1};  // m, standard deviation of a sample
+  Eigen::Vector3d position_drift_ned{0.3, 0.3, 0.6};    // m, of an error that changes slowly
+  double drift_time_constant_s = 60.0;                  // correlation time of this error
+  Eigen::Vector3d velocity_noise_ned{0.05, 0.05, 0.1};  // m/s, standard deviation of a sample
+};
+
 struct SimulationSettings {
   std::string name = "default";
   std::int64_t step_ns = 1'000'000;    // integration step
@@ -85,6 +117,10 @@ struct SimulationSettings {
   SupplySettings supply;
   AirSettings air;
   GroundSettings ground;
+  SiteSettings site;
+  BarometerSettings barometer;
+  MagnetometerSettings magnetometer;
+  GpsSettings gps;
   std::vector<Fault> faults;  // injected faults, in any order
 };
 

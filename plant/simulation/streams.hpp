@@ -18,6 +18,10 @@ constexpr std::uint64_t kMocapMisalignment = 8;
 constexpr std::uint64_t kMocapDropouts = 9;
 constexpr std::uint64_t kMocapIntervals = 10;
 constexpr std::uint64_t kMocapOtherBody = 20;
+constexpr std::uint64_t kBarometer = 30;
+constexpr std::uint64_t kMagnetometer = 31;
+constexpr std::uint64_t kGpsNoise = 32;
+constexpr std::uint64_t kGpsDrift = 33;
 
 // Stream id of a parameter that is drawn once per run: the FNV-1a hash of its name.
 constexpr std::uint64_t of_name(std::string_view name) {

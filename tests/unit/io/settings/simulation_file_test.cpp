@@ -63,6 +63,22 @@ TEST(SimulationFile, DefaultFileMatchesTheStruct) {
   EXPECT_EQ(from_file.ground.present, defaults.ground.present);
   EXPECT_EQ(from_file.ground.leg_height_m, defaults.ground.leg_height_m);
   EXPECT_EQ(from_file.ground.friction, defaults.ground.friction);
+  EXPECT_EQ(from_file.site.latitude_deg, defaults.site.latitude_deg);
+  EXPECT_EQ(from_file.site.longitude_deg, defaults.site.longitude_deg);
+  EXPECT_EQ(from_file.site.altitude_m, defaults.site.altitude_m);
+  EXPECT_EQ(from_file.site.magnetic_field_ned, defaults.site.magnetic_field_ned);
+  EXPECT_EQ(from_file.barometer.rate_hz, defaults.barometer.rate_hz);
+  EXPECT_EQ(from_file.barometer.noise_pa, defaults.barometer.noise_pa);
+  EXPECT_EQ(from_file.barometer.bias_sigma_pa, defaults.barometer.bias_sigma_pa);
+  EXPECT_EQ(from_file.barometer.bias_walk_pa, defaults.barometer.bias_walk_pa);
+  EXPECT_EQ(from_file.magnetometer.rate_hz, defaults.magnetometer.rate_hz);
+  EXPECT_EQ(from_file.magnetometer.noise_gauss, defaults.magnetometer.noise_gauss);
+  EXPECT_EQ(from_file.magnetometer.bias_sigma_gauss, defaults.magnetometer.bias_sigma_gauss);
+  EXPECT_EQ(from_file.gps.rate_hz, defaults.gps.rate_hz);
+  EXPECT_EQ(from_file.gps.position_noise_ned, defaults.gps.position_noise_ned);
+  EXPECT_EQ(from_file.gps.position_drift_ned, defaults.gps.position_drift_ned);
+  EXPECT_EQ(from_file.gps.drift_time_constant_s, defaults.gps.drift_time_constant_s);
+  EXPECT_EQ(from_file.gps.velocity_noise_ned, defaults.gps.velocity_noise_ned);
 }
 
 TEST(SimulationFile, OptitrackSamplesItsIntervals) {
@@ -84,7 +100,9 @@ TEST(SimulationFile, IdealHasNoErrors) {
        {s.imu.accelerometer_noise_density, s.imu.gyro_noise_density, s.imu.accelerometer_bias_sigma,
         s.imu.gyro_bias_sigma, s.imu.accelerometer_bias_walk, s.imu.gyro_bias_walk, s.mocap.latency_s,
         s.mocap.position_error_m, s.mocap.orientation_error_rad, s.mocap.misalignment_rad,
-        s.mocap.dropout_probability}) {
+        s.mocap.dropout_probability, s.barometer.noise_pa, s.barometer.bias_sigma_pa,
+        s.barometer.bias_walk_pa, s.magnetometer.noise_gauss, s.magnetometer.bias_sigma_gauss,
+        s.gps.position_noise_ned.norm(), s.gps.position_drift_ned.norm(), s.gps.velocity_noise_ned.norm()}) {
     EXPECT_EQ(error, 0.0);
   }
   EXPECT_TRUE(s.supply.ideal);
@@ -96,6 +114,10 @@ TEST(SimulationFile, IdealHasNoErrors) {
 TEST(SimulationFile, RefusesValuesOutOfRange) {
   EXPECT_EQ(refused("  friction: 0.6", "  friction: -1"),
             "s.yaml:49: ground.friction: is -1, must be at least 0 and at most 10");
+  EXPECT_EQ(refused("altitude_m: 488", "altitude_m: 9999"),
+            "s.yaml:56: site.altitude_m: is 9999, must be at least -500 and at most 9000");
+  EXPECT_EQ(refused("position_drift_ned_m: [0.3, 0.3, 0.6]", "position_drift_ned_m: [0.3, -1, 0.6]"),
+            "s.yaml:73: gps.position_drift_ned_m[1]: is -1, must be at least 0 and at most 100");
   EXPECT_EQ(refused("rate_hz: 500  #", "rate_hz: 400  #"),
             "s.yaml:13: imu.rate_hz: is 400, must have a period that is a whole number of steps of 0.001 s");
   EXPECT_EQ(refused("wind_ned_m_s: [0, 0, 0]", "wind_ned_m_s: [0, 99, 0]"),
@@ -168,9 +190,9 @@ TEST(SimulationFile, ReadsFaultsOfEveryKind) {
 
 TEST(SimulationFile, RefusesInvalidFaults) {
   EXPECT_EQ(refused_faults("  - {kind: imu_stop, at_s: -1, for_s: 1}\n"),
-            "s.yaml:51: faults[0].at_s: is -1, must be at least 0 and at most 86400");
+            "s.yaml:77: faults[0].at_s: is -1, must be at least 0 and at most 86400");
   EXPECT_NE(refused_faults("  - {kind: imu_stopped, at_s: 1, for_s: 1}\n")
-                .find("s.yaml:51: faults[0].kind: is imu_stopped, must be "),
+                .find("s.yaml:77: faults[0].kind: is imu_stopped, must be "),
             std::string::npos);
   EXPECT_NE(refused_faults("  - {kind: mocap_latency, at_s: 1, for_s: 1}\n").find("faults[0].delay_s"),
             std::string::npos);
@@ -179,7 +201,7 @@ TEST(SimulationFile, RefusesInvalidFaults) {
   EXPECT_EQ(
       refused_faults("  - {kind: imu_stop, at_s: 1, for_s: 1}\n"
                      "  - {kind: imu_stop, at_s: 1.5, for_s: 1}\n"),
-      "s.yaml:52: faults[1].at_s: is 1.5, but faults[0], imu_stop too, lasts from 1 s to 2 s: faults of "
+      "s.yaml:78: faults[1].at_s: is 1.5, but faults[0], imu_stop too, lasts from 1 s to 2 s: faults of "
       "one kind must not overlap");
 }
 

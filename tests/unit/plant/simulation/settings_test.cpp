@@ -52,6 +52,23 @@ const std::vector<Rule>& rules() {
       {"air.gust_time_constant_s", [](S& s, double v) { s.air.gust_time_constant_s = v; }, 0.01, 1000.0},
       {"ground.leg_height_m", [](S& s, double v) { s.ground.leg_height_m = v; }, 0.0, 1.0},
       {"ground.friction", [](S& s, double v) { s.ground.friction = v; }, 0.0, 10.0},
+      {"site.latitude_deg", [](S& s, double v) { s.site.latitude_deg = v; }, -89.0, 89.0},
+      {"site.longitude_deg", [](S& s, double v) { s.site.longitude_deg = v; }, -180.0, 180.0},
+      {"site.altitude_m", [](S& s, double v) { s.site.altitude_m = v; }, -500.0, 9000.0},
+      {"site.magnetic_field_ned_gauss[0]", [](S& s, double v) { s.site.magnetic_field_ned[0] = v; }, -1.0,
+       1.0},
+      {"barometer.rate_hz", [](S& s, double v) { s.barometer.rate_hz = v; }, 1.0, 1000.0},
+      {"barometer.noise_pa", [](S& s, double v) { s.barometer.noise_pa = v; }, 0.0, 1.0e3},
+      {"barometer.bias_pa", [](S& s, double v) { s.barometer.bias_sigma_pa = v; }, 0.0, 1.0e4},
+      {"barometer.bias_walk_pa_per_sqrt_s", [](S& s, double v) { s.barometer.bias_walk_pa = v; }, 0.0, 100.0},
+      {"magnetometer.rate_hz", [](S& s, double v) { s.magnetometer.rate_hz = v; }, 1.0, 1000.0},
+      {"magnetometer.noise_gauss", [](S& s, double v) { s.magnetometer.noise_gauss = v; }, 0.0, 1.0},
+      {"magnetometer.bias_gauss", [](S& s, double v) { s.magnetometer.bias_sigma_gauss = v; }, 0.0, 1.0},
+      {"gps.rate_hz", [](S& s, double v) { s.gps.rate_hz = v; }, 0.0, 1000.0},
+      {"gps.position_noise_ned_m[0]", [](S& s, double v) { s.gps.position_noise_ned[0] = v; }, 0.0, 100.0},
+      {"gps.position_drift_ned_m[1]", [](S& s, double v) { s.gps.position_drift_ned[1] = v; }, 0.0, 100.0},
+      {"gps.drift_time_constant_s", [](S& s, double v) { s.gps.drift_time_constant_s = v; }, 0.1, 1.0e4},
+      {"gps.velocity_noise_ned_m_s[2]", [](S& s, double v) { s.gps.velocity_noise_ned[2] = v; }, 0.0, 100.0},
   };
   return all;
 }
