@@ -195,6 +195,7 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Comma
     const auto& info = view.vehicle.message;
     json["vehicle_info"] = {{"name", info.name().c_str()},
                             {"simulated", info.simulated()},
+                            {"autopilot", info.autopilot().c_str()},
                             {"imu_rate_hz", info.imu_rate_hz()},
                             {"rotors_running", info.rotors_running()},
                             {"fault", info.fault().c_str()},
@@ -234,6 +235,21 @@ std::string age_text(const Latest<T>& latest, Clock::time_point now) {
   return fmt::format("{:.2f} s old", latest.age_s(now));
 }
 
+void print_battery(const View& view) {
+  if (!view.battery.seen()) return;
+  const auto& battery = view.battery.message;
+  std::printf("  battery   %.2f V, %.2f A, %.0f %%\n", battery.voltage_v(), battery.current_a(),
+              battery.state_of_charge() * 100.0);
+}
+
+void print_vehicle(const msg::VehicleInfo& info) {
+  std::printf(
+      "  vehicle   %s%s, IMU at %.0f Hz, sense to actuate p50 %.0f us, p99 %.0f us, max %.0f us%s%s\n",
+      info.name().c_str(), info.simulated() ? " (simulated)" : "", info.imu_rate_hz(),
+      info.sense_to_actuate_p50_us(), info.sense_to_actuate_p99_us(), info.sense_to_actuate_max_us(),
+      info.fault().size() > 0 ? "; FAULT: " : "", info.fault().c_str());
+}
+
 void print(const View& view, const Rates& rates, const CommandOptions& options) {
   const auto now = Clock::now();
   const auto& control = view.control.message;
@@ -266,11 +282,7 @@ void print(const View& view, const Rates& rates, const CommandOptions& options) 
     if (estimate.resets() > 0) std::printf(", %u resets", estimate.resets());
   }
   std::printf("\n");
-  if (view.battery.seen()) {
-    const auto& battery = view.battery.message;
-    std::printf("  battery   %.2f V, %.2f A, %.0f %%\n", battery.voltage_v(), battery.current_a(),
-                battery.state_of_charge() * 100.0);
-  }
+  print_battery(view);
   if (mission.state() != msg::MissionStatus_Constants::NONE) {
     std::printf("  mission   %s, item %u of %u\n", mission_state_name(mission.state()),
                 mission.item_index() + 1, mission.item_count());
@@ -298,14 +310,7 @@ void print(const View& view, const Rates& rates, const CommandOptions& options) 
     std::printf("\n");
   }
   print(controllers_of(view, now));
-  if (view.vehicle.seen()) {
-    const auto& info = view.vehicle.message;
-    std::printf(
-        "  vehicle   %s%s, IMU at %.0f Hz, sense to actuate p50 %.0f us, p99 %.0f us, max %.0f us%s%s\n",
-        info.name().c_str(), info.simulated() ? " (simulated)" : "", info.imu_rate_hz(),
-        info.sense_to_actuate_p50_us(), info.sense_to_actuate_p99_us(), info.sense_to_actuate_max_us(),
-        info.fault().size() > 0 ? "; FAULT: " : "", info.fault().c_str());
-  }
+  if (view.vehicle.seen()) print_vehicle(view.vehicle.message);
   std::printf("  rates     estimate %.0f Hz, reference %.0f Hz, battery %.0f Hz, ground truth %.0f Hz\n",
               rates.estimate_hz, rates.reference_hz, rates.battery_hz, rates.ground_truth_hz);
   std::printf("  ages      control status %s, vehicle info %s, estimate %s, battery %s\n",
@@ -313,16 +318,44 @@ void print(const View& view, const Rates& rates, const CommandOptions& options) 
               age_text(view.estimate, now).c_str(), age_text(view.battery, now).c_str());
 }
 
+// Of a vehicle that an autopilot flies in place of control.
+bool is_flown_by_autopilot(const View& view) {
+  return !view.control.seen() && view.vehicle.seen() && view.vehicle.message.autopilot().size() > 0;
+}
+
+void print_flown_by_autopilot(const View& view, const Rates& rates, const CommandOptions& options) {
+  const auto now = Clock::now();
+  for (const Silence& silence : silences_of(view, now))
+    print_alarm(stdout, to_string(silence, std::chrono::system_clock::now()));
+  const auto& info = view.vehicle.message;
+  std::printf("%s in domain %d: flown by %s, rotors %s\n", options.network.vehicle.c_str(),
+              options.network.domain, info.autopilot().c_str(), info.rotors_running() ? "running" : "off");
+  if (view.truth.seen()) {
+    const auto& p = view.truth.message.position_ned();
+    const auto& v = view.truth.message.velocity_ned();
+    std::printf("  truth     %.3f, %.3f, %.3f m   velocity %.2f, %.2f, %.2f m/s   (NED)\n", p[0], p[1], p[2],
+                v[0], v[1], v[2]);
+  }
+  print_battery(view);
+  print_vehicle(info);
+  std::printf("  rates     battery %.0f Hz, ground truth %.0f Hz\n", rates.battery_hz, rates.ground_truth_hz);
+  std::printf("  ages      vehicle info %s, battery %s, ground truth %s\n",
+              age_text(view.vehicle, now).c_str(), age_text(view.battery, now).c_str(),
+              age_text(view.truth, now).c_str());
+}
+
 int show_status(const Options& options) {
   Client client(options.network);
   client.hear_controllers();
-  if (!client.wait(options.timeout(), [](const View& view) { return view.control.seen(); })) {
+  if (!client.wait(options.timeout(),
+                   [](const View& view) { return view.control.seen() || is_flown_by_autopilot(view); })) {
     std::fprintf(stderr, "swiftlet: status: %s\n", client.no_control().c_str());
     return kFailed;
   }
   // Topics that do not arrive within kRestTimeout are shown as missing.
   client.wait(kRestTimeout, [](const View& view) {
-    return view.vehicle.seen() && view.battery.seen() && view.estimate.seen() && view.mission.seen();
+    return view.vehicle.seen() && view.battery.seen() &&
+           (is_flown_by_autopilot(view) ? view.truth.seen() : view.estimate.seen() && view.mission.seen());
   });
   const View before = client.view();
   client.wait(std::chrono::milliseconds(static_cast<std::int64_t>(options.watch_s * 1e3)),
@@ -331,6 +364,8 @@ int show_status(const Options& options) {
   const Rates rates = rates_between(before, after, options.watch_s);
   if (options.json) {
     std::printf("%s\n", to_json(after, rates, options).dump(2).c_str());
+  } else if (is_flown_by_autopilot(after)) {
+    print_flown_by_autopilot(after, rates, options);
   } else {
     print(after, rates, options);
   }

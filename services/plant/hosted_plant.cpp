@@ -3,15 +3,33 @@
 #include "swiftlet/services/dds/discovery/peer_log.hpp"
 
 namespace swiftlet::services {
+namespace {
+
+AutopilotLoopSettings autopilot_loop_settings(const PlantSettings& settings) {
+  AutopilotLoopSettings loop;
+  loop.autopilot = *settings.autopilot;
+  loop.clock = settings.clock;
+  loop.speed = settings.speed > 0.0 ? settings.speed : 1.0;
+  loop.limited_in_lockstep = settings.speed > 0.0;
+  loop.trace = settings.lockstep.trace;
+  loop.realtime = settings.realtime;
+  return loop;
+}
+
+}  // namespace
 
 HostedPlant::HostedPlant(const comms::Participant& participant, const std::string& name,
                          const PlantSettings& settings)
     : HostedVehicle(name),
       node_(participant, name, [this](const std::string& fault) { fail(fault); }),
-      reporter_(node_, settings.vehicle, settings.simulation),
+      reporter_(node_, settings.vehicle, settings.simulation,
+                settings.autopilot ? settings.autopilot->description() : ""),
       simulated_(settings.vehicle, settings.simulation, settings.seed, settings.initial, node_) {
   comms::log_peers(node_);
-  if (settings.clock == runtime::Clock::kRealtime) {
+  if (settings.autopilot) {
+    autopilot_loop_.emplace(simulated_, settings.vehicle, settings.simulation, settings.seed,
+                            autopilot_loop_settings(settings));
+  } else if (settings.clock == runtime::Clock::kRealtime) {
     const double speed = settings.speed > 0.0 ? settings.speed : 1.0;
     realtime_loop_.emplace(simulated_, settings.simulation, speed, settings.phase, node_, settings.realtime);
   } else {
@@ -25,6 +43,7 @@ HostedPlant::HostedPlant(const comms::Participant& participant, const std::strin
 void HostedPlant::run(const std::atomic<bool>& stop) {
   if (realtime_loop_) realtime_loop_->run(stop);
   if (lockstep_loop_) lockstep_loop_->run(stop);
+  if (autopilot_loop_) autopilot_loop_->run(stop);
 }
 
 void HostedPlant::attend() {

@@ -8,6 +8,8 @@
 #include "swiftlet/plant/model/vehicle.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
 #include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/plant/autopilot_loop.hpp"
+#include "swiftlet/services/plant/autopilot_settings.hpp"
 #include "swiftlet/services/plant/lockstep_loop.hpp"
 #include "swiftlet/services/plant/plant_reporter.hpp"
 #include "swiftlet/services/plant/realtime_loop.hpp"
@@ -28,11 +30,12 @@ struct PlantSettings {
   runtime::RealtimeSettings realtime;
   std::uint64_t seed = 1;
   plant::VehicleState initial;
+  std::optional<AutopilotSettings> autopilot;  // flies the vehicle in place of the control service
 };
 
 class HostedPlant final : public runtime::HostedVehicle {
  public:
-  // Throws std::runtime_error as Node and LockstepLoop do.
+  // Throws as Node, LockstepLoop and AutopilotLoop do.
   HostedPlant(const comms::Participant& participant, const std::string& name, const PlantSettings& settings);
 
   void run(const std::atomic<bool>& stop) override;
@@ -46,6 +49,7 @@ class HostedPlant final : public runtime::HostedVehicle {
   PlantReport last_;
   std::optional<RealtimeLoop> realtime_loop_;  // last: their subscriptions use all members above
   std::optional<LockstepLoop> lockstep_loop_;
+  std::optional<AutopilotLoop> autopilot_loop_;
 };
 
 }  // namespace swiftlet::services

@@ -20,7 +20,9 @@
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/node_options.hpp"
 #include "swiftlet/services/dds/vehicle_list.hpp"
+#include "swiftlet/services/plant/autopilot_settings.hpp"
 #include "swiftlet/services/plant/hosted_plant.hpp"
+#include "swiftlet/services/plant/serial_port.hpp"
 #include "swiftlet/services/runtime/clock.hpp"
 #include "swiftlet/services/runtime/hosting.hpp"
 #include "swiftlet/services/runtime/log.hpp"
@@ -47,9 +49,59 @@ struct Options {
   runtime::Clock clock = runtime::Clock::kRealtime;
   double speed = 0.0;  // 0: real time, or in lockstep no limit
   LockstepSettings lockstep;
+  std::string autopilot_protocol;  // empty: the control service flies
+  AutopilotSettings autopilot;
+  std::array<double, 2> autopilot_range{0.0, 1.0};
   comms::NodeSettings node;
   runtime::ProcessOptions process;
 };
+
+void add_autopilot_options(runtime::CommandLine app, Options& options) {
+  AutopilotSettings& autopilot = options.autopilot;
+  const runtime::Option chosen =
+      app.add_option(
+             "--autopilot", options.autopilot_protocol,
+             "An external autopilot flies the vehicle in place of swiftlet-control, by this protocol: "
+             "mavlink, the simulator interface of PX4")
+          .one_of({"mavlink"});
+  app.add_option("--autopilot-port", autopilot.port,
+                 "TCP port to which the autopilot connects; of several vehicles each has the next one")
+      .range(1, 65535)
+      .show_default()
+      .needs(chosen);
+  app.add_option("--autopilot-address", autopilot.address,
+                 "IPv4 address at which the port is open; 0.0.0.0: to all networks, without any protection")
+      .show_default()
+      .needs(chosen);
+  const runtime::Option device = app.add_option("--autopilot-device", autopilot.device,
+                                                "Serial device of an autopilot in HITL mode, in place of TCP")
+                                     .needs(chosen);
+  app.add_option("--baud", autopilot.baud, "Rate of the serial device, bit/s")
+      .one_of(serial_bauds())
+      .show_default()
+      .needs(device);
+  app.add_option("--autopilot-system-id", autopilot.system_id,
+                 "MAVLink system to obey; 0: the first that is heard")
+      .range(0, 255)
+      .show_default()
+      .needs(chosen);
+  app.add_option(
+         "--autopilot-controls", autopilot.controls,
+         "Actuator control of each rotor: px4 for PX4's numbers of a quadrotor in X, direct for control i "
+         "to rotor i, or a list such as 3,1,2,4")
+      .show_default()
+      .needs(chosen);
+  app.add_option("--autopilot-range", options.autopilot_range, "Controls at throttle 0 and at throttle 1")
+      .range(-1.0, 1.0)
+      .show_default("0 1")
+      .needs(chosen);
+  app.add_option(
+         "--autopilot-timeout", autopilot.answer_timeout_s,
+         "Lockstep: after this time without an answer, s, simulated time goes on at the pace of real time")
+      .range(0.001, 60.0)
+      .show_default()
+      .needs(chosen);
+}
 
 void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--vehicle", options.vehicle, "Vehicle file, or the name of one in config/vehicles")
@@ -81,6 +133,7 @@ void add_options(runtime::CommandLine app, Options& options) {
       "--trace", options.lockstep.trace,
       "Lockstep: write every sample and command of the flight to this CSV file, without rounding; in the "
       "path, {} stands for the name of the vehicle");
+  add_autopilot_options(app, options);
   options.node.name = "plant";
   comms::add_service_options(app, options.node);
   runtime::add_process_options(app, options.process);
@@ -99,6 +152,20 @@ void check(const Options& options, std::size_t vehicles) {
   const std::string& trace = options.lockstep.trace;
   if (vehicles > 1 && !trace.empty() && trace.find(kNameInTrace) == std::string::npos)
     throw std::invalid_argument("--trace: of several vehicles the path must contain {}");
+}
+
+// Throws std::invalid_argument for options that do not fit an autopilot.
+void check_autopilot(const Options& options, std::size_t vehicles) {
+  if (options.autopilot_protocol.empty()) return;
+  const AutopilotSettings& autopilot = options.autopilot;
+  if (options.lockstep.paused) throw std::invalid_argument("--paused: is not possible with --autopilot");
+  if (!autopilot.device.empty() && options.clock == runtime::Clock::kLockstep)
+    throw std::invalid_argument("--autopilot-device: needs --clock realtime; a board keeps its own time");
+  if (!autopilot.device.empty() && vehicles > 1)
+    throw std::invalid_argument("--autopilot-device: flies one vehicle, not " + std::to_string(vehicles));
+  if (autopilot.port + static_cast<int>(vehicles) - 1 > 65535)
+    throw std::invalid_argument("--autopilot-port: leaves no ports for " + std::to_string(vehicles) +
+                                " vehicles");
 }
 
 std::string trace_of(const std::string& vehicle, std::string path) {
@@ -127,6 +194,11 @@ PlantSettings load(const Options& options) {
   settings.clock = options.clock;
   settings.speed = options.speed;
   settings.lockstep = options.lockstep;
+  if (!options.autopilot_protocol.empty()) {
+    settings.autopilot = options.autopilot;
+    settings.autopilot->control_at_zero = options.autopilot_range[0];
+    settings.autopilot->control_at_full = options.autopilot_range[1];
+  }
   if (!options.node.security.empty()) settings.lockstep.patience_s = kSecurePatienceS;
   return settings;
 }
@@ -142,6 +214,7 @@ PlantSettings settings_of(const std::vector<std::string>& names, std::size_t i, 
       Eigen::Vector2d(options.start[0] + static_cast<double>(row) * options.spacing_m,
                       options.start[1] + static_cast<double>(column) * options.spacing_m);
   settings.lockstep.trace = trace_of(names[i], options.lockstep.trace);
+  if (settings.autopilot) settings.autopilot->port += static_cast<int>(i);
   return settings;
 }
 
@@ -149,6 +222,7 @@ void run(const Options& options) {
   const std::vector<std::string> names = comms::vehicles_of_list(options.node.vehicle);
   PlantSettings settings = load(options);
   check(options, names.size());
+  check_autopilot(options, names.size());
 
   runtime::StopSignal stop;
   const runtime::Logging logging("plant", options.process.log);
@@ -167,9 +241,10 @@ void run(const Options& options) {
     vehicles.push_back(
         std::make_unique<HostedPlant>(participant, names[i], settings_of(names, i, options, settings)));
   }
-  spdlog::info("ready: {}, vehicle {}, domain {}, clock {}, IMU at {:g} Hz, seed {}", settings.vehicle.name,
+  spdlog::info("ready: {}, vehicle {}, domain {}, clock {}, IMU at {:g} Hz, seed {}{}", settings.vehicle.name,
                fmt::join(names, ","), network.domain, runtime::to_string(options.clock),
-               settings.simulation.imu.rate_hz, options.seed);
+               settings.simulation.imu.rate_hz, options.seed,
+               settings.autopilot ? ", flown by " + settings.autopilot->description() : "");
   runtime::host(std::move(vehicles), stop, kReportPeriod);
   source.check();
 }

@@ -11,10 +11,12 @@ namespace {
 constexpr std::int64_t kPeriodNs = 1'000'000'000;
 constexpr std::int64_t kTroublePeriodNs = 10'000'000'000;
 
-comms::msg::VehicleInfo describe(const plant::Vehicle& vehicle, double imu_rate_hz) {
+comms::msg::VehicleInfo describe(const plant::Vehicle& vehicle, double imu_rate_hz,
+                                 const std::string& autopilot) {
   comms::msg::VehicleInfo info;
   info.name() = vehicle.name;
   info.simulated(true);
+  info.autopilot() = autopilot;
   info.rotor_count(static_cast<std::uint8_t>(vehicle.rotor_count()));
   info.mass_kg(vehicle.mass_kg);
   info.imu_rate_hz(imu_rate_hz);
@@ -39,9 +41,9 @@ void update(comms::msg::VehicleInfo& info, const PlantReport& report, const std:
 }  // namespace
 
 PlantReporter::PlantReporter(comms::Node& node, const plant::Vehicle& vehicle,
-                             const plant::SimulationSettings& settings)
+                             const plant::SimulationSettings& settings, const std::string& autopilot)
     : publisher_(node.publish(comms::topics::kVehicleInfo)),
-      info_(describe(vehicle, settings.imu.rate_hz)),
+      info_(describe(vehicle, settings.imu.rate_hz, autopilot)),
       timeout_fault_(fmt::format("no actuator command for {:g} s", settings.command_timeout_s)) {}
 
 void PlantReporter::publish_due(const PlantReport& report) {

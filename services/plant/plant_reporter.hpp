@@ -13,7 +13,9 @@ namespace swiftlet::services {
 
 class PlantReporter {
  public:
-  PlantReporter(comms::Node& node, const plant::Vehicle& vehicle, const plant::SimulationSettings& settings);
+  // autopilot: what flies the vehicle in place of control; empty: control does.
+  PlantReporter(comms::Node& node, const plant::Vehicle& vehicle, const plant::SimulationSettings& settings,
+                const std::string& autopilot);
 
   // Publishes vehicle_info every second, and at once when the rotors start or stop or the pause changes.
   void publish_due(const PlantReport& report);

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "swiftlet/recording/telemetry_rate.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
@@ -10,12 +9,6 @@ namespace {
 
 std::int64_t scaled(std::int64_t simulated_ns, double speed) {
   return std::llround(static_cast<double>(simulated_ns) / speed);
-}
-
-// Irregular intervals depend on the seed of motion capture, and faults may delay frames.
-std::optional<plant::MocapSchedule> foreseen_frames(const plant::SimulationSettings& settings) {
-  if (settings.mocap.model == plant::MocapModel::kOptitrack || !settings.faults.empty()) return std::nullopt;
-  return plant::MocapSchedule(settings.mocap, 0);
 }
 
 }  // namespace
@@ -27,8 +20,7 @@ RealtimeLoop::RealtimeLoop(SimulatedVehicle& vehicle, const plant::SimulationSet
       phase_(phase),
       steps_per_sample_(plant::period_ns(settings.imu.rate_hz) / settings.step_ns),
       sample_period_ns_(scaled(plant::period_ns(settings.imu.rate_hz), speed)),
-      imu_period_ns_(plant::period_ns(settings.imu.rate_hz)),
-      mocap_(foreseen_frames(settings)),
+      truth_(settings),
       realtime_(realtime),
       commands_(node.subscribe<comms::msg::ActuatorCommand>(
           comms::topics::kActuatorCommand, [this](const auto& message) { on_command(message); },
@@ -66,17 +58,7 @@ void RealtimeLoop::step_to_sample(std::int64_t sample_due_ns) {
   }
 }
 
-void RealtimeLoop::publish() {
-  vehicle_.publish_samples(vehicle_.simulation().imu_due() && is_truth_needed());
-}
-
-// Motion capture and telemetry do not need the truth of every IMU sample, and each message costs time.
-bool RealtimeLoop::is_truth_needed() {
-  if (!mocap_) return true;
-  const plant::MocapSchedule::Events frame = mocap_->advance(vehicle_.simulation().stamp_ns());
-  return frame.exposes || frame.delivers ||
-         runtime::is_telemetry_sample(vehicle_.simulation().imu_count(), imu_period_ns_);
-}
+void RealtimeLoop::publish() { vehicle_.publish_samples(truth_.due(vehicle_.simulation())); }
 
 // tick_ns: when the last step was due.
 void RealtimeLoop::set_origin(std::int64_t tick_ns) {

@@ -7,10 +7,10 @@
 
 #include <boost/lockfree/spsc_queue.hpp>
 
-#include "swiftlet/plant/simulation/mocap_schedule.hpp"
 #include "swiftlet/services/dds/clocks/clock_server.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/plant/simulated_vehicle.hpp"
+#include "swiftlet/services/plant/truth_schedule.hpp"
 #include "swiftlet/services/runtime/realtime.hpp"
 
 namespace swiftlet::services {
@@ -30,7 +30,6 @@ class RealtimeLoop {
   void on_command(const comms::msg::ActuatorCommand& message);
   void step_to_sample(std::int64_t sample_due_ns);
   void publish();
-  bool is_truth_needed();
   void set_origin(std::int64_t tick_ns);
   std::optional<std::int64_t> simulated_ns() const;
 
@@ -39,9 +38,7 @@ class RealtimeLoop {
   double phase_;
   std::int64_t steps_per_sample_;
   std::int64_t sample_period_ns_;  // of the IMU, computer's clock
-  std::int64_t imu_period_ns_;
-  // When motion capture needs the truth; without a value always, as its frames cannot be foreseen.
-  std::optional<plant::MocapSchedule> mocap_;
+  TruthSchedule truth_;
   runtime::RealtimeSettings realtime_;
 
   boost::lockfree::spsc_queue<ReceivedCommand, boost::lockfree::capacity<64>> received_;

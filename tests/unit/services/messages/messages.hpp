@@ -340,6 +340,7 @@ inline msg::VehicleInfo example() {
   message.sequence_number(22);
   message.name() = "kaylion";
   message.simulated(true);
+  message.autopilot() = "MAVLink on TCP port 4560";
   message.rotor_count(4);
   message.mass_kg(0.04);
   message.imu_rate_hz(500.0);

@@ -1,0 +1,81 @@
+#include "swiftlet/services/plant/autopilot_connection.hpp"
+
+#include <algorithm>
+#include <array>
+#include <poll.h>
+#include <stdexcept>
+#include <time.h>
+
+#include <spdlog/spdlog.h>
+
+#include "swiftlet/services/plant/serial_port.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
+
+namespace swiftlet::services {
+namespace {
+
+constexpr std::int64_t kReopenPeriodNs = 500'000'000;
+
+}  // namespace
+
+AutopilotConnection::AutopilotConnection(const AutopilotSettings& settings) : settings_(settings) {
+  if (settings_.device.empty()) {
+    listener_.emplace(settings_.address, settings_.port);
+  } else {
+    stream_ = open_serial_port(settings_.device, settings_.baud);
+    connections_ = 1;
+  }
+}
+
+std::size_t AutopilotConnection::receive(std::int64_t deadline_ns, std::uint8_t* bytes, std::size_t size) {
+  if (!stream_ && connect()) return 0;
+  const bool failed = stream_ && stream_->closed();
+  if (!failed && !wait(deadline_ns)) return 0;
+  if (!stream_) {
+    connect();
+    return 0;
+  }
+  refuse_second();
+  const std::size_t received = stream_->receive(bytes, size);
+  if (stream_->closed()) {
+    spdlog::warn("autopilot disconnected");
+    stream_.reset();
+    reopen_ns_ = runtime::monotonic_ns() + kReopenPeriodNs;
+  }
+  return received;
+}
+
+// True if there is something to read or to accept.
+bool AutopilotConnection::wait(std::int64_t deadline_ns) const {
+  std::array<pollfd, 2> waits{};
+  waits[0] = {stream_ ? stream_->descriptor() : -1, POLLIN, 0};
+  waits[1] = {listener_ ? listener_->descriptor() : -1, POLLIN, 0};
+  const std::int64_t left_ns =
+      std::clamp<std::int64_t>(deadline_ns - runtime::monotonic_ns(), 0, kLongestWaitNs);
+  const timespec time{0, static_cast<long>(left_ns)};
+  return ::ppoll(waits.data(), waits.size(), &time, nullptr) > 0;
+}
+
+// Returns true if a connection has begun.
+bool AutopilotConnection::connect() {
+  if (listener_) {
+    stream_ = listener_->accept();
+  } else if (runtime::monotonic_ns() >= reopen_ns_) {
+    reopen_ns_ = runtime::monotonic_ns() + kReopenPeriodNs;
+    try {
+      stream_ = open_serial_port(settings_.device, settings_.baud);
+    } catch (const std::runtime_error&) {  // not there again yet
+    }
+  }
+  if (!stream_) return false;
+  ++connections_;
+  spdlog::info("autopilot connected");
+  return true;
+}
+
+void AutopilotConnection::refuse_second() {
+  if (listener_ && listener_->accept())
+    spdlog::warn("refused a second connection: an autopilot is connected");
+}
+
+}  // namespace swiftlet::services

@@ -1,0 +1,34 @@
+// A TCP connection or a serial port: bytes in both directions, without waiting.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace swiftlet::services {
+
+class ByteStream {
+ public:
+  // Owns the descriptor, which must not block.
+  explicit ByteStream(int descriptor) : descriptor_(descriptor) {}
+  ~ByteStream();
+  ByteStream(const ByteStream&) = delete;
+  ByteStream& operator=(const ByteStream&) = delete;
+
+  // Sends all bytes or none: none while the far end has not accepted those before. Returns false for none.
+  bool send(const std::uint8_t* bytes, std::size_t size);
+  // Returns the number of bytes received, 0 if there are none.
+  std::size_t receive(std::uint8_t* bytes, std::size_t size);
+
+  bool closed() const { return closed_; }  // by the far end, or by an error of the link
+  int descriptor() const { return descriptor_; }
+
+ private:
+  std::size_t write(const std::uint8_t* bytes, std::size_t size);
+
+  int descriptor_;
+  bool closed_ = false;
+  std::vector<std::uint8_t> rest_;  // of the last message
+};
+
+}  // namespace swiftlet::services
