@@ -1,4 +1,4 @@
-// swiftlet-mocap: simulates motion capture.
+// swiftlet-mocap: publishes the poses of vehicles, from a motion capture or from a simulation of one.
 #include <chrono>
 #include <cstdint>
 #include <limits>
@@ -17,7 +17,11 @@
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/node_options.hpp"
 #include "swiftlet/services/dds/vehicle_list.hpp"
+#include "swiftlet/services/mocap/captured_vehicle.hpp"
+#include "swiftlet/services/mocap/frame_thread.hpp"
 #include "swiftlet/services/mocap/motion_capture_simulator.hpp"
+#include "swiftlet/services/mocap/sources/source.hpp"
+#include "swiftlet/services/mocap/sources/source_options.hpp"
 #include "swiftlet/services/runtime/clock.hpp"
 #include "swiftlet/services/runtime/hosting.hpp"
 #include "swiftlet/services/runtime/log.hpp"
@@ -30,8 +34,10 @@ namespace swiftlet::services {
 namespace {
 
 constexpr std::chrono::milliseconds kPollPeriod{20};  // of the main thread
+constexpr const char* kSimulation = "simulation";
 
 struct Options {
+  mocap::SourceOptions source;
   std::string simulation = "default";
   MotionCaptureSettings capture;
   comms::NodeSettings node;
@@ -39,6 +45,7 @@ struct Options {
 };
 
 void add_options(runtime::CommandLine app, Options& options) {
+  mocap::add_source_options(app, options.source, {kSimulation});
   app.add_option("--simulation", options.simulation, "Simulation file").show_default();
   app.add_option("--seed", options.capture.seed,
                  "Random seed of pose errors and dropouts; of several vehicles each has the next number")
@@ -60,11 +67,33 @@ std::string frame_rate(const plant::MocapSettings& settings) {
   return fmt::format("at {:g} Hz", settings.rate_hz);
 }
 
-void run(const Options& options) {
-  const std::vector<std::string> names = comms::vehicles_of_list(options.node.vehicle);
-  MotionCaptureSettings settings = options.capture;
-  if (settings.frame_clock == FrameClock::kHost && settings.clock == runtime::Clock::kLockstep)
+bool is_simulated(const mocap::SourceOptions& source) {
+  return source.source == kSimulation || (source.source.empty() && source.room.empty());
+}
+
+void check_simulation(const Options& options) {
+  const mocap::SourceOptions& source = options.source;
+  for (const auto& [name, value] : {std::pair{"--room", &source.room}, std::pair{"--server", &source.server},
+                                    std::pair{"--mocap-interface", &source.interface},
+                                    std::pair{"--frame", &source.frame}, std::pair{"--file", &source.file}}) {
+    if (!value->empty()) throw std::invalid_argument(std::string(name) + ": not with --source simulation");
+  }
+  if (options.capture.frame_clock == FrameClock::kHost && options.capture.clock == runtime::Clock::kLockstep)
     throw std::invalid_argument("--frame-clock host: not with --clock lockstep");
+}
+
+comms::NodeSettings network_of(const Options& options, runtime::Clock clock) {
+  comms::NodeSettings network = options.node;
+  network.announcement_period = comms::kFixturePeriod;
+  network.deadlines = clock == runtime::Clock::kRealtime;
+  network.source_of = comms::topics::kMocapPose.name;
+  return network;
+}
+
+void simulate(const Options& options) {
+  const std::vector<std::string> names = comms::vehicles_of_list(options.node.vehicle);
+  check_simulation(options);
+  MotionCaptureSettings settings = options.capture;
   settings.simulation = runtime::load_simulation_settings(
       runtime::configuration_file(runtime::kinds::kSimulation, options.simulation));
 
@@ -72,10 +101,7 @@ void run(const Options& options) {
   const runtime::Logging logging("mocap", options.process.log);
   settings.realtime = runtime::prepare_realtime(options.process.realtime, settings.clock);
 
-  comms::NodeSettings network = options.node;
-  network.announcement_period = comms::kFixturePeriod;
-  network.deadlines = settings.clock == runtime::Clock::kRealtime;
-  network.source_of = comms::topics::kMocapPose.name;
+  const comms::NodeSettings network = network_of(options, settings.clock);
   comms::Participant participant(network, names);
   const comms::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
   std::vector<std::unique_ptr<runtime::HostedVehicle>> vehicles;
@@ -91,6 +117,56 @@ void run(const Options& options) {
   source.check();
 }
 
+void check_capture(const Options& options) {
+  if (options.capture.clock == runtime::Clock::kLockstep)
+    throw std::invalid_argument("--clock lockstep: only with --source simulation");
+  if (options.source.room.empty() && options.source.frame.empty())
+    throw std::invalid_argument("--frame is required without --room: zup or yup, as the motion capture is set");
+}
+
+void log_end(const mocap::Source& source) {
+  const mocap::SourceStatistics& statistics = source.statistics();
+  spdlog::info("motion capture ended: {}: {} frames, {} lost, {} late, {} refused{}, {} of other servers, {} restarts",
+               source.description(), statistics.frames, statistics.lost, statistics.late, statistics.refused,
+               statistics.last_refusal.empty() ? "" : " (" + statistics.last_refusal + ")", statistics.strangers,
+               statistics.restarts);
+}
+
+void capture(const Options& options) {
+  const std::vector<std::string> names = comms::vehicles_of_list(options.node.vehicle);
+  check_capture(options);
+  const mocap::Room room = mocap::room_of(options.source, names);
+
+  runtime::StopSignal stop;
+  const runtime::Logging logging("mocap", options.process.log);
+  const runtime::RealtimeSettings realtime =
+      runtime::prepare_realtime(options.process.realtime, runtime::Clock::kRealtime);
+  FrameThread frames(mocap::open_source(room), realtime, [&stop] { stop.request(); });
+
+  const comms::NodeSettings network = network_of(options, runtime::Clock::kRealtime);
+  comms::Participant participant(network, names);
+  const comms::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
+  std::vector<std::unique_ptr<runtime::HostedVehicle>> vehicles;
+  for (const std::string& name : names)
+    vehicles.push_back(std::make_unique<CapturedVehicle>(participant, *mocap::find(room, name),
+                                                         mocap::RoomFrame(room), frames));
+  spdlog::info("ready: vehicle {}, domain {}, source {}", fmt::join(names, ","), network.domain,
+               mocap::to_string(room.source));
+  frames.start();
+  runtime::host(std::move(vehicles), stop, kPollPeriod);
+  frames.stop();
+  log_end(frames.source());
+  source.check();
+}
+
+void run(const Options& options) {
+  if (is_simulated(options.source)) {
+    simulate(options);
+  } else {
+    capture(options);
+  }
+}
+
 }  // namespace
 }  // namespace swiftlet::services
 
@@ -100,8 +176,9 @@ int main(int argc, char** argv) {
   options.process.realtime.priority = 50;
   return runtime::run_process(
       {"swiftlet-mocap",
-       "Simulates motion capture: receives the ground truth of simulated vehicles, publishes their poses.",
-       "--seed 7 --vehicle-name kl1..kl4 --localhost-only", runtime::version_text()},
+       "Publishes the poses of vehicles: those of a motion capture, or those that a simulated one makes of the ground "
+       "truth of simulated vehicles.",
+       "--source natnet --frame yup --vehicle-name kl1..kl4", runtime::version_text()},
       argc, argv, [&](runtime::CommandLine app) { services::add_options(app, options); },
       [&] { services::run(options); });
 }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "swiftlet/services/dds/datagram/byte_reader.hpp"
+#include "swiftlet/io/byte_reader.hpp"
 #include "swiftlet/services/dds/datagram/parameter_list.hpp"
 #include "swiftlet/services/dds/datagram/submessage.hpp"
 

@@ -6,10 +6,12 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "swiftlet/services/dds/datagram/byte_reader.hpp"
+#include "swiftlet/io/byte_reader.hpp"
 #include "swiftlet/services/dds/datagram/rtps_ids.hpp"
 
 namespace swiftlet::comms {
+
+using runtime::ByteReader;
 
 // Parameters that the middleware must not parse: it reads type descriptions and filter expressions without bounds on
 // depth and size, and nothing here needs them.

@@ -4,12 +4,14 @@
 #include <utility>
 #include <vector>
 
-#include "swiftlet/services/dds/datagram/byte_reader.hpp"
+#include "swiftlet/io/byte_reader.hpp"
 #include "swiftlet/services/dds/datagram/rtps_ids.hpp"
 #include "swiftlet/services/dds/datagram/submessage.hpp"
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 
 namespace swiftlet::comms {
+
+using runtime::ByteReader;
 
 bool is_discovery_port(int domain, std::uint32_t port) {
   const DiscoveryPorts ports = discovery_ports(domain);

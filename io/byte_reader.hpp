@@ -1,10 +1,12 @@
-// Reads integers from received bytes without ever reading beyond their end.
+// Reads numbers from received bytes without ever reading beyond their end.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <string_view>
 
-namespace swiftlet::comms {
+namespace swiftlet::runtime {
 
 // A read beyond the end returns zeros and makes ok() false for good, so that a sequence of reads needs one check.
 class ByteReader {
@@ -20,6 +22,28 @@ class ByteReader {
   std::uint8_t u8() { return static_cast<std::uint8_t>(integer(1)); }
   std::uint16_t u16() { return static_cast<std::uint16_t>(integer(2)); }
   std::uint32_t u32() { return static_cast<std::uint32_t>(integer(4)); }
+  std::uint64_t u64() { return integer(8); }
+  std::int32_t i32() { return static_cast<std::int32_t>(u32()); }
+  float f32() { return same_bits<float>(u32()); }     // IEEE 754
+  double f64() { return same_bits<double>(u64()); }  // IEEE 754
+  // A text that ends with a NUL, which is skipped. Without one in the rest the read is beyond the end.
+  std::string_view text() {
+    const void* const end = size_ == 0 ? nullptr : std::memchr(data_, 0, size_);
+    if (end == nullptr) {
+      take(size_ + 1);
+      return {};
+    }
+    const auto length = static_cast<std::size_t>(static_cast<const std::uint8_t*>(end) - data_);
+    const std::uint8_t* const taken = take(length + 1);
+    return {reinterpret_cast<const char*>(taken), length};
+  }
+  // A field of this size: the text up to its first NUL.
+  std::string_view text_field(std::size_t bytes) {
+    const std::uint8_t* const taken = take(bytes);
+    if (taken == nullptr) return {};
+    const std::string_view field(reinterpret_cast<const char*>(taken), bytes);
+    return field.substr(0, field.find('\0'));
+  }
   void skip(std::size_t bytes) { take(bytes); }
   // Returns the next bytes, nullptr if there are not as many.
   const std::uint8_t* take(std::size_t bytes) {
@@ -41,10 +65,18 @@ class ByteReader {
   }
 
  private:
-  std::uint32_t integer(std::size_t bytes) {
+  template <class Float, class Integer>
+  static Float same_bits(Integer bits) {
+    static_assert(sizeof(Float) == sizeof(Integer));
+    Float number;
+    std::memcpy(&number, &bits, sizeof(number));
+    return number;
+  }
+
+  std::uint64_t integer(std::size_t bytes) {
     const std::uint8_t* const taken = take(bytes);
     if (taken == nullptr) return 0;
-    std::uint32_t value = 0;
+    std::uint64_t value = 0;
     for (std::size_t i = 0; i < bytes; ++i) value = value << 8U | taken[little_endian_ ? bytes - 1 - i : i];
     return value;
   }
@@ -55,4 +87,4 @@ class ByteReader {
   bool ok_ = true;
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::runtime

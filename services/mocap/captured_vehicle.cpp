@@ -1,0 +1,81 @@
+#include "swiftlet/services/mocap/captured_vehicle.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include "swiftlet/io/text_file.hpp"
+#include "swiftlet/services/dds/discovery/peer_log.hpp"
+#include "swiftlet/services/runtime/log_label.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
+
+namespace swiftlet::services {
+
+CapturedVehicle::CapturedVehicle(const comms::Participant& participant, const mocap::VehicleBody& body,
+                                 const mocap::RoomFrame& room_frame, FrameThread& frames)
+    : HostedVehicle(body.vehicle),
+      body_(body),
+      room_frame_(room_frame),
+      frames_(frames),
+      node_(participant, body.vehicle, [this](const std::string& fault) { fail(fault); }),
+      poses_(node_.publish(comms::topics::kMocapPose)),
+      clock_(node_, runtime::monotonic_ns) {
+  comms::log_peers(node_);
+  frames_.add(*this);
+}
+
+CapturedVehicle::~CapturedVehicle() { frames_.remove(*this); }
+
+void CapturedVehicle::log_end() {
+  frames_.remove(*this);
+  spdlog::info("ended: {} frames, {} untracked{}", sequence_, untracked_,
+               withheld_ == 0 ? "" : fmt::format(", {} withheld: a clock was unknown", withheld_));
+}
+
+void CapturedVehicle::wait_for_frame() { clock_.ask_if_due(); }
+
+void CapturedVehicle::take(const mocap::SourceFrame& frame, const mocap::Source& source) {
+  clock_.ask_if_due();
+  if (source.revision() != revision_) find_body(source);
+  std::optional<plant::PoseSample> sample = sample_of(frame);
+  if (!sample) return;
+  const std::optional<std::int64_t> stamp_ns =
+      frame.exposed_ns ? clock_.to_vehicle(*frame.exposed_ns) : std::nullopt;
+  if (!stamp_ns) {
+    ++withheld_;
+    return;
+  }
+  sample->stamp_ns = *stamp_ns;
+  sample->sequence = ++sequence_;
+  if (!sample->tracked) ++untracked_;
+  poses_.publish(comms::to_message(*sample));
+}
+
+void CapturedVehicle::find_body(const mocap::Source& source) {
+  const std::optional<std::size_t> before = index_;
+  const bool is_first = revision_ == ~std::uint64_t{0};
+  revision_ = source.revision();
+  index_ = mocap::find_body(source.bodies(), body_);
+  if (!index_ && (before || is_first)) {
+    spdlog::warn("the motion capture has no {}; it has {}", body_.body_text(),
+                 runtime::printable(mocap::to_string(source.bodies())));
+  } else if (index_ && !before) {
+    const mocap::Body& body = source.bodies()[*index_];
+    spdlog::info("{} is body '{}' with number {}", name(), runtime::printable(body.name), body.id);
+  }
+}
+
+std::optional<plant::PoseSample> CapturedVehicle::sample_of(const mocap::SourceFrame& frame) const {
+  plant::PoseSample sample;
+  for (const mocap::BodyPose& pose : frame.poses) {
+    if (!index_ || pose.body != *index_) continue;
+    sample.tracked = pose.tracked;
+    if (!pose.tracked) return sample;
+    const mocap::NedPose ned = room_frame_.vehicle_pose(pose.position, pose.q_room_from_body, body_);
+    sample.position_ned = ned.position_ned;
+    sample.q_ned_from_frd = ned.q_ned_from_frd;
+    return sample;
+  }
+  if (!frame.is_complete) return std::nullopt;
+  return sample;
+}
+
+}  // namespace swiftlet::services
