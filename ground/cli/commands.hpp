@@ -32,6 +32,9 @@ Command add_status_command(runtime::CommandLine root);
 Command add_watch_command(runtime::CommandLine root);
 Command add_list_command(runtime::CommandLine root);  // all vehicles of the domain
 
+// Motion capture, without a vehicle's processes: `mocap list`, `mocap watch`, `mocap calibrate`.
+Command add_mocap_command(runtime::CommandLine root);
+
 // The network.
 Command add_discovery_server_command(runtime::CommandLine root);
 Command add_doctor_command(runtime::CommandLine root);  // `doctor network`

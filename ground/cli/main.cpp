@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
       ground::add_status_command(root),
       ground::add_watch_command(root),
       ground::add_list_command(root),
+      ground::add_mocap_command(root),
       ground::add_discovery_server_command(root),
       ground::add_doctor_command(root),
       ground::add_report_command(root),

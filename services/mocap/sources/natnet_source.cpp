@@ -190,7 +190,7 @@ void NatNetSource::meet_server() {
   }
   is_met_ = true;
   unanswered_echoes_ = 0;
-  models_due_ = {};
+  models_due_ = echo_due_ = keep_alive_due_ = {};
   silent_since_ = Clock::now();
 }
 

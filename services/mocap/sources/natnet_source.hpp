@@ -30,6 +30,7 @@ class NatNetSource final : public Source {
   bool receive(SourceFrame& frame, std::chrono::milliseconds timeout) override;
   std::string description() const override;
   const NatNetSession& session() const { return session_; }
+  std::uint16_t command_port() const { return commands_.port(); }
 
  private:
   using Time = std::chrono::steady_clock::time_point;
