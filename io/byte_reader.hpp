@@ -24,7 +24,7 @@ class ByteReader {
   std::uint32_t u32() { return static_cast<std::uint32_t>(integer(4)); }
   std::uint64_t u64() { return integer(8); }
   std::int32_t i32() { return static_cast<std::int32_t>(u32()); }
-  float f32() { return same_bits<float>(u32()); }     // IEEE 754
+  float f32() { return same_bits<float>(u32()); }    // IEEE 754
   double f64() { return same_bits<double>(u64()); }  // IEEE 754
   // A text that ends with a NUL, which is skipped. Without one in the rest the read is beyond the end.
   std::string_view text() {

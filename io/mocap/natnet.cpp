@@ -15,7 +15,14 @@ constexpr std::size_t kMarkerBytes = 26;     // of a labelled marker: number, po
 constexpr std::size_t kMostModels = 10'000;  // definitions of all kinds
 constexpr std::size_t kMostPadding = 4;      // bytes behind the last definition
 
-enum class ModelKind { kMarkerSet = 0, kRigidBody = 1, kSkeleton = 2, kForcePlate = 3, kDevice = 4, kCamera = 5 };
+enum class ModelKind {
+  kMarkerSet = 0,
+  kRigidBody = 1,
+  kSkeleton = 2,
+  kForcePlate = 3,
+  kDevice = 4,
+  kCamera = 5
+};
 
 // Flags.
 constexpr unsigned kTracked = 1;        // of a rigid body
@@ -199,7 +206,8 @@ void skip_channel_names(ByteReader& in) {
 void skip_force_plate_definition(ByteReader& in) {
   in.skip(4);  // number
   in.text();   // serial number
-  in.skip(8 + kPositionBytes + 4 * 144 + 4 * kPositionBytes + 8);  // size, origin, calibration, corners, types
+  in.skip(8 + kPositionBytes + 4 * 144 + 4 * kPositionBytes +
+          8);  // size, origin, calibration, corners, types
   skip_channel_names(in);
 }
 

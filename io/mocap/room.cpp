@@ -26,7 +26,8 @@ VehicleBody read_vehicle(const std::string& name, const ConfigNode& node) {
     vehicle.lever_arm_frd = arm->vector3(runtime::between(-kLongestLeverArmM, kLongestLeverArmM));
   if (const auto turn = node.find("misalignment_rad")) {
     vehicle.misalignment = turn->vector3(runtime::between(-kPi, kPi));
-    if (vehicle.misalignment.norm() > kPi) turn->fail("is longer than pi, must be a rotation vector of at most pi");
+    if (vehicle.misalignment.norm() > kPi)
+      turn->fail("is longer than pi, must be a rotation vector of at most pi");
   }
   return vehicle;
 }
@@ -43,12 +44,13 @@ void read_source(const ConfigNode& root, Room& room) {
     root.at("source").fail("is vrpn, which needs the key server");
   if (room.source == SourceKind::kReplay && room.file.empty())
     root.at("source").fail("is replay, which needs the key file");
-  if (room.source != SourceKind::kReplay && !room.file.empty()) root.at("file").fail("is only for the source replay");
+  if (room.source != SourceKind::kReplay && !room.file.empty())
+    root.at("file").fail("is only for the source replay");
 }
 
 Room read_room(const ConfigNode& root) {
-  root.allow({"description", "source", "server", "interface", "file", "frame", "origin_m", "north_rad", "latency_s",
-              "vehicles"});
+  root.allow({"description", "source", "server", "interface", "file", "frame", "origin_m", "north_rad",
+              "latency_s", "vehicles"});
   Room room;
   if (const auto description = root.find("description")) description->text();
   read_source(root, room);
@@ -116,7 +118,8 @@ RoomFrame::RoomFrame(const Room& room)
       q_ned_from_frd_(Eigen::AngleAxisd(-room.north_rad, Eigen::Vector3d::UnitZ())),
       origin_(room.origin) {}
 
-NedPose RoomFrame::body_pose(const Eigen::Vector3d& position, const Eigen::Quaterniond& q_room_from_body) const {
+NedPose RoomFrame::body_pose(const Eigen::Vector3d& position,
+                             const Eigen::Quaterniond& q_room_from_body) const {
   const Eigen::Quaterniond q_ned_from_room = q_ned_from_frd_ * q_frd_from_room_;
   NedPose pose;
   pose.position_ned = q_ned_from_room * (position - origin_);

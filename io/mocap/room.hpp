@@ -25,7 +25,8 @@ enum class Axes {
 struct VehicleBody {
   std::string vehicle;
   std::optional<std::string> body;  // name of the body
-  std::optional<std::int32_t> id;   // number of the body, of the sensor with VRPN; name, number or both are given
+  std::optional<std::int32_t>
+      id;  // number of the body, of the sensor with VRPN; name, number or both are given
   // From the body's origin, which the motion capture reports, to the vehicle's centre of mass.
   Eigen::Vector3d lever_arm_frd = Eigen::Vector3d::Zero();  // m
   // Rotation vector that turns the axes of the body into those of the vehicle, rad. Both are forward, right, down.
@@ -41,8 +42,10 @@ struct Room {
   std::string file;       // of a replay
   Axes axes = Axes::kZUp;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // of the NED frame, in the axes of the motion capture, m
-  double north_rad = 0.0;  // direction of north, from the forward axis of the motion capture; clockwise seen from above
-  double latency_s = 0.0;  // from the exposure to the stamp of the server, or to the arrival if it sends no stamp
+  double north_rad =
+      0.0;  // direction of north, from the forward axis of the motion capture; clockwise seen from above
+  double latency_s =
+      0.0;  // from the exposure to the stamp of the server, or to the arrival if it sends no stamp
   std::vector<VehicleBody> vehicles;
 };
 

@@ -15,7 +15,9 @@ constexpr std::size_t kAlignment = 8;
 constexpr std::size_t kLongestName = 100;
 constexpr std::int64_t kLatestSecond = 9'000'000'000;  // an int64 of ns holds it
 
-constexpr std::size_t aligned(std::size_t bytes) { return (bytes + kAlignment - 1) / kAlignment * kAlignment; }
+constexpr std::size_t aligned(std::size_t bytes) {
+  return (bytes + kAlignment - 1) / kAlignment * kAlignment;
+}
 
 void put(Bytes& out, std::uint32_t value) {
   for (int shift = 24; shift >= 0; shift -= 8)
@@ -28,7 +30,7 @@ const char* fault_of_cookie(const std::uint8_t* cookie) {
   const std::string_view text(reinterpret_cast<const char*>(cookie), kCookieBytes);
   if (text.substr(0, kMagic.size()) == kMagic) return nullptr;
   return text.substr(0, 11) == kMagic.substr(0, 11) ? "it has another version of VRPN than 7"
-                                                     : "it does not speak VRPN";
+                                                    : "it does not speak VRPN";
 }
 
 Parsed parse_message(const std::uint8_t* data, std::size_t size, Message& message) {

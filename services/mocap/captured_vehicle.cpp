@@ -8,6 +8,11 @@
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
+namespace {
+
+constexpr std::int64_t kPatienceNs = 2'000'000'000;  // until a body that is missing is warned of
+
+}  // namespace
 
 CapturedVehicle::CapturedVehicle(const comms::Participant& participant, const mocap::VehicleBody& body,
                                  const mocap::RoomFrame& room_frame, FrameThread& frames)
@@ -35,6 +40,7 @@ void CapturedVehicle::wait_for_frame() { clock_.ask_if_due(); }
 void CapturedVehicle::take(const mocap::SourceFrame& frame, const mocap::Source& source) {
   clock_.ask_if_due();
   if (source.revision() != revision_) find_body(source);
+  warn_if_missing(frame, source);
   std::optional<plant::PoseSample> sample = sample_of(frame);
   if (!sample) return;
   const std::optional<std::int64_t> stamp_ns =
@@ -50,17 +56,25 @@ void CapturedVehicle::take(const mocap::SourceFrame& frame, const mocap::Source&
 }
 
 void CapturedVehicle::find_body(const mocap::Source& source) {
-  const std::optional<std::size_t> before = index_;
-  const bool is_first = revision_ == ~std::uint64_t{0};
+  const bool was_missing = !index_;
   revision_ = source.revision();
   index_ = mocap::find_body(source.bodies(), body_);
-  if (!index_ && (before || is_first)) {
-    spdlog::warn("the motion capture has no {}; it has {}", body_.body_text(),
-                 runtime::printable(mocap::to_string(source.bodies())));
-  } else if (index_ && !before) {
-    const mocap::Body& body = source.bodies()[*index_];
-    spdlog::info("{} is body '{}' with number {}", name(), runtime::printable(body.name), body.id);
+  if (!index_ || !was_missing) return;
+  const mocap::Body& body = source.bodies()[*index_];
+  spdlog::info("{} is body '{}' with number {}", name(), runtime::printable(body.name), body.id);
+}
+
+void CapturedVehicle::warn_if_missing(const mocap::SourceFrame& frame, const mocap::Source& source) {
+  if (index_) {
+    missing_since_ns_.reset();
+    has_warned_ = false;
+    return;
   }
+  if (!missing_since_ns_) missing_since_ns_ = frame.arrived_ns;
+  if (has_warned_ || frame.arrived_ns - *missing_since_ns_ < kPatienceNs) return;
+  has_warned_ = true;
+  spdlog::warn("the motion capture has no {}; it has {}", body_.body_text(),
+               runtime::printable(mocap::to_string(source.bodies())));
 }
 
 std::optional<plant::PoseSample> CapturedVehicle::sample_of(const mocap::SourceFrame& frame) const {

@@ -33,6 +33,7 @@ class CapturedVehicle final : public runtime::HostedVehicle, public FrameTaker {
 
  private:
   void find_body(const mocap::Source& source);
+  void warn_if_missing(const mocap::SourceFrame& frame, const mocap::Source& source);
   // The pose of the vehicle in a frame; nullopt: the frame is about other bodies.
   std::optional<plant::PoseSample> sample_of(const mocap::SourceFrame& frame) const;
 
@@ -40,7 +41,9 @@ class CapturedVehicle final : public runtime::HostedVehicle, public FrameTaker {
   const mocap::RoomFrame room_frame_;
   FrameThread& frames_;
   std::optional<std::size_t> index_;  // of the body in the source's list
-  std::uint64_t revision_ = ~std::uint64_t{0};
+  std::uint64_t revision_ = ~std::uint64_t{0};  // none of a source
+  std::optional<std::int64_t> missing_since_ns_;
+  bool has_warned_ = false;
   std::uint64_t sequence_ = 0;
   std::uint64_t untracked_ = 0;
   std::uint64_t withheld_ = 0;

@@ -46,7 +46,7 @@ struct Options {
 
 void add_options(runtime::CommandLine app, Options& options) {
   mocap::add_source_options(app, options.source, {kSimulation});
-  app.add_option("--simulation", options.simulation, "Simulation file").show_default();
+  app.add_option("--simulation", options.simulation, "Simulation file of --source simulation").show_default();
   app.add_option("--seed", options.capture.seed,
                  "Random seed of pose errors and dropouts; of several vehicles each has the next number")
       .range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max())
@@ -121,15 +121,17 @@ void check_capture(const Options& options) {
   if (options.capture.clock == runtime::Clock::kLockstep)
     throw std::invalid_argument("--clock lockstep: only with --source simulation");
   if (options.source.room.empty() && options.source.frame.empty())
-    throw std::invalid_argument("--frame is required without --room: zup or yup, as the motion capture is set");
+    throw std::invalid_argument(
+        "--frame is required without --room: zup or yup, as the motion capture is set");
 }
 
 void log_end(const mocap::Source& source) {
   const mocap::SourceStatistics& statistics = source.statistics();
-  spdlog::info("motion capture ended: {}: {} frames, {} lost, {} late, {} refused{}, {} of other servers, {} restarts",
-               source.description(), statistics.frames, statistics.lost, statistics.late, statistics.refused,
-               statistics.last_refusal.empty() ? "" : " (" + statistics.last_refusal + ")", statistics.strangers,
-               statistics.restarts);
+  spdlog::info(
+      "motion capture ended: {}: {} frames, {} lost, {} late, {} refused{}, {} of other servers, {} restarts",
+      source.description(), statistics.frames, statistics.lost, statistics.late, statistics.refused,
+      statistics.last_refusal.empty() ? "" : " (" + statistics.last_refusal + ")", statistics.strangers,
+      statistics.restarts);
 }
 
 void capture(const Options& options) {
@@ -176,7 +178,8 @@ int main(int argc, char** argv) {
   options.process.realtime.priority = 50;
   return runtime::run_process(
       {"swiftlet-mocap",
-       "Publishes the poses of vehicles: those of a motion capture, or those that a simulated one makes of the ground "
+       "Publishes the poses of vehicles: those of a motion capture, or those that a simulated one makes of "
+       "the ground "
        "truth of simulated vehicles.",
        "--source natnet --frame yup --vehicle-name kl1..kl4", runtime::version_text()},
       argc, argv, [&](runtime::CommandLine app) { services::add_options(app, options); },

@@ -24,7 +24,8 @@ void fuzz_natnet(const std::uint8_t* data, std::size_t size, natnet::Version ver
   natnet::Frame frame;
   if (natnet::parse_frame(message->payload, version, frame) == nullptr) {
     for (const natnet::RigidBody& body : frame.bodies)
-      tests::demand(!body.tracked || is_pose(body.position, body.q_room_from_body), "a tracked body has a pose");
+      tests::demand(!body.tracked || is_pose(body.position, body.q_room_from_body),
+                    "a tracked body has a pose");
   }
   std::vector<natnet::BodyDefinition> bodies;
   natnet::parse_models(message->payload, version, bodies);
@@ -62,7 +63,8 @@ void fuzz_vicon(const std::uint8_t* data, std::size_t size) {
   vicon::Frame frame;
   if (vicon::parse_frame(data, size, frame) != nullptr) return;
   for (const vicon::Object& object : frame.objects)
-    tests::demand(!object.tracked || is_pose(object.position, object.q_room_from_body), "a tracked object has a pose");
+    tests::demand(!object.tracked || is_pose(object.position, object.q_room_from_body),
+                  "a tracked object has a pose");
 }
 
 }  // namespace

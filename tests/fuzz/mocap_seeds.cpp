@@ -80,6 +80,7 @@ int main(int argc, char** argv) {
   const Folder folder(argv[1]);
   write_natnet(folder);
   write_vrpn(folder);
-  folder.write("vicon", 3, 0, swiftlet::tests::vicon_frame(1, {{"kl1", {1, 2, 3, 0, 0, 1}}, {"kl2", {}}}, 256));
+  folder.write("vicon", 3, 0,
+               swiftlet::tests::vicon_frame(1, {{"kl1", {1, 2, 3, 0, 0, 1}}, {"kl2", {}}}, 256));
   return 0;
 }

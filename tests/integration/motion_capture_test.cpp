@@ -1,6 +1,7 @@
 // Flies through real motion capture protocols: a scripted server sends what the plant's ground truth says, as cameras would
 // see it, and swiftlet-mocap brings it to control.
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -15,6 +17,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/io/mocap/room.hpp"
 #include "tests/support/hop_mission.hpp"
 #include "tests/support/natnet_server.hpp"
 #include "tests/support/separate_processes.hpp"
@@ -27,7 +30,6 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using nlohmann::json;
 
-constexpr std::uint64_t kTruthPerFrame = 5;  // 100 frames per second
 constexpr std::int64_t kHourNs = 3'600'000'000'000;
 constexpr std::int32_t kBody = 42;
 
@@ -63,13 +65,20 @@ Pose with_z_up(const Pose& ned) {
   return pose;
 }
 
+natnet::Frame frame_of(natnet::Body body, std::int32_t number, const Pose& pose) {
+  for (int i = 0; i < 3; ++i) body.position[i] = static_cast<float>(pose.position[i]);
+  for (int i = 0; i < 4; ++i) body.q_xyzw[i] = static_cast<float>(pose.attitude.coeffs()[i]);
+  natnet::Frame frame;
+  frame.number = number;
+  frame.bodies = {body};
+  return frame;
+}
+
 class MotionCapture : public SeparateProcesses {
  protected:
-  // Calls `show` with each fifth ground truth.
+  // Calls `show` with each ground truth: 100 times per second.
   void film(std::function<void(const comms::msg::GroundTruth&)> show) {
-    cameras_ = watcher_->subscribe<comms::msg::GroundTruth>(comms::topics::kGroundTruth, [show](const auto& truth) {
-      if (truth.sequence_number() % kTruthPerFrame == 0) show(truth);
-    });
+    cameras_ = watcher_->subscribe<comms::msg::GroundTruth>(comms::topics::kGroundTruth, std::move(show));
   }
   // Starts all processes with this room, and waits until control has poses.
   void start_with(const std::string& room) {
@@ -80,15 +89,32 @@ class MotionCapture : public SeparateProcesses {
     mocap_ = start("swiftlet-mocap", {"--room", file});
     wait_until_ready();
   }
-  // The tracking error of a mission, which is that of the real pose.
-  double flown_rms_m(const std::string& mission) {
-    const ProgramResult result =
-        run_program("swiftlet",
-                    {"fly", mission, "--attach", "--localhost-only", "--domain", std::to_string(lock_.domain()), "--json",
-                     "--record", (folder_.path() / "record").string()},
-                    folder_.path(), kStuck);
+  // The tracking error of a mission, which is that of the real pose. A flight during which the machine stalls is repeated, twice
+  // at most: the vehicle's clock then stands still, and poses are withheld.
+  double flown_rms_m(const std::string& room, const std::string& mission) {
+    ProgramResult result;
+    for (int attempt = 0; attempt < 3; ++attempt) {
+      start_with(room);
+      if (HasFatalFailure()) break;
+      result = run_program("swiftlet",
+                           {"fly", mission, "--attach", "--localhost-only", "--domain", std::to_string(lock_.domain()), "--json",
+                            "--record", (folder_.path() / "record").string(), "--replace"},
+                           folder_.path(), kStuck);
+      for (const auto& process : {mocap_.get(), plant_.get(), control_.get()}) {
+        process->signal(SIGTERM);
+        EXPECT_EQ(process->wait(kStuck), 0) << process->errors();
+      }
+      if (behind_real_time_ms() < 100.0) break;
+    }
     EXPECT_EQ(result.exit_code, 0) << result.errors << mocap_->errors() << control_->errors();
     return result.exit_code == 0 ? json::parse(result.output).at("rms_3d_m").get<double>() : 1e9;
+  }
+  // By how much the plant fell behind in total, from its last log line.
+  double behind_real_time_ms() const {
+    const std::string text = plant_->errors();
+    const std::size_t at = text.rfind("behind real time ");
+    const std::size_t comma = text.find(", ", at);
+    return at == std::string::npos || comma == std::string::npos ? 0.0 : std::stod(text.substr(comma + 2));
   }
   std::string hop() const {
     const std::string file = (folder_.path() / "hop.yaml").string();
@@ -107,24 +133,15 @@ TEST_F(MotionCapture, FliesTheSquareThroughNatNet) {
   NatNetServer server(settings);
   server.set_models({{"drone", kBody}});
   film([&server, number = 0](const auto& truth) mutable {
-    const Pose pose = with_y_up(body_of(truth));
-    natnet::Frame frame;
-    frame.number = ++number;
-    frame.with_others = false;
-    natnet::Body body{"drone", kBody};
-    for (int i = 0; i < 3; ++i) body.position[i] = static_cast<float>(pose.position[i]);
-    for (int i = 0; i < 4; ++i) body.q_xyzw[i] = static_cast<float>(pose.attitude.coeffs()[i]);
-    frame.bodies = {body};
-    server.send(frame);
+    server.send(frame_of({"drone", kBody}, ++number, with_y_up(body_of(truth))));
   });
-  start_with("source: natnet\nserver: " + server.name() + "\ninterface: 127.0.0.1\nframe: yup\nvehicles:\n  kl1: {body: drone, " +
-             kBodyKeys + "}\n");
-  const double rms_m = flown_rms_m("square");
-  RecordProperty("rms_3d_mm", static_cast<int>(std::lround(1e3 * rms_m)));
+  const std::string room = "source: natnet\nserver: " + server.name() +
+                           "\ninterface: 127.0.0.1\nframe: yup\nvehicles:\n  kl1: {body: drone, " + kBodyKeys + "}\n";
+  const double rms_m = flown_rms_m(room, "square");
+  RecordProperty("rms_3d_um", static_cast<int>(std::lround(1e6 * rms_m)));
   EXPECT_LT(rms_m, 0.005);
-  mocap_->signal(SIGTERM);
-  EXPECT_EQ(mocap_->wait(kStuck), 0) << mocap_->errors();
-  EXPECT_NE(mocap_->errors().find("kl1 is body 'drone' with number 42"), std::string::npos) << mocap_->errors();
+  EXPECT_NE(mocap_->errors().find("kl1 is body 'drone' with number 42"), std::string::npos)
+      << mocap_->errors();
 }
 
 TEST_F(MotionCapture, FliesThroughVrpn) {
@@ -138,8 +155,9 @@ TEST_F(MotionCapture, FliesThroughVrpn) {
     const Eigen::Vector4d q = pose.attitude.coeffs();
     server.send(1, {p.x(), p.y(), p.z(), q[0], q[1], q[2], q[3]});
   });
-  start_with("source: vrpn\nserver: " + server.name() + "\nframe: zup\nvehicles:\n  kl1: {body: drone, " + kBodyKeys + "}\n");
-  EXPECT_LT(flown_rms_m(hop()), 0.01);
+  const std::string room =
+      "source: vrpn\nserver: " + server.name() + "\nframe: zup\nvehicles:\n  kl1: {body: drone, " + kBodyKeys + "}\n";
+  EXPECT_LT(flown_rms_m(room, hop()), 0.01);
 }
 
 // GIVEN a body that is lost in flight THEN control hears so at once, and the vehicle lands as it does without poses.
@@ -148,25 +166,74 @@ TEST_F(MotionCapture, ReportsABodyThatIsLost) {
   server.set_models({{"kl1", kBody}});
   std::atomic<bool> tracked{true};
   film([&, number = 0](const auto& truth) mutable {
-    const Pose pose = with_y_up(body_of(truth));
-    natnet::Frame frame;
-    frame.number = ++number;
     natnet::Body body{"kl1", kBody};
-    for (int i = 0; i < 3; ++i) body.position[i] = static_cast<float>(pose.position[i]);
-    for (int i = 0; i < 4; ++i) body.q_xyzw[i] = static_cast<float>(pose.attitude.coeffs()[i]);
     body.tracked = tracked;
-    frame.bodies = {body};
-    server.send(frame);
+    server.send(frame_of(body, ++number, with_y_up(body_of(truth))));
   });
-  start_with("source: natnet\nserver: " + server.name() + "\ninterface: 127.0.0.1\nframe: yup\nvehicles:\n  kl1: {id: 42, " +
-             kBodyKeys + "}\n");
+  start_with("source: natnet\nserver: " + server.name() +
+             "\ninterface: 127.0.0.1\nframe: yup\nvehicles:\n  kl1: {id: 42, " + kBodyKeys + "}\n");
   ASSERT_NO_FATAL_FAILURE(hover());
   Inbox<bool> untracked;
-  const auto poses = watcher_->subscribe<comms::msg::MocapPose>(
-      comms::topics::kMocapPose, [&](const auto& pose) { if (!pose.tracked()) untracked.put(true); });
+  const auto poses =
+      watcher_->subscribe<comms::msg::MocapPose>(comms::topics::kMocapPose, [&](const auto& pose) {
+        if (!pose.tracked()) untracked.put(true);
+      });
   tracked = false;
   EXPECT_TRUE(untracked.wait_for_count(1));
   EXPECT_TRUE(wait_until_rotors_off()) << mode_log();
+}
+
+// GIVEN a body that sits askew, of a vehicle that stands and then is turned about its centre THEN the room file says how.
+TEST(MotionCaptureTool, CalibratesABodyAndListsIt) {
+  const TemporaryFolder folder;
+  NatNetServer server({});
+  server.set_models({{"drone", kBody}});
+  const std::string room = (folder.path() / "room.yaml").string();
+  std::ofstream(room) << "source: natnet\nserver: " << server.name()
+                      << "\ninterface: 127.0.0.1\nframe: yup\nvehicles:\n"
+                      << "  kl1: {body: drone, lever_arm_frd_m: [0, 0, 0], misalignment_rad: [0, 0, 0]}\n";
+  std::int32_t number = 0;
+  const auto send = [&](const Quaterniond& vehicle) {
+    comms::msg::GroundTruth truth;
+    truth.position_ned({1.0, 2.0, -0.5});
+    truth.q_ned_from_frd({vehicle.w(), vehicle.x(), vehicle.y(), vehicle.z()});
+    server.send(frame_of({"drone", kBody}, ++number, with_y_up(body_of(truth))));
+  };
+  Program calibrate(
+      "swiftlet",
+      {"mocap", "calibrate", "kl1", "--room", room, "--no-prompt", "--rest-time", "1", "--turn-time", "2"},
+      folder.path());
+  double turned = 0.0;
+  ASSERT_TRUE(eventually(
+      [&] {
+        const bool turns = calibrate.errors().find("Hold its centre of mass") != std::string::npos;
+        if (turns) turned += 0.02;
+        const Vector3d angles(0.6 * std::sin(3 * turned), 0.6 * std::sin(4 * turned),
+                              0.5 * std::sin(5 * turned));
+        const double angle = angles.norm();
+        send(angle < 1e-9 ? Quaterniond::Identity() : Quaterniond(Eigen::AngleAxisd(angle, angles / angle)));
+        return calibrate.exit_code().has_value();
+      },
+      kStuck, std::chrono::milliseconds(5)));
+  EXPECT_EQ(calibrate.exit_code(), 0) << calibrate.errors();
+  const mocap::Room written = mocap::load_room(room);
+  EXPECT_LT((mocap::find(written, "kl1")->lever_arm_frd - kLeverArm).norm(), 1e-4) << calibrate.output();
+  EXPECT_LT((mocap::find(written, "kl1")->misalignment - kMisalignment).norm(), 1e-4) << calibrate.output();
+
+  Program list("swiftlet", {"mocap", "list", "--room", room, "--json", "--time", "1"}, folder.path());
+  ASSERT_TRUE(eventually(
+      [&] {
+        send(Quaterniond::Identity());
+        return list.exit_code().has_value();
+      },
+      kStuck, std::chrono::milliseconds(5)));
+  EXPECT_EQ(list.exit_code(), 0) << list.errors();
+  const json listed = json::parse(list.output());
+  ASSERT_EQ(listed.at("bodies").size(), 1U);
+  EXPECT_EQ(listed.at("bodies")[0].at("body"), "drone");
+  EXPECT_EQ(listed.at("bodies")[0].at("id"), kBody);
+  EXPECT_EQ(listed.at("bodies")[0].at("tracked"), true);
+  EXPECT_GT(listed.at("bodies")[0].at("rate_hz").get<double>(), 10.0);
 }
 
 class MotionCaptureOptions : public testing::Test {
@@ -185,15 +252,22 @@ TEST_F(MotionCaptureOptions, ThatDoNotGoTogetherAreRefused) {
     std::string sentence;
   } cases[] = {
       {{"--server", "lab1"}, "--server: not with --source simulation"},
-      {{"--source", "natnet"}, "--frame is required without --room: zup or yup, as the motion capture is set"},
-      {{"--source", "natnet", "--frame", "zup", "--clock", "lockstep"}, "--clock lockstep: only with --source simulation"},
+      {{"--source", "natnet"},
+       "--frame is required without --room: zup or yup, as the motion capture is set"},
+      {{"--source", "natnet", "--frame", "zup", "--clock", "lockstep"},
+       "--clock lockstep: only with --source simulation"},
       {{"--source", "vrpn", "--frame", "zup"}, "--source vrpn needs --server"},
       {{"--source", "replay", "--frame", "zup"}, "--source replay needs --file"},
-      {{"--source", "vrpn", "--frame", "zup", "--server", "127.0.0.1:99999"}, "server: is '127.0.0.1:99999', must be"},
-      {{"--source", "vicon", "--frame", "zup", "--mocap-interface", "eth99"}, "interface: is 'eth99', must be"},
+      {{"--source", "vrpn", "--frame", "zup", "--server", "127.0.0.1:99999"},
+       "server: is '127.0.0.1:99999', must be"},
+      {{"--source", "vicon", "--frame", "zup", "--mocap-interface", "eth99"},
+       "interface: is 'eth99', must be"},
       {{"--room", "optitrack", "--vehicle-name", "kl9"}, "vehicles: does not have the vehicle kl9"},
   };
-  for (const auto& one : cases) EXPECT_NE(refusal(one.arguments).find(one.sentence), std::string::npos) << one.sentence << "\n" << refusal(one.arguments);
+  for (const auto& one : cases) {
+    const std::string sentence = refusal(one.arguments);
+    EXPECT_NE(sentence.find(one.sentence), std::string::npos) << sentence;
+  }
 }
 
 }  // namespace

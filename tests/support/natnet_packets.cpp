@@ -81,7 +81,9 @@ void body_definition(Writer& out, Version version, const std::string& name, std:
   for (int i = 0; i < markers && version.major >= 4; ++i) out.text("Marker");
 }
 
-Bytes marker_set_definition() { return Writer().text("all").put(std::int32_t{2}).text("a").text("b").bytes(); }
+Bytes marker_set_definition() {
+  return Writer().text("all").put(std::int32_t{2}).text("a").text("b").bytes();
+}
 
 Bytes skeleton_definition(Version version, bool with_markers) {
   Writer out;
@@ -93,7 +95,13 @@ Bytes skeleton_definition(Version version, bool with_markers) {
 
 Bytes force_plate_definition() {
   Writer out;
-  out.put(std::int32_t{1}).text("serial").put(0.5F).put(0.4F).vector(0, 0, 0).zeros(12 * 12 * 4).zeros(12 * 4);
+  out.put(std::int32_t{1})
+      .text("serial")
+      .put(0.5F)
+      .put(0.4F)
+      .vector(0, 0, 0)
+      .zeros(12 * 12 * 4)
+      .zeros(12 * 4);
   return out.put(std::int32_t{0}).put(std::int32_t{0}).put(std::int32_t{2}).text("Fx").text("Fy").bytes();
 }
 
@@ -139,8 +147,7 @@ Bytes frame(Version version, const Frame& frame) {
   out.put(frame.number);
   section(out, version, others ? 1 : 0,
           others ? Writer().text("all").put(std::int32_t{1}).vector(1, 2, 3).bytes() : Bytes{});
-  section(out, version, others ? 2 : 0,
-          others ? Writer().vector(1, 2, 3).vector(4, 5, 6).bytes() : Bytes{});
+  section(out, version, others ? 2 : 0, others ? Writer().vector(1, 2, 3).vector(4, 5, 6).bytes() : Bytes{});
   Writer bodies;
   for (const Body& body : frame.bodies) rigid_body(bodies, body);
   section(out, version, static_cast<std::int32_t>(frame.bodies.size()), bodies.bytes());
@@ -155,7 +162,12 @@ Bytes frame(Version version, const Frame& frame) {
     if (others) {
       assets.put(std::int32_t{7}).put(std::int32_t{1});
       rigid_body(assets, {"part", 1});
-      assets.put(std::int32_t{1}).put(std::int32_t{1}).vector(0, 0, 0).put(0.01F).put(std::int16_t{0}).put(0.0F);
+      assets.put(std::int32_t{1})
+          .put(std::int32_t{1})
+          .vector(0, 0, 0)
+          .put(0.01F)
+          .put(std::int16_t{0})
+          .put(0.0F);
     }
     section(out, version, others ? 1 : 0, assets.bytes());
   }

@@ -28,7 +28,8 @@ struct Frame {
   std::uint64_t received_ticks = 0;
   std::uint64_t sent_ticks = 0;
   bool models_changed = false;
-  bool with_others = true;  // marker sets, skeletons, assets, force plates and devices stand beside the bodies
+  bool with_others =
+      true;  // marker sets, skeletons, assets, force plates and devices stand beside the bodies
   std::vector<Body> bodies;
 };
 

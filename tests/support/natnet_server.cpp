@@ -19,8 +19,10 @@ constexpr std::uint32_t kGroup = 0xefff2a63;  // 239.255.42.99
 }  // namespace
 
 NatNetServer::NatNetServer(Settings settings)
-    : settings_(std::move(settings)), commands_(settings_.address, settings_.port, true), thread_([this] { run(); }) {
-  in_addr interface{};
+    : settings_(std::move(settings)),
+      commands_(settings_.address, settings_.port, true),
+      thread_([this] { run(); }) {
+  in_addr interface {};
   ::inet_pton(AF_INET, settings_.address.c_str(), &interface);
   ::setsockopt(commands_.fd(), IPPROTO_IP, IP_MULTICAST_IF, &interface, sizeof interface);
 }
@@ -52,7 +54,8 @@ bool NatNetServer::send(natnet::Frame frame, std::int64_t latency_ns) {
   frame.exposed_ticks = ticks(now_ns - latency_ns);
   frame.received_ticks = frame.sent_ticks = ticks(now_ns);
   const mocap::Endpoint group{kGroup, settings_.server.data_port};
-  return commands_.send(natnet::frame(settings_.server.version, frame), settings_.server.multicast ? group : *client_);
+  return commands_.send(natnet::frame(settings_.server.version, frame),
+                        settings_.server.multicast ? group : *client_);
 }
 
 void NatNetServer::run() {

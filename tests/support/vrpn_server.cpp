@@ -28,7 +28,8 @@ void put(vrpn::Bytes& out, Number number) {
 }  // namespace
 
 VrpnServer::VrpnServer(Settings settings)
-    : settings_(std::move(settings)), listener_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
+    : settings_(std::move(settings)),
+      listener_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
   const int yes = 1;
   ::setsockopt(listener_.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   sockaddr_in address{};
@@ -73,7 +74,8 @@ void VrpnServer::accept() {
   write({settings_.cookie.begin(), settings_.cookie.end()});
   write(vrpn::description(vrpn::kSenderDescription, 0, "VRPN Control"));
   for (std::size_t i = 0; i < settings_.trackers.size(); ++i)
-    write(vrpn::description(vrpn::kSenderDescription, static_cast<std::int32_t>(i + 1), settings_.trackers[i]));
+    write(
+        vrpn::description(vrpn::kSenderDescription, static_cast<std::int32_t>(i + 1), settings_.trackers[i]));
   write(vrpn::description(vrpn::kTypeDescription, kPose, vrpn::kPoseType));
   write(vrpn::description(vrpn::kTypeDescription, kPing, vrpn::kPingType));
   write(vrpn::description(vrpn::kTypeDescription, kPong, vrpn::kPongType));
@@ -92,7 +94,8 @@ void VrpnServer::read() {
   if (received_.size() < begin) return;
   is_connected_ = true;
   vrpn::Message message;
-  while (vrpn::parse_message(received_.data() + begin, received_.size() - begin, message) == vrpn::Parsed::kMessage) {
+  while (vrpn::parse_message(received_.data() + begin, received_.size() - begin, message) ==
+         vrpn::Parsed::kMessage) {
     answer(message);
     begin += message.bytes;
   }
@@ -109,7 +112,8 @@ void VrpnServer::answer(const vrpn::Message& message) {
   write(vrpn::message(runtime::system_ns() + settings_.clock_offset_ns, message.sender, kPong, {}));
 }
 
-bool VrpnServer::send(std::size_t tracker, const double (&pose)[7], std::int64_t age_ns, std::int32_t sensor) {
+bool VrpnServer::send(std::size_t tracker, const double (&pose)[7], std::int64_t age_ns,
+                      std::int32_t sensor) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!is_connected_) return false;
   vrpn::Bytes payload;

@@ -21,7 +21,9 @@ struct BodyStatistics {
   std::optional<std::int64_t> tracked_ns;
   mocap::BodyPose last;
 
-  double mean_latency_s() const { return latencies == 0 ? 0.0 : latency_sum_s / static_cast<double>(latencies); }
+  double mean_latency_s() const {
+    return latencies == 0 ? 0.0 : latency_sum_s / static_cast<double>(latencies);
+  }
 };
 
 // One entry for each of source.bodies(), in their order. Begins anew when these change.

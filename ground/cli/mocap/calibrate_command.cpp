@@ -48,8 +48,8 @@ void wait_for_enter(const Options& options, const std::string& request) {
 }
 
 // The tracked poses of the vehicle's body for this time, from the first on.
-Recording record(mocap::Source& source, const mocap::RoomFrame& frame, const mocap::VehicleBody& vehicle, double time_s,
-                 const runtime::StopSignal& stop) {
+Recording record(mocap::Source& source, const mocap::RoomFrame& frame, const mocap::VehicleBody& vehicle,
+                 double time_s, const runtime::StopSignal& stop) {
   Recording recording;
   mocap::SourceFrame received;
   while (source.receive(received, std::chrono::milliseconds(0))) {  // what came while the user read
@@ -87,11 +87,17 @@ void print(const Options& options, const Misalignment& misalignment, const Lever
   }
   std::printf("%s, each with two standard deviations:\n", options.vehicle.c_str());
   for (int i = 0; i < 3; ++i)
-    std::printf("  misalignment about %-8s %8.2f mrad (within %.2f)\n", i == 0 ? "forward" : i == 1 ? "right" : "down",
+    std::printf("  misalignment about %-8s %8.2f mrad (within %.2f)\n",
+                i == 0   ? "forward"
+                : i == 1 ? "right"
+                         : "down",
                 1e3 * misalignment.vector[i], 2e3 * misalignment.deviation[i]);
   for (int i = 0; i < 3; ++i)
-    std::printf("  lever arm %-17s %8.2f mm   (within %.2f)\n", i == 0 ? "forward" : i == 1 ? "right" : "down", 1e3 * arm.frd[i],
-                2e3 * arm.deviation[i]);
+    std::printf("  lever arm %-17s %8.2f mm   (within %.2f)\n",
+                i == 0   ? "forward"
+                : i == 1 ? "right"
+                         : "down",
+                1e3 * arm.frd[i], 2e3 * arm.deviation[i]);
   std::printf("  the centre moved by %.2f mm RMS while the vehicle was turned\n", 1e3 * arm.residual_m);
 }
 
@@ -99,17 +105,21 @@ int calibrate(const Options& options) {
   if (options.source.room.empty()) throw InputError("--room is required: it says which body the vehicle is");
   const std::string file = runtime::configuration_file(runtime::kinds::kRoom, options.source.room);
   const std::string text = runtime::read_text_file(file);
-  with_calibration(text, file, options.vehicle, {}, {});  // refuses a file without the keys before anything is asked for
+  with_calibration(text, file, options.vehicle, {},
+                   {});  // refuses a file without the keys before anything is asked for
   const runtime::StopSignal stop;
   const std::unique_ptr<mocap::Source> source = open_mocap_source(options.source, {options.vehicle});
   const mocap::Room room = mocap::room_of(options.source, {options.vehicle});
   const mocap::RoomFrame frame(room);
   const mocap::VehicleBody& vehicle = *mocap::find(room, options.vehicle);
 
-  wait_for_enter(options, "Put " + options.vehicle + " on level ground with its nose to the north of the room");
+  wait_for_enter(options,
+                 "Put " + options.vehicle + " on level ground with its nose to the north of the room");
   const Recording rest = record(*source, frame, vehicle, options.rest_s, stop);
   const Misalignment misalignment = misalignment_of(rest.poses, rest.seconds);
-  wait_for_enter(options, fmt::format("Hold its centre of mass in place and turn it about all axes for {:g} s", options.turn_s));
+  wait_for_enter(
+      options,
+      fmt::format("Hold its centre of mass in place and turn it about all axes for {:g} s", options.turn_s));
   const Recording turn = record(*source, frame, vehicle, options.turn_s, stop);
   const LeverArm arm = lever_arm_of(turn.poses, misalignment, turn.seconds);
 
@@ -127,7 +137,8 @@ Command add_mocap_calibrate_command(runtime::CommandLine mocap) {
   const runtime::CommandLine app =
       mocap.add_subcommand("calibrate", "Align a body with its vehicle, and write that into the room file");
   app.footer(
-      "The vehicle first stands level, then is turned by hand about its centre of mass (docs/swap-mocap.md).\n\n"
+      "The vehicle first stands level, then is turned by hand about its centre of mass "
+      "(docs/swap-mocap.md).\n\n"
       "example: swiftlet mocap calibrate kl1 --room lab.yaml");
   app.add_option("vehicle", options->vehicle, "Vehicle of the room").show_default();
   mocap::add_source_options(app, options->source);

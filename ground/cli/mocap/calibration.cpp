@@ -22,7 +22,8 @@ constexpr std::size_t kLeastPoses = 20;
 
 void require_enough(const BodyPoses& poses) {
   if (poses.size() < kLeastPoses)
-    throw std::runtime_error(fmt::format("only {} tracked poses arrived, {} are needed", poses.size(), kLeastPoses));
+    throw std::runtime_error(
+        fmt::format("only {} tracked poses arrived, {} are needed", poses.size(), kLeastPoses));
 }
 
 // By how much the squares of standard deviations grow because the errors of neighbouring poses are alike.
@@ -35,7 +36,8 @@ Quaterniond mean_of(const BodyPoses& poses) {
   Quaterniond mean = poses.front().q_ned_from_frd;
   for (int iteration = 0; iteration < 3; ++iteration) {
     Vector3d sum = Vector3d::Zero();
-    for (const mocap::NedPose& pose : poses) sum += plant::rotation_vector(mean.conjugate() * pose.q_ned_from_frd);
+    for (const mocap::NedPose& pose : poses)
+      sum += plant::rotation_vector(mean.conjugate() * pose.q_ned_from_frd);
     mean = (mean * plant::rotation(sum / static_cast<double>(poses.size()))).normalized();
   }
   return mean;
@@ -59,7 +61,8 @@ Misalignment misalignment_of(const BodyPoses& poses, double seconds) {
   }
   if (scatter_m2 > kRestM * kRestM || variance.sum() > kRestRad * kRestRad)
     throw std::runtime_error(fmt::format(
-        "the vehicle did not stand still: it moved by {:.1f} mm and {:.1f} mrad RMS, at most {:.0f} mm and {:.0f} mrad are allowed",
+        "the vehicle did not stand still: it moved by {:.1f} mm and {:.1f} mrad RMS, at most {:.0f} mm and "
+        "{:.0f} mrad are allowed",
         1e3 * std::sqrt(scatter_m2), 1e3 * std::sqrt(variance.sum()), 1e3 * kRestM, 1e3 * kRestRad));
   Misalignment misalignment;
   misalignment.vector = plant::rotation_vector(mean.conjugate());
@@ -84,7 +87,8 @@ LeverArm lever_arm_of(const BodyPoses& poses, const Misalignment& misalignment, 
   const Eigen::LDLT<Matrix6> solver(normal);
   // The smallest pivot is the turn about the axis that was turned least, in squares of the sine.
   if (solver.vectorD().minCoeff() < 1e-3 * count)
-    throw std::runtime_error("the vehicle was turned too little: turn it by 30 degrees and more about two axes");
+    throw std::runtime_error(
+        "the vehicle was turned too little: turn it by 30 degrees and more about two axes");
   const Vector6 solution = solver.solve(right);
   double squares = 0.0;
   for (const mocap::NedPose& pose : poses) {
@@ -97,22 +101,25 @@ LeverArm lever_arm_of(const BodyPoses& poses, const Misalignment& misalignment, 
   arm.deviation = (variance * solver.solve(Matrix6::Identity()).diagonal().head<3>()).cwiseSqrt();
   arm.residual_m = std::sqrt(squares / count);
   if (arm.deviation.maxCoeff() > kLargestDeviationM)
-    throw std::runtime_error(fmt::format(
-        "the lever arm is known to {:.1f} mm only, {:.0f} mm are needed: the centre moved by {:.1f} mm RMS; hold it better or turn longer",
-        1e3 * arm.deviation.maxCoeff(), 1e3 * kLargestDeviationM, 1e3 * arm.residual_m));
+    throw std::runtime_error(
+        fmt::format("the lever arm is known to {:.1f} mm only, {:.0f} mm are needed: the centre moved by "
+                    "{:.1f} mm RMS; hold it better or turn longer",
+                    1e3 * arm.deviation.maxCoeff(), 1e3 * kLargestDeviationM, 1e3 * arm.residual_m));
   if (arm.frd.cwiseAbs().maxCoeff() > mocap::kLongestLeverArmM)
-    throw std::runtime_error(fmt::format("the lever arm is {:.2f} m long, at most {:g} m are allowed", arm.frd.norm(),
-                                         mocap::kLongestLeverArmM));
+    throw std::runtime_error(fmt::format("the lever arm is {:.2f} m long, at most {:g} m are allowed",
+                                         arm.frd.norm(), mocap::kLongestLeverArmM));
   return arm;
 }
 
-std::string with_calibration(const std::string& text, const std::string& file_name, const std::string& vehicle,
-                             const Misalignment& misalignment, const LeverArm& lever_arm) {
+std::string with_calibration(const std::string& text, const std::string& file_name,
+                             const std::string& vehicle, const Misalignment& misalignment,
+                             const LeverArm& lever_arm) {
   std::vector<std::pair<std::string, std::string>> values;
   for (int i = 0; i < 3; ++i) {
     const std::string index = "[" + std::to_string(i) + "]";
     values.emplace_back("vehicles." + vehicle + ".lever_arm_frd_m" + index, number_text(lever_arm.frd[i]));
-    values.emplace_back("vehicles." + vehicle + ".misalignment_rad" + index, number_text(misalignment.vector[i]));
+    values.emplace_back("vehicles." + vehicle + ".misalignment_rad" + index,
+                        number_text(misalignment.vector[i]));
   }
   return runtime::with_scalars(text, file_name, values);
 }

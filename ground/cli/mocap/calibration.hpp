@@ -43,7 +43,8 @@ Misalignment misalignment_of(const BodyPoses& poses, double seconds);
 LeverArm lever_arm_of(const BodyPoses& poses, const Misalignment& misalignment, double seconds);
 
 // The room file's text with these values, whose keys it must have. Throws ConfigError otherwise.
-std::string with_calibration(const std::string& text, const std::string& file_name, const std::string& vehicle,
-                             const Misalignment& misalignment, const LeverArm& lever_arm);
+std::string with_calibration(const std::string& text, const std::string& file_name,
+                             const std::string& vehicle, const Misalignment& misalignment,
+                             const LeverArm& lever_arm);
 
 }  // namespace swiftlet::ground

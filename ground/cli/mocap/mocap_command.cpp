@@ -38,7 +38,8 @@ std::chrono::nanoseconds duration_of(double seconds) {
 }
 
 // Receives for this time; returns how long it was, s.
-double receive(mocap::Source& source, BodyStatisticsList& statistics, double time_s, const runtime::StopSignal& stop) {
+double receive(mocap::Source& source, BodyStatisticsList& statistics, double time_s,
+               const runtime::StopSignal& stop) {
   const auto begin = Clock::now();
   const auto end = begin + duration_of(time_s);
   mocap::SourceFrame frame;
@@ -67,11 +68,17 @@ nlohmann::ordered_json json_of(const mocap::Body& body, const BodyStatistics& se
   return json;
 }
 
-nlohmann::ordered_json json_of(const mocap::Source& source, const BodyStatisticsList& statistics, double time_s) {
+nlohmann::ordered_json json_of(const mocap::Source& source, const BodyStatisticsList& statistics,
+                               double time_s) {
   const mocap::SourceStatistics& all = source.statistics();
-  nlohmann::ordered_json json = {{"server", source.description()}, {"frames", all.frames},   {"lost", all.lost},
-                                 {"late", all.late},               {"refused", all.refused}, {"other_servers", all.strangers},
-                                 {"restarts", all.restarts},       {"bodies", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json json = {{"server", source.description()},
+                                 {"frames", all.frames},
+                                 {"lost", all.lost},
+                                 {"late", all.late},
+                                 {"refused", all.refused},
+                                 {"other_servers", all.strangers},
+                                 {"restarts", all.restarts},
+                                 {"bodies", nlohmann::ordered_json::array()}};
   for (std::size_t i = 0; i < source.bodies().size(); ++i) {
     const BodyStatistics seen = i < statistics.bodies().size() ? statistics.bodies()[i] : BodyStatistics{};
     json["bodies"].push_back(json_of(source.bodies()[i], seen, time_s));
@@ -82,11 +89,13 @@ nlohmann::ordered_json json_of(const mocap::Source& source, const BodyStatistics
 std::string line_of(const mocap::Body& body, const BodyStatistics& seen, double time_s) {
   std::string line = fmt::format("{:<20} {:>6} {:>8.1f}", runtime::printable(body.name), body.id,
                                  static_cast<double>(seen.frames) / time_s);
-  line += seen.latencies == 0 ? fmt::format(" {:>8} {:>8}", "-", "-")
-                              : fmt::format(" {:>8.1f} {:>8.1f}", 1e3 * seen.mean_latency_s(), 1e3 * seen.latency_max_s);
+  line += seen.latencies == 0
+              ? fmt::format(" {:>8} {:>8}", "-", "-")
+              : fmt::format(" {:>8.1f} {:>8.1f}", 1e3 * seen.mean_latency_s(), 1e3 * seen.latency_max_s);
   line += fmt::format(" {:>8.0f} {:>9}", 1e3 * seen.longest_gap_s, seen.untracked);
-  line += seen.last.markers == 0 ? fmt::format(" {:>7}", "-")
-                                 : fmt::format(" {:>3}/{:<3}", seen.last.markers - seen.last.lost_markers, seen.last.markers);
+  line += seen.last.markers == 0
+              ? fmt::format(" {:>7}", "-")
+              : fmt::format(" {:>3}/{:<3}", seen.last.markers - seen.last.lost_markers, seen.last.markers);
   if (seen.frames == 0) return line + "  no frame";
   if (!seen.last.tracked) return line + "  not tracked";
   const Eigen::Vector3d& p = seen.last.position;
@@ -105,8 +114,8 @@ void print(const mocap::Source& source, const BodyStatisticsList& statistics, do
               static_cast<unsigned long long>(all.lost), static_cast<unsigned long long>(all.late),
               static_cast<unsigned long long>(all.refused), static_cast<unsigned long long>(all.strangers),
               static_cast<unsigned long long>(all.restarts));
-  std::printf("%-20s %6s %8s %8s %8s %8s %9s %7s  %s\n", "body", "id", "Hz", "ms", "max ms", "gap ms", "untracked",
-              "markers", "x y z of the motion capture, m");
+  std::printf("%-20s %6s %8s %8s %8s %8s %9s %7s  %s\n", "body", "id", "Hz", "ms", "max ms", "gap ms",
+              "untracked", "markers", "x y z of the motion capture, m");
   for (std::size_t i = 0; i < source.bodies().size(); ++i) {
     const BodyStatistics seen = i < statistics.bodies().size() ? statistics.bodies()[i] : BodyStatistics{};
     std::printf("%s\n", line_of(source.bodies()[i], seen, time_s).c_str());
@@ -121,7 +130,8 @@ int list(const Options& options) {
   const double time_s = receive(*source, statistics, options.time_s, stop);
   print(*source, statistics, time_s, options.json);
   if (!source->bodies().empty()) return kDone;
-  std::fprintf(stderr, "swiftlet: mocap list: no body within %g s: %s\n", options.time_s, source->description().c_str());
+  std::fprintf(stderr, "swiftlet: mocap list: no body within %g s: %s\n", options.time_s,
+               source->description().c_str());
   return kFailed;
 }
 
@@ -147,7 +157,8 @@ int watch(const Options& options) {
 Command add_list(const runtime::CommandLine& mocap) {
   const auto options = std::make_shared<Options>();
   options->time_s = 2.0;
-  const runtime::CommandLine app = mocap.add_subcommand("list", "List the bodies that a motion capture sends");
+  const runtime::CommandLine app =
+      mocap.add_subcommand("list", "List the bodies that a motion capture sends");
   app.footer("example: swiftlet mocap list --source natnet");
   mocap::add_source_options(app, options->source);
   app.add_option("--time", options->time_s, "How long to listen, s").range(0.1, 600.0).show_default();
@@ -161,8 +172,12 @@ Command add_watch(const runtime::CommandLine& mocap) {
       mocap.add_subcommand("watch", "Show the rate, latency and losses of each body, until interrupted");
   app.footer("example: swiftlet mocap watch --source vrpn --server 192.168.10.1");
   mocap::add_source_options(app, options->source);
-  app.add_option("--time", options->time_s, "End after this time, s; 0: when interrupted").range(0.0, 1e6).show_default();
-  app.add_option("--period", options->period_s, "Time between two tables, s").range(0.1, 600.0).show_default();
+  app.add_option("--time", options->time_s, "End after this time, s; 0: when interrupted")
+      .range(0.0, 1e6)
+      .show_default();
+  app.add_option("--period", options->period_s, "Time between two tables, s")
+      .range(0.1, 600.0)
+      .show_default();
   app.add_flag("--json", options->json, "Print one line of JSON for each table");
   return {app, [options] { return watch(*options); }};
 }
@@ -179,14 +194,17 @@ std::unique_ptr<mocap::Source> open_mocap_source(const mocap::SourceOptions& opt
 }
 
 Command add_mocap_command(runtime::CommandLine root) {
-  const runtime::CommandLine mocap = root.add_subcommand("mocap", "Show what a motion capture sends, and calibrate its bodies");
+  const runtime::CommandLine mocap =
+      root.add_subcommand("mocap", "Show what a motion capture sends, and calibrate its bodies");
   mocap.require_subcommand(1, 1);
   mocap.footer(
       "Talks to the motion capture directly; neither vehicle nor DDS is needed (docs/swap-mocap.md).\n\n"
       "example: swiftlet mocap list --source natnet");
-  const std::array<Command, 3> commands = {add_list(mocap), add_watch(mocap), add_mocap_calibrate_command(mocap)};
+  const std::array<Command, 3> commands = {add_list(mocap), add_watch(mocap),
+                                           add_mocap_calibrate_command(mocap)};
   return {mocap, [commands] {
-            return std::find_if(commands.begin(), commands.end(), [](const Command& one) { return one.app.parsed(); })
+            return std::find_if(commands.begin(), commands.end(),
+                                [](const Command& one) { return one.app.parsed(); })
                 ->run();
           }};
 }

@@ -32,7 +32,8 @@ std::string to_string(const natnet::ServerInfo& server) {
          server.version.to_string() + ")";
 }
 
-NatNetSession::Event NatNetSession::take(const std::uint8_t* data, std::size_t size, std::int64_t arrived_ns) {
+NatNetSession::Event NatNetSession::take(const std::uint8_t* data, std::size_t size,
+                                         std::int64_t arrived_ns) {
   const auto message = natnet::parse_message(data, size);
   if (!message) return refuse("a datagram is none of NatNet, or cut");
   switch (message->id) {
@@ -75,7 +76,8 @@ NatNetSession::Event NatNetSession::take_models(const runtime::ByteReader& paylo
 
 NatNetSession::Event NatNetSession::take_frame(const runtime::ByteReader& payload) {
   if (!can_read()) return Event::kNothing;
-  if (const char* const fault = natnet::parse_frame(payload, server_->version, incoming_)) return refuse(fault);
+  if (const char* const fault = natnet::parse_frame(payload, server_->version, incoming_))
+    return refuse(fault);
   if (!follows(incoming_.number)) return Event::kLate;
   std::swap(frame_, incoming_);
   if (frame_.models_changed || !knows_all_bodies()) needs_models_ = true;

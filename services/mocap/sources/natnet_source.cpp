@@ -43,12 +43,14 @@ Endpoint server_of(const Room& room) {
   return only_server(find_natnet_servers({everyone}, interface_address(room.interface), kSearchTime)).at;
 }
 
-std::string name_of(const FoundServer& server) { return to_string(server.info) + " at " + server.at.address_text(); }
+std::string name_of(const FoundServer& server) {
+  return to_string(server.info) + " at " + server.at.address_text();
+}
 
 }  // namespace
 
-std::vector<FoundServer> find_natnet_servers(const std::vector<Endpoint>& addresses, const std::string& interface,
-                                             std::chrono::milliseconds time) {
+std::vector<FoundServer> find_natnet_servers(const std::vector<Endpoint>& addresses,
+                                             const std::string& interface, std::chrono::milliseconds time) {
   const UdpSocket socket(interface, 0);
   std::vector<FoundServer> found;
   std::vector<std::uint8_t> datagram;
@@ -73,7 +75,8 @@ std::vector<FoundServer> find_natnet_servers(const std::vector<Endpoint>& addres
 
 FoundServer only_server(const std::vector<FoundServer>& servers) {
   if (servers.empty())
-    throw std::runtime_error("no NatNet server answers a broadcast; name it with --server or in the room file");
+    throw std::runtime_error(
+        "no NatNet server answers a broadcast; name it with --server or in the room file");
   if (servers.size() == 1) return servers.front();
   std::string list;
   for (const FoundServer& server : servers) list += (list.empty() ? "" : ", ") + name_of(server);
@@ -138,7 +141,8 @@ bool NatNetSource::read(const UdpSocket& socket, SourceFrame& frame) {
     if (from->address != server_.address) {
       ++statistics_.strangers;
       if (statistics_.strangers == 1)
-        spdlog::warn("frames of another server, {}, are left out; {} is used", from->address_text(), server_.to_string());
+        spdlog::warn("frames of another server, {}, are left out; {} is used", from->address_text(),
+                     server_.to_string());
       continue;
     }
     if (take(arrived_ns, frame)) return true;
@@ -153,8 +157,7 @@ bool NatNetSource::take(std::int64_t arrived_ns, SourceFrame& frame) {
       return false;
     case NatNetSession::Event::kModels: {
       std::vector<Body> bodies;
-      for (const natnet::BodyDefinition& model : session_.models())
-        bodies.push_back({model.name, model.id});
+      for (const natnet::BodyDefinition& model : session_.models()) bodies.push_back({model.name, model.id});
       set_bodies(std::move(bodies));
       return false;
     }

@@ -18,8 +18,8 @@ struct FoundServer {
 };
 
 // Asks these addresses, which may be a broadcast address, which NatNet servers there are.
-std::vector<FoundServer> find_natnet_servers(const std::vector<Endpoint>& addresses, const std::string& interface,
-                                             std::chrono::milliseconds time);
+std::vector<FoundServer> find_natnet_servers(const std::vector<Endpoint>& addresses,
+                                             const std::string& interface, std::chrono::milliseconds time);
 // The only one of them. Throws std::runtime_error that names all if they are several, or if there is none.
 FoundServer only_server(const std::vector<FoundServer>& servers);
 

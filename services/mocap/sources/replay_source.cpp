@@ -32,13 +32,15 @@ std::set<std::uint32_t> servers_in(const std::vector<CapturedDatagram>& datagram
   return servers;
 }
 
-std::uint32_t only_server(const std::set<std::uint32_t>& servers, const std::string& wanted, const std::string& file) {
+std::uint32_t only_server(const std::set<std::uint32_t>& servers, const std::string& wanted,
+                          const std::string& file) {
   if (servers.empty()) throw ConfigError(file, 0, "", "has no description of a NatNet server");
   if (wanted.empty() && servers.size() == 1) return *servers.begin();
   std::string list;
   for (const std::uint32_t server : servers)
     list += (list.empty() ? "" : ", ") + Endpoint{server, 0}.address_text();
-  if (wanted.empty()) throw ConfigError(file, 0, "", "has several NatNet servers, choose one with --server: " + list);
+  if (wanted.empty())
+    throw ConfigError(file, 0, "", "has several NatNet servers, choose one with --server: " + list);
   const std::uint32_t address = resolve(wanted, natnet::kCommandPort).address;
   if (servers.count(address) == 0)
     throw ConfigError(file, 0, "", "has no description of the server " + wanted + ", only of " + list);
@@ -87,12 +89,14 @@ bool ReplaySource::receive(SourceFrame& frame, std::chrono::milliseconds timeout
 void ReplaySource::read_capture(const std::string& text, const std::string& file, const std::string& server) {
   std::vector<CapturedDatagram> datagrams = parse_capture(text, file);
   const std::uint32_t address = only_server(servers_in(datagrams), server, file);
-  datagrams.erase(std::remove_if(datagrams.begin(), datagrams.end(),
-                                 [&](const CapturedDatagram& datagram) { return datagram.source != address; }),
-                  datagrams.end());
+  datagrams.erase(
+      std::remove_if(datagrams.begin(), datagrams.end(),
+                     [&](const CapturedDatagram& datagram) { return datagram.source != address; }),
+      datagrams.end());
   NatNetSession definitions;
   for (const CapturedDatagram& datagram : datagrams) {
-    if (definitions.take(datagram.payload.data(), datagram.payload.size(), 0) != NatNetSession::Event::kModels)
+    if (definitions.take(datagram.payload.data(), datagram.payload.size(), 0) !=
+        NatNetSession::Event::kModels)
       continue;
     for (const natnet::BodyDefinition& model : definitions.models()) body_of(model.name, model.id);
   }
@@ -111,8 +115,8 @@ void ReplaySource::add_frame(const NatNetSession& session, std::int64_t arrived_
   recorded.arrived_ns = arrived_ns;
   recorded.exposed_ns = arrived_ns - session.server_latency_ns();
   for (const natnet::RigidBody& body : session.frame().bodies) {
-    const auto known = std::find_if(bodies().begin(), bodies().end(),
-                                    [&](const Body& one) { return one.id == body.id; });
+    const auto known =
+        std::find_if(bodies().begin(), bodies().end(), [&](const Body& one) { return one.id == body.id; });
     if (known == bodies().end()) continue;
     recorded.poses.push_back({static_cast<std::size_t>(known - bodies().begin()), body.tracked, body.position,
                               body.q_room_from_body.normalized(), body.markers, body.lost_markers});

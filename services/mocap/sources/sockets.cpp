@@ -61,7 +61,8 @@ Endpoint resolve(const std::string& text, std::uint16_t default_port) {
   if (!fault.empty()) throw std::invalid_argument("server: " + fault);
   const comms::HostAddress host = comms::parse_host_address(text);
   try {
-    return {number_of(comms::ipv4_addresses_of(host.host).front()), host.port == 0 ? default_port : host.port};
+    return {number_of(comms::ipv4_addresses_of(host.host).front()),
+            host.port == 0 ? default_port : host.port};
   } catch (const std::runtime_error& error) {
     throw std::invalid_argument(std::string("server: ") + error.what());
   }
@@ -92,7 +93,8 @@ UdpSocket::UdpSocket(const std::string& interface, std::uint16_t port, bool shar
   set(fd(), SOL_SOCKET, SO_RCVBUF, kReceiveBuffer);
   const sockaddr_in address = address_of(interface.empty() ? INADDR_ANY : number_of(interface), port);
   if (fd() >= 0 && ::bind(fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return;
-  throw std::runtime_error("cannot receive on UDP port " + std::to_string(port) + ": " + std::strerror(errno));
+  throw std::runtime_error("cannot receive on UDP port " + std::to_string(port) + ": " +
+                           std::strerror(errno));
 }
 
 void UdpSocket::join(const std::string& group, const std::string& interface) {
@@ -151,7 +153,8 @@ TcpSocket::State TcpSocket::state() {
 
 bool TcpSocket::send(const std::vector<std::uint8_t>& bytes) {
   // What is sent is short: a connection that does not take it is broken.
-  if (::send(fd(), bytes.data(), bytes.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(bytes.size())) return true;
+  if (::send(fd(), bytes.data(), bytes.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(bytes.size()))
+    return true;
   close();
   return false;
 }

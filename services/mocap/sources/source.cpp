@@ -41,7 +41,8 @@ void Source::refuse(const std::string& why) {
 
 std::optional<std::size_t> find_body(const std::vector<Body>& bodies, const VehicleBody& vehicle) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if ((!vehicle.body || *vehicle.body == bodies[i].name) && (!vehicle.id || *vehicle.id == bodies[i].id)) return i;
+    if ((!vehicle.body || *vehicle.body == bodies[i].name) && (!vehicle.id || *vehicle.id == bodies[i].id))
+      return i;
   }
   return std::nullopt;
 }

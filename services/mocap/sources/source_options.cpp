@@ -8,7 +8,8 @@
 namespace swiftlet::mocap {
 namespace {
 
-constexpr SourceKind kKinds[] = {SourceKind::kNatNet, SourceKind::kVrpn, SourceKind::kVicon, SourceKind::kReplay};
+constexpr SourceKind kKinds[] = {SourceKind::kNatNet, SourceKind::kVrpn, SourceKind::kVicon,
+                                 SourceKind::kReplay};
 
 SourceKind kind_of(const std::string& name) {
   for (const SourceKind kind : kKinds) {
@@ -47,7 +48,8 @@ Room room_with_file(const SourceOptions& options, const std::vector<std::string>
 
 void add_source_options(runtime::CommandLine app, SourceOptions& options, std::vector<std::string> first) {
   for (const SourceKind kind : kKinds) first.emplace_back(to_string(kind));
-  app.add_option("--source", options.source, "Where poses come from; replaces that of the room").one_of(first);
+  app.add_option("--source", options.source, "Where poses come from; replaces that of the room")
+      .one_of(first);
   app.add_option("--room", options.room, "Room file: source, axes, and which body is which vehicle")
       .type_name(runtime::kinds::kRoom.value);
   app.add_option("--server", options.server,
@@ -56,7 +58,8 @@ void add_source_options(runtime::CommandLine app, SourceOptions& options, std::v
   app.add_option("--mocap-interface", options.interface,
                  "Network interface towards the motion capture, by name or address")
       .type_name("INTERFACE");
-  app.add_option("--frame", options.frame, "Axes of the motion capture: z up, or y up").one_of({"zup", "yup"});
+  app.add_option("--frame", options.frame, "Axes of the motion capture: z up, or y up")
+      .one_of({"zup", "yup"});
   app.add_option("--file", options.file, "Recording to replay: pcap or pcapng of NatNet, or CSV of poses")
       .type_name("FILE");
 }

@@ -19,7 +19,8 @@ struct SourceOptions {
 };
 
 // --source (with `first` before those that this folder has), --room, --server, --interface, --frame, --file.
-void add_source_options(runtime::CommandLine app, SourceOptions& options, std::vector<std::string> first = {});
+void add_source_options(runtime::CommandLine app, SourceOptions& options,
+                        std::vector<std::string> first = {});
 
 // The room of the options, which replace what its file says. Without a file each vehicle is the body of its name. Throws
 // ConfigError, or std::invalid_argument if something is missing.

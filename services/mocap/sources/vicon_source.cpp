@@ -55,7 +55,8 @@ bool ViconSource::is_from_server(const Endpoint& from, Time now) {
   if (!is_server) {
     ++statistics_.strangers;
     if (statistics_.strangers == 1)
-      spdlog::warn("frames of another server, {}, are left out; {} is used", from.address_text(), description());
+      spdlog::warn("frames of another server, {}, are left out; {} is used", from.address_text(),
+                   description());
     return false;
   }
   if (server_ && is_silent) {

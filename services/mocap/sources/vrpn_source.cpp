@@ -13,6 +13,7 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr auto kConnectPeriod = 500ms;
+constexpr auto kConnectPoll = 5ms;  // whether the server has accepted
 constexpr auto kSilence = 3s;  // without any message, although pings are sent: the connection is dead
 constexpr auto kPingPeriod = 50ms;
 constexpr auto kFirstPingPeriod = 10ms;  // while the clock is unknown
@@ -54,13 +55,25 @@ bool VrpnSource::receive(SourceFrame& frame, std::chrono::milliseconds timeout) 
       ping_if_due(now);
       if (read_tcp(frame) || read_udp(frame)) return true;
     }
-    const auto next = std::min({end, stage_ == Stage::kClosed ? connect_due_ : end,
-                                stage_ == Stage::kConnecting ? now + 5ms : end,
-                                stage_ == Stage::kConnected ? std::max(ping_due_, now + 1ms) : end});
     wait_for_input({udp_.fd(), tcp_.fd()},
-                   std::max(std::chrono::ceil<std::chrono::milliseconds>(next - Clock::now()), 1ms));
+                   std::max(std::chrono::ceil<std::chrono::milliseconds>(std::min(end, due()) - Clock::now()), 1ms));
   } while (Clock::now() < end);
   return false;
+}
+
+VrpnSource::Time VrpnSource::due() const {
+  switch (stage_) {
+    case Stage::kClosed:
+      return connect_due_;
+    case Stage::kConnecting:
+      return Clock::now() + kConnectPoll;
+    case Stage::kConnected:
+      if (tracker_ && !pinged_ns_) return ping_due_;
+      break;
+    case Stage::kCookie:
+      break;
+  }
+  return Time::max();
 }
 
 void VrpnSource::connect_if_due(Time now) {
@@ -117,6 +130,8 @@ void VrpnSource::lose(const std::string& why) {
   stage_ = Stage::kClosed;
   stream_.clear();
   stream_begin_ = 0;
+  datagram_.clear();
+  datagram_begin_ = 0;
   senders_.clear();
   types_.clear();
   last_stamps_.clear();
@@ -206,7 +221,8 @@ void VrpnSource::take_description(const vrpn::Message& message) {
   if (names.size() >= kMostNames && names.count(message.sender) == 0) return refuse("more than 4000 names");
   names[message.sender] = *name;
   // The server numbers our senders by their names: pings go to the tracker with the same name.
-  if (message.type == vrpn::kSenderDescription) tcp_.send(vrpn::description(message.type, message.sender, *name));
+  if (message.type == vrpn::kSenderDescription)
+    tcp_.send(vrpn::description(message.type, message.sender, *name));
 }
 
 void VrpnSource::take_pong(const vrpn::Message& message) {

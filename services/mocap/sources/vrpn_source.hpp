@@ -29,6 +29,8 @@ class VrpnSource final : public Source {
   using Time = std::chrono::steady_clock::time_point;
   enum class Stage { kClosed, kConnecting, kCookie, kConnected };
 
+  // When something is to be done, even if nothing arrives.
+  Time due() const;
   void connect_if_due(Time now);
   void advance(Time now);
   void begin();
@@ -38,7 +40,8 @@ class VrpnSource final : public Source {
   bool read_udp(SourceFrame& frame);
   bool read_tcp(SourceFrame& frame);
   // Takes the messages of a buffer from `begin` on, until one is a pose.
-  bool take_messages(const std::vector<std::uint8_t>& bytes, std::size_t& begin, bool is_stream, SourceFrame& frame);
+  bool take_messages(const std::vector<std::uint8_t>& bytes, std::size_t& begin, bool is_stream,
+                     SourceFrame& frame);
   bool take(const vrpn::Message& message, SourceFrame& frame);
   void take_description(const vrpn::Message& message);
   void take_pong(const vrpn::Message& message);

@@ -38,7 +38,8 @@ TEST(Capture, OfMotiveIsRead) {
   EXPECT_EQ(datagrams.front().source, 0xc0a80064U);  // 192.168.0.100
   EXPECT_EQ(datagrams.front().destination_port, 1510);
   EXPECT_EQ(datagrams.front().payload.size(), 268U);
-  for (std::size_t i = 1; i < datagrams.size(); ++i) EXPECT_GE(datagrams[i].time_ns, datagrams[i - 1].time_ns);
+  for (std::size_t i = 1; i < datagrams.size(); ++i)
+    EXPECT_GE(datagrams[i].time_ns, datagrams[i - 1].time_ns);
   const double seconds = 1e-9 * static_cast<double>(datagrams.back().time_ns - datagrams.front().time_ns);
   EXPECT_GT(seconds, 4.0);
   EXPECT_LT(seconds, 60.0);

@@ -67,10 +67,10 @@ TEST(NatNetCapture, IsReadAsTheVendorsClientReadsIt) {
   EXPECT_TRUE(server.multicast);
   EXPECT_EQ(server.group, kMulticastGroup);
 
-  const runtime::CsvTable printed = runtime::load_csv(
-      kData + "natnet_3.0_sample_client.csv",
-      {"frame", "timestamp_s", "software_latency_ms", "system_latency_ms", "id", "valid", "x", "y", "z", "qx", "qy",
-       "qz", "qw", "markers", "occluded"});
+  const runtime::CsvTable printed =
+      runtime::load_csv(kData + "natnet_3.0_sample_client.csv",
+                        {"frame", "timestamp_s", "software_latency_ms", "system_latency_ms", "id", "valid",
+                         "x", "y", "z", "qx", "qy", "qz", "qw", "markers", "occluded"});
   std::map<int, std::size_t> row_of;
   for (std::size_t row = 0; row < printed.row_count(); ++row)
     row_of[static_cast<int>(printed.number(row, 0))] = row;
@@ -97,7 +97,8 @@ TEST(NatNetCapture, IsReadAsTheVendorsClientReadsIt) {
     const RigidBody& body = frame.bodies[0];
     EXPECT_EQ(body.id, static_cast<int>(value(4)));
     EXPECT_EQ(body.tracked, value(5) == 1.0);
-    for (int i = 0; i < 3; ++i) EXPECT_NEAR(body.position[i], value(6 + static_cast<std::size_t>(i)), kPrinted);
+    for (int i = 0; i < 3; ++i)
+      EXPECT_NEAR(body.position[i], value(6 + static_cast<std::size_t>(i)), kPrinted);
     for (int i = 0; i < 4; ++i)
       EXPECT_NEAR(body.q_room_from_body.coeffs()[i], value(9 + static_cast<std::size_t>(i)), kPrinted);
     EXPECT_EQ(body.markers, static_cast<int>(value(13)));
@@ -198,7 +199,8 @@ TEST(NatNetMessages, ThatAreCutAreRefused) {
     }
     const auto models = packets::models(version, two_bodies().bodies);
     for (std::size_t size = 4; size < models.size(); ++size) {
-      const std::vector<std::uint8_t> cut(models.begin() + 4, models.begin() + static_cast<std::ptrdiff_t>(size));
+      const std::vector<std::uint8_t> cut(models.begin() + 4,
+                                          models.begin() + static_cast<std::ptrdiff_t>(size));
       std::vector<BodyDefinition> bodies;
       EXPECT_NE(parse_models({cut.data(), cut.size(), true}, version, bodies), nullptr) << size;
     }

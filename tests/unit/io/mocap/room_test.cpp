@@ -38,7 +38,8 @@ class Random {
 
 TEST(RoomFile, IsReadWhole) {
   const Room room = parse_room(
-      "source: vrpn\nserver: lab:3883\ninterface: eth0\nframe: yup\norigin_m: [1, 2, 3]\nnorth_rad: 0.5\nlatency_s: 0.01\n"
+      "source: vrpn\nserver: lab:3883\ninterface: eth0\nframe: yup\norigin_m: [1, 2, 3]\nnorth_rad: "
+      "0.5\nlatency_s: 0.01\n"
       "vehicles:\n  kl1: {body: drone, lever_arm_frd_m: [0, 0, 0.02], misalignment_rad: [0, 0, 0.1]}\n"
       "  kl2: {id: 7}\n",
       "room.yaml");
@@ -56,13 +57,16 @@ TEST(RoomFile, IsReadWhole) {
 
 TEST(RoomFile, IsRefusedWithASentence) {
   const auto fault = [](const std::string& text) { return refusal([&] { parse_room(text, "r"); }); };
-  EXPECT_EQ(fault(kHead + "vehicles:\n  kl1: {}\n"), "r:4: vehicles.kl1: has neither body nor id, must have one");
+  EXPECT_EQ(fault(kHead + "vehicles:\n  kl1: {}\n"),
+            "r:4: vehicles.kl1: has neither body nor id, must have one");
   EXPECT_EQ(fault(kHead + "vehicles:\n  kl1: {body: a, lever_arm_frd_m: [0, 0, 2]}\n"),
             "r:4: vehicles.kl1.lever_arm_frd_m[2]: is 2, must be at least -1 and at most 1");
   EXPECT_EQ(fault("source: vrpn\nframe: zup\nvehicles:\n  kl1: {id: 1}\n"),
             "r:1: source: is vrpn, which needs the key server");
-  EXPECT_NE(fault("source: natnet\nframe: ned\nvehicles:\n  kl1: {id: 1}\n").find("zup or yup"), std::string::npos);
-  EXPECT_NE(fault(kHead + "north: 1\nvehicles:\n  kl1: {id: 1}\n").find("nearest is north_rad"), std::string::npos);
+  EXPECT_NE(fault("source: natnet\nframe: ned\nvehicles:\n  kl1: {id: 1}\n").find("zup or yup"),
+            std::string::npos);
+  EXPECT_NE(fault(kHead + "north: 1\nvehicles:\n  kl1: {id: 1}\n").find("nearest is north_rad"),
+            std::string::npos);
   EXPECT_NE(fault(kHead + "vehicles: {}\n").find("must name at least one vehicle"), std::string::npos);
 }
 
@@ -107,7 +111,8 @@ TEST(RoomFrameAxes, ConvertRigidly) {
       const Vector3d other = random.vector();
       const Quaterniond q = random.rotation();
       const NedPose pose = frame.body_pose(p, q);
-      EXPECT_NEAR((pose.position_ned - frame.body_pose(other, q).position_ned).norm(), (p - other).norm(), 1e-12);
+      EXPECT_NEAR((pose.position_ned - frame.body_pose(other, q).position_ned).norm(), (p - other).norm(),
+                  1e-12);
       // A point one metre ahead of the body, which is its x axis in both conventions.
       const Vector3d ahead = frame.body_pose(p + q * Vector3d::UnitX(), q).position_ned;
       EXPECT_TRUE(ahead.isApprox(pose.position_ned + pose.q_ned_from_frd * Vector3d::UnitX(), 1e-12));
@@ -133,8 +138,10 @@ TEST(RoomVehicle, IsWhereItsBodySays) {
     const double angle = vehicle.misalignment.norm();
     EXPECT_NEAR(pose.q_ned_from_frd.angularDistance(body.q_ned_from_frd), angle, 1e-9);
     // The misalignment turns about the same axis in both.
-    EXPECT_TRUE((pose.q_ned_from_frd * vehicle.misalignment).isApprox(body.q_ned_from_frd * vehicle.misalignment, 1e-9));
-    EXPECT_TRUE(pose.position_ned.isApprox(body.position_ned + pose.q_ned_from_frd * vehicle.lever_arm_frd, 1e-9));
+    EXPECT_TRUE((pose.q_ned_from_frd * vehicle.misalignment)
+                    .isApprox(body.q_ned_from_frd * vehicle.misalignment, 1e-9));
+    EXPECT_TRUE(
+        pose.position_ned.isApprox(body.position_ned + pose.q_ned_from_frd * vehicle.lever_arm_frd, 1e-9));
   }
 }
 

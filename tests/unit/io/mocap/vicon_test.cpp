@@ -37,7 +37,8 @@ TEST(ViconFrame, TurnsAboutXThenTheTurnedYThenTheTwiceTurnedZ) {
   constexpr double kQuarter = 1.5707963267948966;
   const Eigen::Vector3d forward = attitude_of(kQuarter, 0.0, kQuarter) * Eigen::Vector3d::UnitX();
   EXPECT_TRUE(forward.isApprox(Eigen::Vector3d::UnitZ())) << "first z by the body, which lies on its side";
-  EXPECT_TRUE((attitude_of(0.0, kQuarter, 0.0) * Eigen::Vector3d::UnitX()).isApprox(-Eigen::Vector3d::UnitZ()));
+  EXPECT_TRUE(
+      (attitude_of(0.0, kQuarter, 0.0) * Eigen::Vector3d::UnitX()).isApprox(-Eigen::Vector3d::UnitZ()));
 }
 
 TEST(ViconFrame, HasObjectsThatAreNotTracked) {

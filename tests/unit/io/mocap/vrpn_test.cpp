@@ -14,7 +14,8 @@ Bytes pose_payload(double x, double qw, std::int32_t sensor = 3) {
   const auto put = [&](auto number) {
     std::uint8_t bytes[sizeof number];
     std::memcpy(bytes, &number, sizeof number);
-    out.insert(out.end(), std::make_reverse_iterator(bytes + sizeof number), std::make_reverse_iterator(bytes));
+    out.insert(out.end(), std::make_reverse_iterator(bytes + sizeof number),
+               std::make_reverse_iterator(bytes));
   };
   put(sensor);
   put(std::int32_t{0});
@@ -31,8 +32,8 @@ Pose read_pose(const Bytes& payload, const char** fault) {
 // The bytes are those of the documents of VRPN, big-endian.
 TEST(VrpnMessage, IsLaidOutAsDocumented) {
   const Bytes bytes = message(5'000'007'000, 2, 7, {0xaa});
-  const Bytes expected = {0, 0, 0, 25, 0, 0, 0, 5, 0, 0, 0, 7, 0, 0, 0, 2, 0,    0, 0,
-                          7, 0, 0, 0,  0, 0xaa, 0, 0, 0, 0, 0, 0, 0};
+  const Bytes expected = {0, 0, 0, 25, 0, 0, 0, 5, 0,    0, 0, 7, 0, 0, 0, 2,
+                          0, 0, 0, 7,  0, 0, 0, 0, 0xaa, 0, 0, 0, 0, 0, 0, 0};
   EXPECT_EQ(bytes, expected);
   Message read;
   ASSERT_EQ(parse_message(bytes.data(), bytes.size(), read), Parsed::kMessage);

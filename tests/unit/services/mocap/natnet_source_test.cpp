@@ -61,7 +61,8 @@ class NatNet : public testing::Test {
     source_ = std::make_unique<NatNetSource>(room_of(*server_));
     ASSERT_TRUE(eventually([&] {
       source_->receive(frame_, 10ms);
-      return source_->bodies().size() == 2 && (source_->session().clock().is_known() || server_->echoes() > 150);
+      return source_->bodies().size() == 2 &&
+             (source_->session().clock().is_known() || server_->echoes() > 150);
     })) << source_->description();
   }
   // Sends this frame, and receives for a short time. Returns whether it arrived.
@@ -71,7 +72,8 @@ class NatNet : public testing::Test {
   }
   // Sends frames until one arrives that meets the predicate.
   template <class Predicate>
-  bool pass_until(std::int32_t& number, const Predicate& predicate, std::vector<packets::Body> bodies = kModels) {
+  bool pass_until(std::int32_t& number, const Predicate& predicate,
+                  std::vector<packets::Body> bodies = kModels) {
     return eventually([&] {
       server_->send(frame_of(++number, bodies));
       return source_->receive(frame_, 20ms) && predicate();
@@ -160,7 +162,8 @@ TEST_F(NatNet, ModelsThatChangeAreAskedFor) {
   changed.models_changed = true;
   EXPECT_TRUE(pass(changed));
   std::int32_t number = 1;
-  ASSERT_TRUE(pass_until(number, [&] { return frame_.poses.size() == 3; }, three));
+  ASSERT_TRUE(pass_until(
+      number, [&] { return frame_.poses.size() == 3; }, three));
   EXPECT_EQ(to_string(source_->bodies()), "kl2 (2), kl3 (3), kl1 (1)");
   EXPECT_NE(source_->revision(), revision);
   VehicleBody vehicle;
@@ -175,7 +178,8 @@ TEST_F(NatNet, ModelsOfAnUnknownBodyAreAskedFor) {
   const std::vector<packets::Body> other = {{"kl9", 9}};
   server_->set_models(other);
   std::int32_t number = 0;
-  ASSERT_TRUE(pass_until(number, [&] { return frame_.poses.size() == 1; }, other));
+  ASSERT_TRUE(pass_until(
+      number, [&] { return frame_.poses.size() == 1; }, other));
   EXPECT_EQ(to_string(source_->bodies()), "kl9 (9)");
 }
 
@@ -226,7 +230,8 @@ TEST_F(NatNet, DatagramsThatCannotBeReadAreCounted) {
   start(settings_of({4, 1}));
   ASSERT_NO_FATAL_FAILURE(connect());
   const UdpSocket socket("127.0.0.1", 0);
-  ASSERT_TRUE(socket.send({7, 0, 99, 0, 1}, resolve("127.0.0.1:" + std::to_string(source_->command_port()), 1)));
+  ASSERT_TRUE(
+      socket.send({7, 0, 99, 0, 1}, resolve("127.0.0.1:" + std::to_string(source_->command_port()), 1)));
   EXPECT_FALSE(source_->receive(frame_, 100ms));
   EXPECT_EQ(source_->statistics().refused, 1U);
   EXPECT_EQ(source_->statistics().last_refusal, "a datagram is none of NatNet, or cut");
@@ -271,7 +276,8 @@ TEST(NatNetDiscovery, NamesSeveralServersAndTakesTheOnlyOne) {
     FAIL() << "two servers must be refused";
   } catch (const std::runtime_error& error) {
     const std::string sentence = error.what();
-    EXPECT_NE(sentence.find("2 NatNet servers answer: Motive 3.1 (NatNet 4.1) at 127.0.0."), std::string::npos);
+    EXPECT_NE(sentence.find("2 NatNet servers answer: Motive 3.1 (NatNet 4.1) at 127.0.0."),
+              std::string::npos);
     EXPECT_NE(sentence.find("choose one with --server"), std::string::npos);
   }
   found.pop_back();

@@ -125,7 +125,8 @@ TEST(Replay, RefusesWhatItCannotPlay) {
     }
     return std::string("played");
   };
-  EXPECT_NE(refusal("t,x,y,z,qx,qy,qz,qw\n1,1,2,3,0,0,0,1\n1,1,2,3,0,0,0,1\n").find("must increase"), std::string::npos);
+  EXPECT_NE(refusal("t,x,y,z,qx,qy,qz,qw\n1,1,2,3,0,0,0,1\n1,1,2,3,0,0,0,1\n").find("must increase"),
+            std::string::npos);
   EXPECT_NE(refusal("t,x,y,z,qx,qy,qz,qw\n1,1,2,3,0,0,0,2\n").find("unit length"), std::string::npos);
   EXPECT_NE(refusal("hello").find("is no capture"), std::string::npos);
 }
