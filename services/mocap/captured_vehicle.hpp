@@ -40,7 +40,7 @@ class CapturedVehicle final : public runtime::HostedVehicle, public FrameTaker {
   const mocap::VehicleBody body_;
   const mocap::RoomFrame room_frame_;
   FrameThread& frames_;
-  std::optional<std::size_t> index_;  // of the body in the source's list
+  std::optional<std::size_t> index_;            // of the body in the source's list
   std::uint64_t revision_ = ~std::uint64_t{0};  // none of a source
   std::optional<std::int64_t> missing_since_ns_;
   bool has_warned_ = false;

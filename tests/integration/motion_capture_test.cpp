@@ -96,10 +96,11 @@ class MotionCapture : public SeparateProcesses {
     for (int attempt = 0; attempt < 3; ++attempt) {
       start_with(room);
       if (HasFatalFailure()) break;
-      result = run_program("swiftlet",
-                           {"fly", mission, "--attach", "--localhost-only", "--domain", std::to_string(lock_.domain()), "--json",
-                            "--record", (folder_.path() / "record").string(), "--replace"},
-                           folder_.path(), kStuck);
+      result = run_program(
+          "swiftlet",
+          {"fly", mission, "--attach", "--localhost-only", "--domain", std::to_string(lock_.domain()),
+           "--json", "--record", (folder_.path() / "record").string(), "--replace"},
+          folder_.path(), kStuck);
       for (const auto& process : {mocap_.get(), plant_.get(), control_.get()}) {
         process->signal(SIGTERM);
         EXPECT_EQ(process->wait(kStuck), 0) << process->errors();
@@ -136,7 +137,8 @@ TEST_F(MotionCapture, FliesTheSquareThroughNatNet) {
     server.send(frame_of({"drone", kBody}, ++number, with_y_up(body_of(truth))));
   });
   const std::string room = "source: natnet\nserver: " + server.name() +
-                           "\ninterface: 127.0.0.1\nframe: yup\nvehicles:\n  kl1: {body: drone, " + kBodyKeys + "}\n";
+                           "\ninterface: 127.0.0.1\nframe: yup\nvehicles:\n  kl1: {body: drone, " +
+                           kBodyKeys + "}\n";
   const double rms_m = flown_rms_m(room, "square");
   RecordProperty("rms_3d_um", static_cast<int>(std::lround(1e6 * rms_m)));
   EXPECT_LT(rms_m, 0.005);
@@ -155,8 +157,8 @@ TEST_F(MotionCapture, FliesThroughVrpn) {
     const Eigen::Vector4d q = pose.attitude.coeffs();
     server.send(1, {p.x(), p.y(), p.z(), q[0], q[1], q[2], q[3]});
   });
-  const std::string room =
-      "source: vrpn\nserver: " + server.name() + "\nframe: zup\nvehicles:\n  kl1: {body: drone, " + kBodyKeys + "}\n";
+  const std::string room = "source: vrpn\nserver: " + server.name() +
+                           "\nframe: zup\nvehicles:\n  kl1: {body: drone, " + kBodyKeys + "}\n";
   EXPECT_LT(flown_rms_m(room, hop()), 0.01);
 }
 

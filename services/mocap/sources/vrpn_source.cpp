@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kConnectPeriod = 500ms;
 constexpr auto kConnectPoll = 5ms;  // whether the server has accepted
-constexpr auto kSilence = 3s;  // without any message, although pings are sent: the connection is dead
+constexpr auto kSilence = 3s;       // without any message, although pings are sent: the connection is dead
 constexpr auto kPingPeriod = 50ms;
 constexpr auto kFirstPingPeriod = 10ms;  // while the clock is unknown
 constexpr auto kLongestPing = 1s;
@@ -55,8 +55,9 @@ bool VrpnSource::receive(SourceFrame& frame, std::chrono::milliseconds timeout) 
       ping_if_due(now);
       if (read_tcp(frame) || read_udp(frame)) return true;
     }
-    wait_for_input({udp_.fd(), tcp_.fd()},
-                   std::max(std::chrono::ceil<std::chrono::milliseconds>(std::min(end, due()) - Clock::now()), 1ms));
+    wait_for_input(
+        {udp_.fd(), tcp_.fd()},
+        std::max(std::chrono::ceil<std::chrono::milliseconds>(std::min(end, due()) - Clock::now()), 1ms));
   } while (Clock::now() < end);
   return false;
 }
