@@ -1,0 +1,38 @@
+#include "swiftlet/ground/vehicle_check/vehicle_recording.hpp"
+
+#include <algorithm>
+
+namespace swiftlet::ground {
+namespace {
+
+template <class Entry, class Time>
+void keep(std::vector<Entry>& entries, std::int64_t begin_ns, std::int64_t end_ns, Time time_of) {
+  entries.erase(std::remove_if(
+                    entries.begin(), entries.end(),
+                    [&](const Entry& entry) { return time_of(entry) < begin_ns || time_of(entry) > end_ns; }),
+                entries.end());
+}
+
+}  // namespace
+
+VehicleRecording part_of(const VehicleRecording& recording, std::int64_t begin_ns, std::int64_t end_ns) {
+  VehicleRecording part = recording;
+  part.begin_ns = begin_ns;
+  part.end_ns = end_ns;
+  const auto received = [](const auto& entry) { return entry.received_ns; };
+  keep(part.imu.samples, begin_ns, end_ns, received);
+  keep(part.battery.samples, begin_ns, end_ns, received);
+  keep(part.mocap.samples, begin_ns, end_ns, received);
+  keep(part.rotor_speeds.samples, begin_ns, end_ns, received);
+  keep(part.rotors_running, begin_ns, end_ns, received);
+  keep(part.clock, begin_ns, end_ns, [](const ClockExchange& exchange) { return exchange.returned_ns; });
+  return part;
+}
+
+bool runs_in_lockstep(const VehicleRecording& recording) {
+  return recording.description && recording.description->simulated &&
+         std::any_of(recording.imu.samples.begin(), recording.imu.samples.end(),
+                     [](const auto& received) { return received.sample.lockstep; });
+}
+
+}  // namespace swiftlet::ground

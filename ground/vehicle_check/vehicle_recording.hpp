@@ -1,0 +1,71 @@
+// What was received from a vehicle, with the times of reception: the input of all checks.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "swiftlet/plant/model/samples.hpp"
+
+namespace swiftlet::ground {
+
+template <class Sample>
+struct Received {
+  Sample sample;
+  std::int64_t received_ns = 0;  // monotonic clock of this computer
+};
+
+// The messages of a topic, in the order in which they arrived.
+template <class Sample>
+struct TopicRecord {
+  std::vector<Received<Sample>> samples;
+  bool published = false;     // a publisher with matching QoS was found
+  std::uint64_t invalid = 0;  // messages with a field out of range, which control refuses too
+  std::string fault;          // of the first of them: field, value, limit
+  std::string conflict;       // names two processes that both publish the topic; else empty
+};
+
+struct ImuReport {
+  plant::ImuSample imu;
+  plant::ObeyedCommand obeyed;
+  bool lockstep = false;  // it names the samples that belong to it, as in lockstep only
+};
+
+struct VehicleDescription {
+  std::string name;
+  bool simulated = false;
+  int rotor_count = 0;
+  double mass_kg = 0.0;
+  double imu_rate_hz = 0.0;
+};
+
+// A request for the vehicle's clock and its answer.
+struct ClockExchange {
+  std::int64_t sent_ns = 0;      // computer's clock
+  std::int64_t received_ns = 0;  // vehicle's clock
+  std::int64_t answered_ns = 0;  // vehicle's clock
+  std::int64_t returned_ns = 0;  // computer's clock
+};
+
+struct VehicleRecording {
+  std::int64_t begin_ns = 0;  // computer's clock
+  std::int64_t end_ns = 0;
+  TopicRecord<ImuReport> imu;
+  TopicRecord<plant::BatterySample> battery;
+  TopicRecord<plant::PoseSample> mocap;
+  TopicRecord<plant::RotorSpeedSample> rotor_speeds;
+  std::optional<VehicleDescription> description;  // vehicle_info
+  std::vector<Received<bool>> rotors_running;     // vehicle_info
+  std::vector<ClockExchange> clock;
+
+  double duration_s() const { return 1e-9 * static_cast<double>(end_ns - begin_ns); }
+};
+
+// The part that was received in begin_ns .. end_ns.
+VehicleRecording part_of(const VehicleRecording& recording, std::int64_t begin_ns, std::int64_t end_ns);
+
+// The vehicle's time follows the answers of a controller, so that nothing can be said about its timing.
+bool runs_in_lockstep(const VehicleRecording& recording);
+
+}  // namespace swiftlet::ground
