@@ -40,6 +40,10 @@ Command add_discovery_server_command(runtime::CommandLine root);
 Command add_doctor_command(runtime::CommandLine root);  // `doctor network`
 Command add_doctor_network_command(runtime::CommandLine doctor);
 
+// Tests a connected vehicle without flying: `check vehicle`.
+Command add_check_command(runtime::CommandLine root);
+Command add_check_vehicle_command(runtime::CommandLine check);
+
 // Recorded flights.
 Command add_report_command(runtime::CommandLine root);
 

@@ -7,8 +7,8 @@
 
 namespace swiftlet::comms {
 
-// The role of a process with this name (NodeSettings::name) in the folder: plant, mocap and control have theirs, tools are
-// ground, or observer if the folder has no ground.
+// The role of a process with this name (NodeSettings::name) in the folder: plant, mocap and control have theirs,
+// `swiftlet check vehicle` commands as control; tools are ground, or observer if the folder has no ground.
 std::string security_role(const std::string& folder, const std::string& process);
 
 // Why a process cannot join with the folder, a sentence; empty if it can.

@@ -1,0 +1,182 @@
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "swiftlet/ground/cli/check/check_report.hpp"
+#include "swiftlet/ground/cli/check/command_steps.hpp"
+#include "swiftlet/ground/cli/check/examine_standing.hpp"
+#include "swiftlet/ground/cli/check/hand_steps.hpp"
+#include "swiftlet/ground/cli/check/operator_dialog.hpp"
+#include "swiftlet/ground/cli/check/sample_recorder.hpp"
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/ground/flight/interrupts.hpp"
+#include "swiftlet/ground/vehicle_check/commands.hpp"
+#include "swiftlet/ground/vehicle_check/hand_motion.hpp"
+#include "swiftlet/ground/vehicle_check/rotors.hpp"
+#include "swiftlet/io/configuration.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+constexpr std::chrono::milliseconds kStep{50};
+
+struct Options {
+  comms::NodeSettings network;
+  std::string vehicle = "kaylion";
+  double time_s = 2.0;
+  double timeout_s = 5.0;
+  bool hand = false;
+  bool props_off = false;
+  bool tethered = false;
+  bool yes = false;
+  bool json = false;
+};
+
+std::chrono::milliseconds milliseconds(double seconds) {
+  return std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1e3));
+}
+
+// Throws InputError unless a person confirms what the rotors may do.
+void confirm(const Options& options, const OperatorDialog& dialog) {
+  if ((!options.props_off && !options.tethered) || options.yes) return;
+  const std::string option = options.props_off ? "--props-off" : "--tethered";
+  const std::string state =
+      options.props_off ? "all propellers are off" : "the vehicle is tethered and nobody is near";
+  if (!dialog.has_terminal())
+    throw InputError("check vehicle: " + option + ": confirm with --yes that " + state +
+                     "; the rotors will turn");
+  const std::string typed = dialog.ask_line("The rotors will turn. Type yes if " + state + ":", [] {});
+  if (typed != "yes") throw InputError("check vehicle: not confirmed, nothing was sent");
+}
+
+StandingExamination examine_at_rest(SampleRecorder& recorder, const Options& options,
+                                    const plant::Vehicle& vehicle, const OperatorDialog& dialog) {
+  dialog.say("the vehicle must stand level and still, with its rotors off");
+  StandingRequest request;
+  request.vehicle = &vehicle;
+  request.mocap_required = options.hand;
+  request.time = milliseconds(options.time_s);
+  request.timeout = milliseconds(options.timeout_s);
+  request.cancelled = [&] { return dialog.interrupted(); };
+  StandingExamination examination = examine_standing(recorder, request);
+  dialog.require_going_on();
+  return examination;
+}
+
+CheckResults check_in_hand(SampleRecorder& recorder, const VehicleRecording& rest,
+                           const OperatorDialog& dialog) {
+  recorder.restart();
+  const std::vector<HandSegment> segments = guide_hand(recorder, dialog);
+  return check_hand_motion(recorder.recording(), segments, rest);
+}
+
+CheckResults command_and_check(SampleRecorder& recorder, const Options& options,
+                               const plant::Vehicle& vehicle, const OperatorDialog& dialog) {
+  recorder.restart();
+  recorder.record(kStep, [] { return false; });
+  if (options.tethered) {
+    const CommandPhases phases = command_on_tether(recorder, options.network, vehicle, dialog);
+    return check_rotor_thrusts(recorder.recording(), phases, vehicle);
+  }
+  const CommandPhases phases = command_without_propellers(recorder, options.network, vehicle, dialog);
+  const VehicleRecording recording = recorder.recording();
+  CheckResults results = check_commands(recording, phases);
+  append(results, check_rotor_spins(recording, phases, vehicle));
+  return results;
+}
+
+CheckResults check_by_commands(SampleRecorder& recorder, const Options& options,
+                               const plant::Vehicle& vehicle, const OperatorDialog& dialog) {
+  try {
+    return command_and_check(recorder, options, vehicle, dialog);
+  } catch (const std::runtime_error& refusal) {
+    return {missing("commands.steps", refusal.what())};
+  }
+}
+
+// Checks of motion and of commands need the stamps and arrivals that are checked first.
+bool may_go_on(const CheckResults& results) {
+  return passes(results, "imu.received") && passes(results, "imu.clock") && passes(results, "imu.stamps");
+}
+
+CheckResults examine(const Options& options, const plant::Vehicle& vehicle, const OperatorDialog& dialog) {
+  SampleRecorder recorder(options.network);
+  StandingExamination standing = examine_at_rest(recorder, options, vehicle, dialog);
+  CheckResults results = std::move(standing.results);
+  const bool sound = may_go_on(results);
+  if (options.hand)
+    append(results, sound ? check_in_hand(recorder, standing.recording, dialog)
+                          : CheckResults{skipped(
+                                "hand.steps", "imu does not arrive with stamps that rise with the clock")});
+  if (options.props_off || options.tethered)
+    append(results, sound
+                        ? check_by_commands(recorder, options, vehicle, dialog)
+                        : CheckResults{skipped("commands.steps",
+                                               "imu does not arrive with stamps that rise with the clock")});
+  return results;
+}
+
+int check(const Options& options) {
+  const plant::Vehicle vehicle =
+      runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
+  const Interrupts interrupts;
+  const OperatorDialog dialog([&] { return interrupts.count() > 0; });
+  CheckResults results;
+  try {
+    confirm(options, dialog);
+    results = examine(options, vehicle, dialog);
+  } catch (const Interrupted&) {
+    throw std::runtime_error("check vehicle: interrupted");
+  }
+  if (options.json) {
+    print_json(options.network.vehicle, options.network.domain, results);
+  } else {
+    print_table(stdout, options.network.vehicle, results);
+  }
+  return any_failed(results) ? kFailed : kDone;
+}
+
+}  // namespace
+
+Command add_check_vehicle_command(runtime::CommandLine check_line) {
+  const auto options = std::make_shared<Options>();
+  const runtime::CommandLine app = check_line.add_subcommand(
+      "vehicle", "Test a connected vehicle without flying: streams, stamps, axes, units, commands, rotors");
+  add_network_options(app, options->network);
+  app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
+      .type_name(runtime::kinds::kVehicle.value)
+      .show_default();
+  app.add_option("--time", options->time_s, "time for which the standing vehicle is recorded, s")
+      .range(1.0, 600.0)
+      .show_default();
+  app.add_option("--timeout", options->timeout_s, "longest wait for the first imu sample, s")
+      .range(0.1, 600.0)
+      .show_default();
+  app.add_flag("--hand", options->hand,
+               "guide motions of the vehicle in a hand, and compare IMU and motion capture");
+  runtime::Option props_off = app.add_flag("--props-off", options->props_off,
+                                           "turn the rotors, without propellers: order, spin, time-out, "
+                                           "terms, rotors off. No controller may be alive");
+  props_off.excludes(app.add_flag("--tethered", options->tethered,
+                                  "raise each rotor, with propellers, of a vehicle on a tether that lets it "
+                                  "turn but not leave: order and "
+                                  "spin by the turn of the vehicle. No controller may be alive"));
+  app.add_flag("--yes", options->yes,
+               "confirm that the propellers are off, or the vehicle tethered; do not ask");
+  app.add_flag("--json", options->json, "print the results as JSON");
+  app.footer(
+      "The vehicle must stand level and still. Exit code 1 if a check fails.\nThe rotors are turned off at "
+      "the end, also "
+      "after Ctrl-C.\nexample: swiftlet check vehicle --json | jq '.checks[] | select(.verdict == "
+      "\"fail\")'\nexample: "
+      "swiftlet check vehicle --hand --props-off");
+  return {app, [options] { return check(*options); }};
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,98 @@
+#include "swiftlet/ground/cli/check/test_commands.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "swiftlet/services/messages/convert.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr unsigned kTakeoverShift = 16;  // a term counts the takeovers in its upper 16 bits
+constexpr std::uint32_t kMostTakeovers = 0xFFFF;
+constexpr std::uint64_t kLastCommands = 50;
+constexpr auto kLastTime = 500ms;
+
+comms::NodeSettings commanding(comms::NodeSettings settings) {
+  settings.name = "check";
+  settings.deadlines = true;  // a vehicle may request it
+  return settings;
+}
+
+}  // namespace
+
+TestCommands::TestCommands(const comms::NodeSettings& settings, int rotor_count, std::uint32_t term)
+    : term_(term),
+      rotor_count_(rotor_count),
+      renewed_ns_(runtime::monotonic_ns()),
+      node_(commanding(settings)),
+      publisher_(node_.publish(comms::topics::kActuatorCommand, term)),
+      imu_(node_.subscribe<comms::msg::Imu>(
+          comms::topics::kImu, [this](const comms::msg::Imu& imu) { answer(imu); },
+          comms::Delivery::kOwnThread, comms::kSourceSilence)) {}
+
+TestCommands::~TestCommands() {
+  off();
+  std::unique_lock lock(mutex_);
+  sent_.wait_for(lock, kLastTime, [this] { return commands_in_order_ >= kLastCommands; });
+}
+
+void TestCommands::set(const Order& order) {
+  const std::lock_guard lock(mutex_);
+  order_ = order;
+  commands_in_order_ = 0;
+  renewed_ns_ = runtime::monotonic_ns();
+}
+
+void TestCommands::off() { set({}); }
+
+void TestCommands::run(const plant::PerRotor& throttle) {
+  Order order;
+  order.state = plant::RotorState::kRunning;
+  order.throttle = throttle;
+  set(order);
+}
+
+void TestCommands::off_in_lower_term() {
+  Order order;
+  order.lower_term = true;
+  set(order);
+}
+
+void TestCommands::silence() {
+  Order order;
+  order.silent = true;
+  set(order);
+}
+
+void TestCommands::renew() {
+  const std::lock_guard lock(mutex_);
+  renewed_ns_ = runtime::monotonic_ns();
+}
+
+// Runs in the subscription's thread.
+void TestCommands::answer(const comms::msg::Imu& imu) {
+  const std::lock_guard lock(mutex_);
+  if (runtime::monotonic_ns() - renewed_ns_ > kPatience_ns) order_ = {};
+  if (order_.silent) return;
+  plant::ActuatorCommand command;
+  command.stamp_ns = imu.stamp_ns();
+  command.sequence = ++commands_;
+  command.imu_sequence = imu.sequence_number();
+  command.rotor_state = order_.state;
+  command.rotor_count = rotor_count_;
+  command.throttle = order_.throttle;
+  command.term = order_.lower_term ? lower_term() : term_;
+  publisher_.publish(comms::to_message(command));
+  ++commands_in_order_;
+  sent_.notify_all();
+}
+
+std::uint32_t term_above(std::uint32_t obeyed_term) {
+  return std::min((obeyed_term >> kTakeoverShift) + 1, kMostTakeovers) << kTakeoverShift;
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,65 @@
+// Sends actuator commands to a vehicle that no controller flies, one for each IMU sample. Ends with rotors off.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+
+#include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/services/dds/node.hpp"
+
+namespace swiftlet::ground {
+
+// Thread-safe.
+class TestCommands {
+ public:
+  // If renew() is not called for this long, the commands become rotors off: the program hangs.
+  static constexpr std::int64_t kPatience_ns = 1'000'000'000;
+
+  // Sends rotors off at first. term: of the commands, as that of a controller; their ownership strength too. Throws
+  // std::runtime_error.
+  TestCommands(const comms::NodeSettings& settings, int rotor_count, std::uint32_t term);
+  // Sends rotors off until a few commands have been sent, or for half a second without IMU samples.
+  ~TestCommands();
+  TestCommands(const TestCommands&) = delete;
+  TestCommands& operator=(const TestCommands&) = delete;
+
+  void off();
+  void run(const plant::PerRotor& throttle);  // 0 .. 1
+  void off_in_lower_term();
+  void silence();  // sends nothing
+  void renew();
+
+  std::uint32_t term() const { return term_; }
+  std::uint32_t lower_term() const { return term_ - 1; }
+
+ private:
+  struct Order {
+    bool silent = false;
+    bool lower_term = false;
+    plant::RotorState state = plant::RotorState::kOff;
+    plant::PerRotor throttle{};
+  };
+
+  void set(const Order& order);
+  void answer(const comms::msg::Imu& imu);
+
+  const std::uint32_t term_;
+  const int rotor_count_;
+  std::mutex mutex_;  // guards all below, up to the node
+  std::condition_variable sent_;
+  Order order_;
+  std::int64_t renewed_ns_ = 0;
+  std::uint64_t commands_ = 0;
+  std::uint64_t commands_in_order_ = 0;  // since set()
+
+  comms::Node node_;
+  comms::Publisher<comms::msg::ActuatorCommand> publisher_;
+  comms::Subscription imu_;  // last: its callback uses all members above
+};
+
+// A term that vehicle and controllers accept: above the one that the vehicle obeyed last, below that of the next
+// takeover. obeyed_term: 0 if there is none.
+std::uint32_t term_above(std::uint32_t obeyed_term);
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,212 @@
+// `swiftlet check vehicle` with real processes: the plant passes, and defects at the wire are named.
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/support/held_vehicle.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/spoiling_relay.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/terminal.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+using ground::HandStep;
+using nlohmann::json;
+namespace msg = comms::msg;
+
+class CheckVehicle : public testing::Test {
+ protected:
+  comms::NodeSettings node(const std::string& name, const std::string& vehicle) const {
+    comms::NodeSettings settings;
+    settings.name = name;
+    settings.vehicle = vehicle;
+    settings.domain = lock_.domain();
+    settings.localhost_only = true;
+    settings.deadlines = false;
+    return settings;
+  }
+  std::vector<std::string> network(std::vector<std::string> words) const {
+    words.insert(words.end(), {"--localhost-only", "--domain", std::to_string(lock_.domain())});
+    return words;
+  }
+  std::unique_ptr<Program> start(const std::string& program, std::vector<std::string> words = {}) const {
+    return std::make_unique<Program>(program, network(std::move(words)), folder_.path());
+  }
+  ProgramResult swiftlet(std::vector<std::string> words) const {
+    return run_program("swiftlet", network(std::move(words)), folder_.path(), kStuck);
+  }
+  void start_plant() {
+    plant_ = start("swiftlet-plant");
+    mocap_ = start("swiftlet-mocap");
+  }
+  // A vehicle kl2 that is the plant with a defect.
+  void spoil(Spoil spoil) {
+    relay_ = std::make_unique<SpoilingRelay>(node("relay", "kl1"), node("plant", "kl2"), std::move(spoil));
+  }
+
+  static std::string finding_of(const ProgramResult& result, const std::string& check) {
+    const json checks = json::parse(result.output).at("checks");
+    const auto found =
+        std::find_if(checks.begin(), checks.end(), [&](const json& it) { return it.at("name") == check; });
+    if (found == checks.end()) return "no check " + check + " in " + result.output;
+    return found->at("verdict").get<std::string>() + ": " + found->at("finding").get<std::string>();
+  }
+  void expect_names(const std::vector<std::string>& options, const std::string& check,
+                    const std::string& words) {
+    std::vector<std::string> all = {"check", "vehicle", "--json", "--vehicle-name", "kl2"};
+    all.insert(all.end(), options.begin(), options.end());
+    const ProgramResult result = swiftlet(all);
+    EXPECT_EQ(result.exit_code, 1) << result.errors;
+    EXPECT_EQ(finding_of(result, check).find("fail: " + words), 0) << finding_of(result, check);
+  }
+
+  comms::DomainLock lock_;
+  TemporaryFolder folder_;
+  std::unique_ptr<Program> plant_, mocap_;
+  std::unique_ptr<SpoilingRelay> relay_;
+};
+
+TEST_F(CheckVehicle, ThePlantPassesAndItsRotorsEndOff) {
+  start_plant();
+  const ProgramResult result = swiftlet({"check", "vehicle", "--props-off", "--yes", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.output << result.errors;
+  const json report = json::parse(result.output);
+  EXPECT_EQ(report.at("failed"), 0);
+  for (const char* check : {"imu.rate", "imu.gravity", "battery.voltage", "mocap_pose.gravity",
+                            "commands.timeout", "commands.lower_term", "commands.stop", "rotor_4.order"})
+    EXPECT_EQ(finding_of(result, check), "pass: ");
+  EXPECT_EQ(finding_of(result, "rotor_1.spin").find("skipped: nobody at a terminal"), 0);
+  // It has timed out once, in the step without commands, and stands still at the end.
+  EXPECT_TRUE(eventually([&] {
+    return plant_->errors().find("rotors stopped on command") != std::string::npos;
+  })) << plant_->errors();
+}
+
+TEST_F(CheckVehicle, AVehicleInAHandPassesAndItsDefectsAreNamed) {
+  constexpr HandStep kSteps[] = {HandStep::kRollRight, HandStep::kBack,      HandStep::kNoseUp,
+                                 HandStep::kBack,      HandStep::kTurnRight, HandStep::kForward,
+                                 HandStep::kUp,        HandStep::kWave};
+  const auto guide = [&](HeldVehicle& vehicle) {
+    Program check("swiftlet", network({"check", "vehicle", "--hand", "--json"}), folder_.path());
+    for (std::size_t i = 0; i < std::size(kSteps); ++i) {
+      const std::string prompt = "step " + std::to_string(i + 1) + " of ";
+      if (!eventually([&] { return check.errors().find(prompt) != std::string::npos || check.exit_code(); }))
+        break;
+      vehicle.move(kSteps[i]);
+    }
+    const int exit_code = check.wait(kStuck);
+    return ProgramResult{exit_code, check.output(), check.errors()};
+  };
+  {
+    HeldVehicle vehicle(node("plant", "kl1"));
+    const ProgramResult result = guide(vehicle);
+    ASSERT_FALSE(result.output.empty()) << result.errors;
+    for (const char* check :
+         {"hand.gyro", "hand.accelerometer", "hand.mocap_attitude", "hand.gyro_scale", "hand.mocap_forward",
+          "hand.mocap_up", "hand.delay", "hand.alignment", "imu.wrap_around"})
+      EXPECT_EQ(finding_of(result, check), "pass: ") << result.output;
+  }
+  HeldVehicle spoilt(node("plant", "kl1"),
+                     [](plant::ImuSample& sample) { sample.body_rates_frd *= 180.0 / M_PI; });
+  const ProgramResult result = guide(spoilt);
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(finding_of(result, "hand.gyro_scale").find("fail: gyro in degrees/s"), 0) << result.output;
+}
+
+TEST_F(CheckVehicle, DefectsOfSensorsAtTheWireAreNamed) {
+  plant_ = start("swiftlet-plant");
+  spoil({[](msg::Imu& imu) {
+    for (double& axis : imu.specific_force_frd()) axis /= 9.80665;
+    imu.stamp_ns(imu.stamp_ns() - 80'000'000);
+    return imu.sequence_number() % 2 == 0;
+  }});
+  expect_names({}, "imu.gravity", "accelerometer in g");
+  expect_names({}, "imu.sequence", "gaps: ");
+}
+
+TEST_F(CheckVehicle, DefectsOfCommandsAtTheWireAreNamed) {
+  plant_ = start("swiftlet-plant");
+  Spoil ignores_timeout_and_exchanges;
+  ignores_timeout_and_exchanges.repeats_last_command = true;
+  ignores_timeout_and_exchanges.command = [](msg::ActuatorCommand& command) {
+    std::swap(command.throttle()[1], command.throttle()[2]);
+    return true;
+  };
+  spoil(ignores_timeout_and_exchanges);
+  std::vector<std::string> words = {"check", "vehicle",     "--json", "--vehicle-name",
+                                    "kl2",   "--props-off", "--yes"};
+  const ProgramResult result = swiftlet(words);
+  EXPECT_EQ(result.exit_code, 1) << result.errors;
+  EXPECT_EQ(finding_of(result, "commands.timeout").find("fail: ignored time-out"), 0) << result.output;
+  EXPECT_EQ(finding_of(result, "rotor_2.order").find("fail: two rotors exchanged"), 0) << result.output;
+}
+
+TEST_F(CheckVehicle, APersonConfirmsOrderAndSpinByKeys) {
+  plant_ = start("swiftlet-plant");
+  Terminal terminal("swiftlet", network({"check", "vehicle", "--props-off"}), 180, 120);
+  const auto shows = [&](const std::string& text) {
+    return eventually([&] { return terminal.text().find(text) != std::string::npos; });
+  };
+  ASSERT_TRUE(shows("Type yes if all propellers are off:")) << terminal.text();
+  terminal.type("yes\n");
+  const char* const answers[] = {"1\na\n", "2\na\n", "3\na\n",
+                                 "4\nc\n"};  // rotor 2 turns clockwise by its file
+  for (int rotor = 1; rotor <= 4; ++rotor) {
+    ASSERT_TRUE(shows("rotor " + std::to_string(rotor) + " of 4 turns faster")) << terminal.text();
+    terminal.type(answers[rotor - 1]);
+  }
+  EXPECT_EQ(terminal.wait(kStuck), 1);
+  EXPECT_NE(terminal.text().find("wrong spin: rotor 2 (front left) turns counter-clockwise"),
+            std::string::npos)
+      << terminal.text();
+}
+
+TEST_F(CheckVehicle, RefusesToCommandWhatAControllerMayFly) {
+  start_plant();
+  const auto control = start("swiftlet-control");
+  ASSERT_TRUE(eventually([&] { return swiftlet({"status", "--json"}).exit_code == 0; })) << control->errors();
+  const ProgramResult result = swiftlet({"check", "vehicle", "--props-off", "--yes", "--json"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(finding_of(result, "commands.steps"),
+            "fail: refused to command the vehicle: a control service for kl1 is alive");
+  EXPECT_EQ(plant_->errors().find("rotors started"), std::string::npos) << plant_->errors();
+}
+
+TEST_F(CheckVehicle, AnInterruptTurnsTheRotorsOff) {
+  plant_ = start("swiftlet-plant");
+  Program check("swiftlet", network({"check", "vehicle", "--props-off", "--yes"}), folder_.path());
+  ASSERT_TRUE(eventually([&] { return plant_->errors().find("rotors started") != std::string::npos; }))
+      << check.errors();
+  check.signal(SIGINT);
+  EXPECT_EQ(check.wait(kStuck), 1);
+  EXPECT_NE(check.errors().find("swiftlet: check vehicle: interrupted"), std::string::npos) << check.errors();
+  EXPECT_TRUE(eventually([&] {
+    return plant_->errors().find("rotors stopped on command") != std::string::npos;
+  })) << plant_->errors();
+}
+
+TEST_F(CheckVehicle, WrongUsageIsRefused) {
+  const ProgramResult unconfirmed = swiftlet({"check", "vehicle", "--props-off"});
+  EXPECT_EQ(unconfirmed.exit_code, 2);
+  EXPECT_EQ(unconfirmed.errors,
+            "swiftlet: check vehicle: --props-off: confirm with --yes that all propellers are off; the "
+            "rotors will turn\n");
+  EXPECT_EQ(swiftlet({"check", "vehicle", "--props-off", "--tethered"}).exit_code, 2);
+  const ProgramResult nobody = swiftlet({"check", "vehicle", "--timeout", "0.1", "--time", "1"});
+  EXPECT_EQ(nobody.exit_code, 1);
+  EXPECT_NE(nobody.output.find("missing: nobody publishes imu here"), std::string::npos) << nobody.output;
+}
+
+}  // namespace
+}  // namespace swiftlet::tests
