@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "swiftlet/ground/cli/check/preflight.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
@@ -155,6 +156,7 @@ int fly(const FlyOptions& options) {
   network.domain = domain_lock ? domain_lock->domain() : std::max(options.domain, 0);
   network.localhost_only = network.localhost_only || !attached;
   if (attached) require_on_ground(network, vehicles);
+  if (attached && !options.skip_check) require_sound_vehicles(network, vehicles);
   // In a domain that others may use, the vehicles must not live already.
   std::optional<comms::FlightReservation> reservation;
   if (!domain_lock && !attached) reservation.emplace(network, vehicles);
@@ -227,6 +229,9 @@ Command add_fly_command(runtime::CommandLine root) {
   runtime::Option attach = app.add_flag(
       "--attach", [options] { options->launch_mode = LaunchMode::kAttached; },
       "start no processes: use the plant, mocap and control that run in the domain (default: 0)");
+  app.add_flag("--skip-check", options->skip_check,
+               "with --attach: arm the vehicle although it was not checked, see `swiftlet check vehicle`")
+      .needs(attach);
   runtime::add_clock_option(app, options->clock);
   app.add_option(
          "--speed", options->speed,

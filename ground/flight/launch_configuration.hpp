@@ -47,12 +47,13 @@ struct FlyOptions {
   comms::NodeSettings network;
   // m, initial position; the mission is shifted by it.
   Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();
-  int vehicles = 1;        // above 1: kl1, kl2 ... instead of network.vehicle
-  double spacing_m = 1.0;  // distance between several vehicles, to the east
-  int per_row = 0;         // several vehicles: further rows stand to the north; 0: all in one row
-  int domain = -1;         // DDS domain; < 0: a free one, or 0 if attached
-  bool trace = false;      // write a trace of a lockstep or in-process flight
-  bool sensors = false;    // record sensors and commands, for `swiftlet identify flight`
+  int vehicles = 1;         // above 1: kl1, kl2 ... instead of network.vehicle
+  double spacing_m = 1.0;   // distance between several vehicles, to the east
+  int per_row = 0;          // several vehicles: further rows stand to the north; 0: all in one row
+  int domain = -1;          // DDS domain; < 0: a free one, or 0 if attached
+  bool trace = false;       // write a trace of a lockstep or in-process flight
+  bool sensors = false;     // record sensors and commands, for `swiftlet identify flight`
+  bool skip_check = false;  // kAttached: do not check the vehicle before it is armed
   bool json = false;
 };
 

@@ -208,5 +208,22 @@ TEST_F(CheckVehicle, WrongUsageIsRefused) {
   EXPECT_NE(nobody.output.find("missing: nobody publishes imu here"), std::string::npos) << nobody.output;
 }
 
+TEST_F(CheckVehicle, FlyArmsNoVehicleThatFailsTheCheck) {
+  plant_ = start("swiftlet-plant");
+  spoil({{}, [](msg::Battery& battery) {
+           battery.voltage_v(1e3 * battery.voltage_v());
+           return true;
+         }});
+  const auto control = start("swiftlet-control", {"--vehicle-name", "kl2"});
+  const ProgramResult fly =
+      swiftlet({"fly", "square", "--attach", "--vehicle-name", "kl2", "--record", folder_.path() / "record"});
+  EXPECT_EQ(fly.exit_code, 1);
+  EXPECT_NE(fly.errors.find("battery in mV"), std::string::npos) << fly.errors;
+  EXPECT_NE(fly.errors.find("swiftlet: fly: kl2 does not pass the check of vehicles and is not armed"),
+            std::string::npos)
+      << fly.errors;
+  EXPECT_EQ(plant_->errors().find("rotors started"), std::string::npos) << plant_->errors();
+}
+
 }  // namespace
 }  // namespace swiftlet::tests
