@@ -18,11 +18,11 @@ constexpr double kSlowestSimulation = 0.01;  // speeds of a simulated vehicle
 constexpr double kFastestSimulation = 100.0;
 constexpr double kRateTolerance = 0.05;
 constexpr double kImuRates[] = {500.0, 1000.0};
-constexpr double kMostLost = 0.02;
+constexpr double kMostLost = 0.05;
 constexpr double kImuGap_s = 0.1;      // imu_timeout_s of the control settings
 constexpr double kStampJitter = 0.25;  // of the period
 constexpr double kDeliveryDelay_s = 0.02;
-constexpr double kImuAge_s = 0.025;    // after this silence a standby takes over
+constexpr double kImuAge_s = 0.05;     // the loop becomes unstable at such delays
 constexpr double kEarliest_s = 0.005;  // a stamp may lie this much in the future
 
 struct StreamLimits {
