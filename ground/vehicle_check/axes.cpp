@@ -30,11 +30,10 @@ std::string describe_signs(const std::array<int, 3>& sign) {
 // Two axes exchanged, without a change of sign.
 std::string describe_exchange(const AxisMap& map) {
   if (map.sign != std::array<int, 3>{1, 1, 1}) return "";
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (map.axis[i] != static_cast<int>(i)) continue;
-    return fmt::format("{} and {} are exchanged",
-                       kNames[(i + 1) % 3 < (i + 2) % 3 ? (i + 1) % 3 : (i + 2) % 3],
-                       kNames[(i + 1) % 3 < (i + 2) % 3 ? (i + 2) % 3 : (i + 1) % 3]);
+  constexpr std::array<int, 2> kPairs[] = {{0, 1}, {1, 2}, {0, 2}};
+  for (const auto& [a, b] : kPairs) {
+    if (map.axis[static_cast<std::size_t>(a)] == b && map.axis[static_cast<std::size_t>(b)] == a)
+      return fmt::format("{} and {} are exchanged", kNames[a], kNames[b]);
   }
   return "";
 }

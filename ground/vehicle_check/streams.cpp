@@ -187,8 +187,7 @@ CheckResult check_imu_age(const VehicleRecording& recording, const SampleTimes& 
   if (!keeps_clock) return skipped("imu.age", "the stamps do not follow the computer's clock");
   const std::optional<ClockOffset> offset = clock_offset(recording.clock);
   if (!offset)
-    return skipped("imu.age",
-                   "the vehicle does not answer clock_request; --hand measures the delay to motion capture");
+    return skipped("imu.age", "no answer to clock_request; --hand measures the delay to motion capture");
   std::vector<double> ages;
   for (const SampleTime& sample : samples)
     ages.push_back(1e-9 * static_cast<double>(sample.received_ns + offset->offset_ns - sample.stamp_ns));

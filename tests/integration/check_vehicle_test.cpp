@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <utility>
@@ -49,6 +51,14 @@ class CheckVehicle : public testing::Test {
   void start_plant() {
     plant_ = start("swiftlet-plant");
     mocap_ = start("swiftlet-mocap");
+  }
+  // A simulation file like the default one, but without the floor.
+  std::string no_floor() const {
+    std::ifstream file(SWIFTLET_SOURCE_DIR "/config/simulation/default.yaml");
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    const std::string floor = "present: true";
+    text.replace(text.find(floor), floor.size(), "present: false");
+    return folder_.write("no_floor.yaml", text);
   }
   // A vehicle kl2 that is the plant with a defect.
   void spoil(Spoil spoil) {
@@ -152,6 +162,17 @@ TEST_F(CheckVehicle, DefectsOfCommandsAtTheWireAreNamed) {
   EXPECT_EQ(finding_of(result, "rotor_2.order").find("fail: two rotors exchanged"), 0) << result.output;
 }
 
+// Without a floor it falls, and turns as freely as on a tether. The accelerometer shows no gravity then.
+TEST_F(CheckVehicle, ThrustShowsOrderAndSpinOfAVehicleThatMayTurn) {
+  plant_ = start("swiftlet-plant", {"--simulation", no_floor()});
+  const ProgramResult result = swiftlet({"check", "vehicle", "--tethered", "--yes", "--json"});
+  ASSERT_FALSE(result.output.empty()) << result.errors;
+  for (const char* check : {"rotor_1.order", "rotor_2.order", "rotor_3.order", "rotor_4.order",
+                            "rotor_1.spin", "rotor_2.spin", "rotor_3.spin", "rotor_4.spin"})
+    EXPECT_EQ(finding_of(result, check), "pass: ");
+  EXPECT_EQ(finding_of(result, "imu.gravity").find("fail: the accelerometer does not measure gravity"), 0);
+}
+
 TEST_F(CheckVehicle, APersonConfirmsOrderAndSpinByKeys) {
   plant_ = start("swiftlet-plant");
   Terminal terminal("swiftlet", network({"check", "vehicle", "--props-off"}), 180, 120);
@@ -183,6 +204,20 @@ TEST_F(CheckVehicle, RefusesToCommandWhatAControllerMayFly) {
   EXPECT_EQ(plant_->errors().find("rotors started"), std::string::npos) << plant_->errors();
 }
 
+TEST_F(CheckVehicle, StopsWhenAControllerAppears) {
+  plant_ = start("swiftlet-plant");
+  Program check("swiftlet", network({"check", "vehicle", "--props-off", "--yes", "--json"}), folder_.path());
+  ASSERT_TRUE(eventually([&] { return plant_->errors().find("rotors started") != std::string::npos; }))
+      << check.errors();
+  const auto control = start("swiftlet-control");
+  EXPECT_EQ(check.wait(kStuck), 1);
+  EXPECT_EQ(finding_of({1, check.output(), check.errors()}, "commands.steps"),
+            "fail: stopped, rotors off: a control service for kl1 is alive");
+  EXPECT_TRUE(eventually([&] {
+    return plant_->errors().find("rotors stopped on command") != std::string::npos;
+  })) << plant_->errors();
+}
+
 TEST_F(CheckVehicle, AnInterruptTurnsTheRotorsOff) {
   plant_ = start("swiftlet-plant");
   Program check("swiftlet", network({"check", "vehicle", "--props-off", "--yes"}), folder_.path());
@@ -203,6 +238,7 @@ TEST_F(CheckVehicle, WrongUsageIsRefused) {
             "swiftlet: check vehicle: --props-off: confirm with --yes that all propellers are off; the "
             "rotors will turn\n");
   EXPECT_EQ(swiftlet({"check", "vehicle", "--props-off", "--tethered"}).exit_code, 2);
+  EXPECT_EQ(swiftlet({"fly", "square", "--skip-check"}).exit_code, 2) << "without --attach";
   const ProgramResult nobody = swiftlet({"check", "vehicle", "--timeout", "0.1", "--time", "1"});
   EXPECT_EQ(nobody.exit_code, 1);
   EXPECT_NE(nobody.output.find("missing: nobody publishes imu here"), std::string::npos) << nobody.output;
