@@ -50,15 +50,19 @@ struct RotorSpeedSample {
 // "Off" differs from throttle 0, at which the ESC of Eq. (9) still turns the rotor.
 enum class RotorState : std::uint8_t { kOff = 0, kRunning = 1 };
 
-struct ActuatorCommand {
+// The part that the commands of all levels have in common (vehicle_command.hpp has the other levels).
+struct CommandHeader {
   std::int64_t stamp_ns = 0;  // stamp of the IMU sample that this command was computed from
   std::uint64_t sequence = 0;
   std::uint64_t imu_sequence = 0;    // sequence of that IMU sample
   std::uint64_t mocap_sequence = 0;  // newest mocap frame received before this command
   RotorState rotor_state = RotorState::kOff;
-  int rotor_count = 0;
-  PerRotor throttle{};     // delta of Eq. (8), 0 .. 1
   std::uint32_t term = 0;  // controller's term: a controller that takes over starts a higher one
+};
+
+struct ActuatorCommand : CommandHeader {
+  int rotor_count = 0;
+  PerRotor throttle{};  // delta of Eq. (8), 0 .. 1
 };
 
 // The vehicle's report of the newest command that it accepted.

@@ -13,6 +13,7 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 
 #include "swiftlet_msgs/msg/ActuatorCommandPubSubTypes.h"
+#include "swiftlet_msgs/msg/AttitudeSetpointPubSubTypes.h"
 #include "swiftlet_msgs/msg/BatteryPubSubTypes.h"
 #include "swiftlet_msgs/msg/ClockReplyPubSubTypes.h"
 #include "swiftlet_msgs/msg/ClockRequestPubSubTypes.h"
@@ -29,11 +30,13 @@
 #include "swiftlet_msgs/msg/MissionPubSubTypes.h"
 #include "swiftlet_msgs/msg/MissionStatusPubSubTypes.h"
 #include "swiftlet_msgs/msg/MocapPosePubSubTypes.h"
+#include "swiftlet_msgs/msg/RatesSetpointPubSubTypes.h"
 #include "swiftlet_msgs/msg/ReferencePubSubTypes.h"
 #include "swiftlet_msgs/msg/RotorSpeedsPubSubTypes.h"
 #include "swiftlet_msgs/msg/SetpointPubSubTypes.h"
 #include "swiftlet_msgs/msg/SimulationClockPubSubTypes.h"
 #include "swiftlet_msgs/msg/TrajectoryPubSubTypes.h"
+#include "swiftlet_msgs/msg/TrajectorySetpointPubSubTypes.h"
 #include "swiftlet_msgs/msg/VehicleInfoPubSubTypes.h"
 
 #include "swiftlet/services/dds/checked_type_support.hpp"
@@ -49,10 +52,10 @@
 // All message types of topics.
 // clang-format off
 #define SWIFTLET_FOR_EACH_MESSAGE(X)                                      \
-  X(ActuatorCommand) X(Battery) X(ClockReply) X(ClockRequest) X(ClockStatus) X(Command) X(CommandAck) X(ControllerState) X(ControlSettings) X(ControlStatus) \
+  X(ActuatorCommand) X(AttitudeSetpoint) X(Battery) X(ClockReply) X(ClockRequest) X(ClockStatus) X(Command) X(CommandAck) X(ControllerState) X(ControlSettings) X(ControlStatus) \
   X(Estimate) X(GroundLink) X(GroundTruth) X(Imu) X(Mission) X(MissionStatus) \
-  X(MocapPose) X(Reference) X(RotorSpeeds) X(Setpoint)                    \
-  X(SimulationClock) X(Trajectory) X(VehicleInfo)
+  X(MocapPose) X(RatesSetpoint) X(Reference) X(RotorSpeeds) X(Setpoint)   \
+  X(SimulationClock) X(Trajectory) X(TrajectorySetpoint) X(VehicleInfo)
 // clang-format on
 
 namespace swiftlet::comms {

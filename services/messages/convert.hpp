@@ -15,6 +15,7 @@
 #include "swiftlet/control/types/request.hpp"
 #include "swiftlet/control/types/settings_request.hpp"
 #include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/plant/model/vehicle_command.hpp"
 #include "swiftlet/services/messages/topics.hpp"
 
 namespace swiftlet::comms {
@@ -48,6 +49,9 @@ Fault from_message(const msg::MocapPose& in,
 Fault from_message(const msg::Battery& in, plant::BatterySample& out);
 Fault from_message(const msg::RotorSpeeds& in, plant::RotorSpeedSample& out);
 Fault from_message(const msg::ActuatorCommand& in, plant::ActuatorCommand& out);
+Fault from_message(const msg::RatesSetpoint& in, plant::RatesSetpoint& out);
+Fault from_message(const msg::AttitudeSetpoint& in, plant::AttitudeSetpoint& out);
+Fault from_message(const msg::TrajectorySetpoint& in, plant::TrajectorySetpoint& out);
 Fault from_message(const msg::GroundTruth& in, plant::TruthSample& out);
 Fault from_message(const msg::Setpoint& in, control::Setpoint& out);
 Fault from_message(const msg::GroundLink& in, control::GroundHeartbeat& out);
@@ -63,6 +67,9 @@ msg::MocapPose to_message(const plant::PoseSample& in);
 msg::Battery to_message(const plant::BatterySample& in);
 msg::RotorSpeeds to_message(const plant::RotorSpeedSample& in);
 msg::ActuatorCommand to_message(const plant::ActuatorCommand& in);
+msg::RatesSetpoint to_message(const plant::RatesSetpoint& in);
+msg::AttitudeSetpoint to_message(const plant::AttitudeSetpoint& in);
+msg::TrajectorySetpoint to_message(const plant::TrajectorySetpoint& in);
 msg::GroundTruth to_message(const plant::TruthSample& in);
 msg::Setpoint to_message(const control::Setpoint& in);
 msg::ControllerState to_message(const ControllerReport& in);

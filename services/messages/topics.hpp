@@ -3,6 +3,7 @@
 #pragma once
 
 #include "swiftlet_msgs/msg/ActuatorCommand.h"
+#include "swiftlet_msgs/msg/AttitudeSetpoint.h"
 #include "swiftlet_msgs/msg/Battery.h"
 #include "swiftlet_msgs/msg/ClockReply.h"
 #include "swiftlet_msgs/msg/ClockRequest.h"
@@ -19,11 +20,13 @@
 #include "swiftlet_msgs/msg/Mission.h"
 #include "swiftlet_msgs/msg/MissionStatus.h"
 #include "swiftlet_msgs/msg/MocapPose.h"
+#include "swiftlet_msgs/msg/RatesSetpoint.h"
 #include "swiftlet_msgs/msg/Reference.h"
 #include "swiftlet_msgs/msg/RotorSpeeds.h"
 #include "swiftlet_msgs/msg/Setpoint.h"
 #include "swiftlet_msgs/msg/SimulationClock.h"
 #include "swiftlet_msgs/msg/Trajectory.h"
+#include "swiftlet_msgs/msg/TrajectorySetpoint.h"
 #include "swiftlet_msgs/msg/VehicleInfo.h"
 
 #include "swiftlet/services/messages/qos.hpp"
@@ -43,6 +46,10 @@ struct Topic {
 namespace topics {
 inline constexpr Topic<msg::Imu> kImu{"imu", Qos::kStream};
 inline constexpr Topic<msg::ActuatorCommand> kActuatorCommand{"actuator_command", Qos::kOwnedStream, 50};
+inline constexpr Topic<msg::RatesSetpoint> kRatesSetpoint{"rates_setpoint", Qos::kOwnedStream, 50};
+inline constexpr Topic<msg::AttitudeSetpoint> kAttitudeSetpoint{"attitude_setpoint", Qos::kOwnedStream, 50};
+inline constexpr Topic<msg::TrajectorySetpoint> kTrajectorySetpoint{"trajectory_setpoint", Qos::kOwnedStream,
+                                                                    50};
 inline constexpr Topic<msg::ControllerState> kControllerState{"controller_state", Qos::kStream};
 inline constexpr Topic<msg::MocapPose> kMocapPose{"mocap_pose", Qos::kStream};
 inline constexpr Topic<msg::RotorSpeeds> kRotorSpeeds{"rotor_speeds", Qos::kStream};

@@ -41,6 +41,9 @@ int main(int argc, char** argv) {
   write<Battery>(folder, "battery", to_message(battery_sample()));
   write<RotorSpeeds>(folder, "rotor_speeds", to_message(rotor_speed_sample()));
   write<ActuatorCommand>(folder, "actuator_command", to_message(actuator_command()));
+  write<RatesSetpoint>(folder, "rates_setpoint", to_message(rates_setpoint()));
+  write<AttitudeSetpoint>(folder, "attitude_setpoint", to_message(attitude_setpoint()));
+  write<TrajectorySetpoint>(folder, "trajectory_setpoint", to_message(trajectory_setpoint()));
   write<GroundTruth>(folder, "ground_truth", to_message(truth_sample()));
   write<Setpoint>(folder, "setpoint", to_message(setpoint()));
   write<ControllerState>(folder, "controller_state", to_message(controller_report()));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "swiftlet_msgs/msg/ActuatorCommandPubSubTypes.h"
+#include "swiftlet_msgs/msg/AttitudeSetpointPubSubTypes.h"
 #include "swiftlet_msgs/msg/BatteryPubSubTypes.h"
 #include "swiftlet_msgs/msg/CommandPubSubTypes.h"
 #include "swiftlet_msgs/msg/ControlSettingsPubSubTypes.h"
@@ -11,9 +12,11 @@
 #include "swiftlet_msgs/msg/ImuPubSubTypes.h"
 #include "swiftlet_msgs/msg/MissionPubSubTypes.h"
 #include "swiftlet_msgs/msg/MocapPosePubSubTypes.h"
+#include "swiftlet_msgs/msg/RatesSetpointPubSubTypes.h"
 #include "swiftlet_msgs/msg/RotorSpeedsPubSubTypes.h"
 #include "swiftlet_msgs/msg/SetpointPubSubTypes.h"
 #include "swiftlet_msgs/msg/TrajectoryPubSubTypes.h"
+#include "swiftlet_msgs/msg/TrajectorySetpointPubSubTypes.h"
 
 #include "swiftlet/services/messages/convert.hpp"
 #include "tests/support/serialization.hpp"
@@ -32,6 +35,10 @@ using MocapPose = MessageType<'p', comms::msg::MocapPosePubSubType, plant::PoseS
 using Battery = MessageType<'b', comms::msg::BatteryPubSubType, plant::BatterySample>;
 using RotorSpeeds = MessageType<'r', comms::msg::RotorSpeedsPubSubType, plant::RotorSpeedSample>;
 using ActuatorCommand = MessageType<'a', comms::msg::ActuatorCommandPubSubType, plant::ActuatorCommand>;
+using RatesSetpoint = MessageType<'w', comms::msg::RatesSetpointPubSubType, plant::RatesSetpoint>;
+using AttitudeSetpoint = MessageType<'h', comms::msg::AttitudeSetpointPubSubType, plant::AttitudeSetpoint>;
+using TrajectorySetpoint =
+    MessageType<'y', comms::msg::TrajectorySetpointPubSubType, plant::TrajectorySetpoint>;
 using GroundTruth = MessageType<'g', comms::msg::GroundTruthPubSubType, plant::TruthSample>;
 using Setpoint = MessageType<'s', comms::msg::SetpointPubSubType, control::Setpoint>;
 using ControllerState = MessageType<'c', comms::msg::ControllerStatePubSubType, comms::ControllerReport>;

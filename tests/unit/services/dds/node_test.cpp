@@ -44,6 +44,9 @@ struct TopicOf;
   };
 SWIFTLET_TOPIC_OF(Imu)
 SWIFTLET_TOPIC_OF(ActuatorCommand)
+SWIFTLET_TOPIC_OF(RatesSetpoint)
+SWIFTLET_TOPIC_OF(AttitudeSetpoint)
+SWIFTLET_TOPIC_OF(TrajectorySetpoint)
 SWIFTLET_TOPIC_OF(MocapPose)
 SWIFTLET_TOPIC_OF(RotorSpeeds)
 SWIFTLET_TOPIC_OF(ClockRequest)
@@ -91,10 +94,11 @@ TEST(Node, ACallbackThatThrowsEndsItsSubscriptionAlone) {
 template <class T>
 class EachTopic : public testing::Test {};
 using Messages =
-    testing::Types<msg::Imu, msg::ActuatorCommand, msg::MocapPose, msg::RotorSpeeds, msg::Setpoint,
-                   msg::Battery, msg::Estimate, msg::Reference, msg::GroundTruth, msg::ControlStatus,
-                   msg::MissionStatus, msg::VehicleInfo, msg::GroundLink, msg::Command, msg::Mission,
-                   msg::Trajectory, msg::CommandAck, msg::ClockRequest, msg::ClockReply, msg::ClockStatus>;
+    testing::Types<msg::Imu, msg::ActuatorCommand, msg::RatesSetpoint, msg::AttitudeSetpoint,
+                   msg::TrajectorySetpoint, msg::MocapPose, msg::RotorSpeeds, msg::Setpoint, msg::Battery,
+                   msg::Estimate, msg::Reference, msg::GroundTruth, msg::ControlStatus, msg::MissionStatus,
+                   msg::VehicleInfo, msg::GroundLink, msg::Command, msg::Mission, msg::Trajectory,
+                   msg::CommandAck, msg::ClockRequest, msg::ClockReply, msg::ClockStatus>;
 TYPED_TEST_SUITE(EachTopic, Messages);
 
 TYPED_TEST(EachTopic, ArrivesUnchanged) {

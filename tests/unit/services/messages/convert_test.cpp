@@ -28,6 +28,9 @@ TEST(Convert, RoundTripPreservesMessages) {
   expect_same<plant::BatterySample>(example<msg::Battery>());
   expect_same<plant::RotorSpeedSample>(example<msg::RotorSpeeds>());
   expect_same<plant::ActuatorCommand>(example<msg::ActuatorCommand>());
+  expect_same<plant::RatesSetpoint>(example<msg::RatesSetpoint>());
+  expect_same<plant::AttitudeSetpoint>(example<msg::AttitudeSetpoint>());
+  expect_same<plant::TrajectorySetpoint>(example<msg::TrajectorySetpoint>());
   expect_same<plant::TruthSample>(example<msg::GroundTruth>());
   expect_same<control::Setpoint>(example<msg::Setpoint>());
   expect_same<ControllerReport>(example<msg::ControllerState>());
@@ -38,15 +41,27 @@ TEST(Convert, RoundTripPreservesMessages) {
   expect_same<control::Trajectory>(to_message(trajectory(control::kMaxTrajectorySegments)));
 }
 
+TEST(Convert, CommandsOfAllLevelsCarryTheSameHeader) {
+  const plant::CommandHeader sent = command_header();
+  const auto expect_header = [&](auto received, const auto& message) {
+    ASSERT_FALSE(from_message(message, received));
+    EXPECT_EQ(received.stamp_ns, sent.stamp_ns);
+    EXPECT_EQ(received.sequence, sent.sequence);
+    EXPECT_EQ(received.imu_sequence, sent.imu_sequence);
+    EXPECT_EQ(received.mocap_sequence, sent.mocap_sequence);
+    EXPECT_EQ(received.rotor_state, sent.rotor_state);
+    EXPECT_EQ(received.term, sent.term);
+  };
+  expect_header(plant::ActuatorCommand(), example<msg::ActuatorCommand>());
+  expect_header(plant::RatesSetpoint(), example<msg::RatesSetpoint>());
+  expect_header(plant::AttitudeSetpoint(), example<msg::AttitudeSetpoint>());
+  expect_header(plant::TrajectorySetpoint(), example<msg::TrajectorySetpoint>());
+}
+
 TEST(Convert, RoundTripPreservesStructs) {
   plant::ActuatorCommand command;
   ASSERT_FALSE(from_message(example<msg::ActuatorCommand>(), command));
   const plant::ActuatorCommand sent = actuator_command();
-  EXPECT_EQ(command.stamp_ns, sent.stamp_ns);
-  EXPECT_EQ(command.sequence, sent.sequence);
-  EXPECT_EQ(command.imu_sequence, sent.imu_sequence);
-  EXPECT_EQ(command.mocap_sequence, sent.mocap_sequence);
-  EXPECT_EQ(command.rotor_state, sent.rotor_state);
   EXPECT_EQ(command.rotor_count, sent.rotor_count);
   EXPECT_EQ(command.throttle, sent.throttle);
 
@@ -152,6 +167,23 @@ TEST(Convert, RefusesInvalidSamples) {
   expect_refused<plant::ActuatorCommand>(example<msg::ActuatorCommand>(),
                                          "rotor_state is 2, must be at most 1",
                                          [](msg::ActuatorCommand& m) { m.rotor_state(2); });
+  expect_refused<plant::RatesSetpoint>(example<msg::RatesSetpoint>(),
+                                       "body_rates_frd[1] is nan, must be finite",
+                                       [](msg::RatesSetpoint& m) { m.body_rates_frd()[1] = kNan; });
+  expect_refused<plant::RatesSetpoint>(example<msg::RatesSetpoint>(), "thrust_n is -0.1, must be at least 0",
+                                       [](msg::RatesSetpoint& m) { m.thrust_n(-0.1); });
+  expect_refused<plant::RatesSetpoint>(example<msg::RatesSetpoint>(), "rotor_state is 2, must be at most 1",
+                                       [](msg::RatesSetpoint& m) { m.rotor_state(2); });
+  expect_refused<plant::AttitudeSetpoint>(example<msg::AttitudeSetpoint>(),
+                                          "q_ned_from_frd has the length 1.32288, must be 1 within 0.001",
+                                          [](msg::AttitudeSetpoint& m) { m.q_ned_from_frd()[0] = 1.0; });
+  expect_refused<plant::AttitudeSetpoint>(example<msg::AttitudeSetpoint>(), "thrust_n is inf, must be finite",
+                                          [](msg::AttitudeSetpoint& m) { m.thrust_n(kInfinity); });
+  expect_refused<plant::TrajectorySetpoint>(example<msg::TrajectorySetpoint>(),
+                                            "position_ned[2] is nan, must be finite",
+                                            [](msg::TrajectorySetpoint& m) { m.position_ned()[2] = kNan; });
+  expect_refused<plant::TrajectorySetpoint>(example<msg::TrajectorySetpoint>(), "yaw is nan, must be finite",
+                                            [](msg::TrajectorySetpoint& m) { m.yaw(kNan); });
   expect_refused<plant::TruthSample>(example<msg::GroundTruth>(), "velocity_ned[2] is nan, must be finite",
                                      [](msg::GroundTruth& m) { m.velocity_ned()[2] = kNan; });
   expect_refused<ControllerReport>(example<msg::ControllerState>(), "mode is 10, must be at most 9",
@@ -256,6 +288,15 @@ TEST(Convert, IgnoresThePositionOfAnUntrackedPose) {
   EXPECT_FALSE(from_message(message, pose));
   EXPECT_FALSE(pose.tracked);
   EXPECT_EQ(pose.position_ned, Eigen::Vector3d::Zero());
+}
+
+TEST(Convert, IgnoresAPositionThatIsNotUsed) {
+  msg::TrajectorySetpoint message = example<msg::TrajectorySetpoint>();
+  message.position_used(false);
+  message.position_ned()[0] = kNan;
+  plant::TrajectorySetpoint setpoint;
+  EXPECT_FALSE(from_message(message, setpoint));
+  EXPECT_EQ(setpoint.position_ned, Eigen::Vector3d::Zero());
 }
 
 TEST(Convert, IgnoresRotorsBeyondTheCount) {

@@ -17,8 +17,14 @@ inline plant::PoseSample pose_sample() {
 }
 inline plant::BatterySample battery_sample() { return {1003, 13, 3.9, 2.5, 0.75}; }
 inline plant::RotorSpeedSample rotor_speed_sample() { return {1004, 14, 4, four_rotors(1600.0)}; }
-inline plant::ActuatorCommand actuator_command() {
-  return {1005, 15, 11, 12, plant::RotorState::kRunning, 4, four_rotors(0.3), 21};
+inline plant::CommandHeader command_header() { return {1005, 15, 11, 12, plant::RotorState::kRunning, 21}; }
+inline plant::ActuatorCommand actuator_command() { return {command_header(), 4, four_rotors(0.3)}; }
+inline plant::RatesSetpoint rates_setpoint() { return {command_header(), {0.1, -0.2, 0.3}, 1.25}; }
+inline plant::AttitudeSetpoint attitude_setpoint() {
+  return {command_header(), Eigen::Quaterniond(0.5, -0.5, 0.5, 0.5), {0.1, -0.2, 0.3}, 1.25};
+}
+inline plant::TrajectorySetpoint trajectory_setpoint() {
+  return {command_header(), true, {1.0, -2.0, -3.0}, {0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, 0.7, 0.8};
 }
 inline plant::TruthSample truth_sample() {
   return {1006,
@@ -213,6 +219,18 @@ inline msg::ClockStatus example() {
 template <>
 inline msg::ActuatorCommand example() {
   return to_message(actuator_command());
+}
+template <>
+inline msg::RatesSetpoint example() {
+  return to_message(rates_setpoint());
+}
+template <>
+inline msg::AttitudeSetpoint example() {
+  return to_message(attitude_setpoint());
+}
+template <>
+inline msg::TrajectorySetpoint example() {
+  return to_message(trajectory_setpoint());
 }
 template <>
 inline msg::GroundTruth example() {
