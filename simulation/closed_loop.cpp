@@ -1,6 +1,6 @@
 #include "swiftlet/simulation/closed_loop.hpp"
 
-#include <cmath>
+#include <optional>
 
 namespace swiftlet::ground {
 
@@ -16,8 +16,9 @@ ClosedLoop::ClosedLoop(const plant::Vehicle& plant_vehicle, const plant::Vehicle
       mocap(simulation.mocap, seed),
       mocap_path(simulation, seed),
       command_path(simulation),
-      watchdog(plant_vehicle.rotor_count(), std::llround(simulation.command_timeout_s * 1e9)),
+      firmware(plant_vehicle, simulation),
       controller(control_vehicle, settings) {
+  controller.set_levels(simulation.control_levels, std::nullopt);
   collect();
   answer();
 }
@@ -31,7 +32,11 @@ void ClosedLoop::step() {
 }
 
 void ClosedLoop::collect() {
-  if (plant.battery()) battery_ = plant.battery();
+  if (plant.imu()) firmware.on_imu(*plant.imu());
+  if (plant.battery()) {
+    battery_ = plant.battery();
+    firmware.on_battery(*battery_);
+  }
   if (plant.rotor_speeds()) rotor_speeds_ = plant.rotor_speeds();
 }
 
@@ -39,17 +44,21 @@ void ClosedLoop::answer() {
   const plant::VehicleState& truth = plant.state();
   const auto pose = mocap_path.pass(mocap.update(plant.stamp_ns(), truth.position_ned, truth.q_ned_from_frd),
                                     plant.stamp_ns());
-  if (pose && mocap_connected) pose_ = pose;
+  if (pose && mocap_connected) {
+    pose_ = pose;
+    firmware.on_pose(*pose);
+  }
   if (!plant.imu()) return;
   if (pose_) controller.on_pose(*pose_);
   if (battery_) controller.on_battery(*battery_);
   if (rotor_speeds_) controller.on_rotor_speeds(*rotor_speeds_);
-  command = controller.on_imu(*plant.imu());
+  sent = controller.on_imu(*plant.imu());
+  command = firmware.as_actuators(sent);
   if (sensors != nullptr) record_sensors();
   pose_.reset();
   battery_.reset();
   rotor_speeds_.reset();
-  if (command_path.send(command, plant.stamp_ns())) watchdog.accept(command, plant.stamp_ns());
+  if (command_path.send(sent, plant.stamp_ns())) firmware.accept(sent, plant.stamp_ns());
 }
 
 void ClosedLoop::record_sensors() const {
@@ -62,8 +71,8 @@ void ClosedLoop::record_sensors() const {
 
 const plant::MotorCommand& ClosedLoop::motor_command() {
   if (const auto arrived = command_path.arrived(plant.stamp_ns()))
-    watchdog.accept(*arrived, plant.stamp_ns());
-  return watchdog.motor_command(plant.stamp_ns());
+    firmware.accept(*arrived, plant.stamp_ns());
+  return firmware.motor_command(plant.stamp_ns());
 }
 
 bool ClosedLoop::step_until(const std::function<bool()>& predicate, double limit_s) {

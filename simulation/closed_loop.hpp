@@ -11,7 +11,7 @@
 #include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/plant/model/samples.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
-#include "swiftlet/plant/simulation/actuator_watchdog.hpp"
+#include "swiftlet/plant/simulation/firmware/firmware.hpp"
 #include "swiftlet/plant/simulation/links/command_path.hpp"
 #include "swiftlet/plant/simulation/links/mocap_path.hpp"
 #include "swiftlet/plant/simulation/mocap.hpp"
@@ -23,7 +23,7 @@ namespace swiftlet::ground {
 
 class ClosedLoop {
  public:
-  // Processes the samples of stamp 0. Throws std::invalid_argument like FlightController.
+  // Processes the samples of stamp 0. The vehicle is commanded at the lowest of simulation.control_levels. Throws std::invalid_argument like FlightController.
   ClosedLoop(const plant::Vehicle& vehicle, const plant::SimulationSettings& simulation,
              const control::ControlSettings& settings, std::uint64_t seed);
   // As above, with a controller that is designed for control_vehicle and flies plant_vehicle. Both must have
@@ -47,9 +47,10 @@ class ClosedLoop {
   plant::Mocap mocap;
   plant::MocapPath mocap_path;
   plant::CommandPath command_path;
-  plant::ActuatorWatchdog watchdog;
+  plant::Firmware firmware;
   control::FlightController controller;
-  plant::ActuatorCommand command;  // the controller's last command
+  plant::VehicleCommand sent;      // the controller's last command
+  plant::ActuatorCommand command;  // the same, as Firmware::as_actuators()
   bool mocap_connected = true;
   SensorRecord* sensors = nullptr;  // records the controller's inputs and commands; null: no record
 

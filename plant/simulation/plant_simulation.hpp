@@ -35,7 +35,7 @@ class PlantSimulation {
                   const VehicleState& initial = {});
 
   // Advances by one integration step with a constant motor command. Throttles must lie within 0 .. 1;
-  // ActuatorWatchdog ensures that.
+  // CommandWatchdog ensures that.
   void step(const MotorCommand& drive);
 
   std::int64_t stamp_ns() const { return stamp_ns_; }

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "swiftlet/plant/model/control_level.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 #include "swiftlet/plant/model/violation.hpp"
 #include "swiftlet/plant/simulation/links/faults.hpp"
@@ -109,8 +110,10 @@ struct GpsSettings {
 
 struct SimulationSettings {
   std::string name = "default";
-  std::int64_t step_ns = 1'000'000;    // integration step
-  double command_timeout_s = 0.5;      // the vehicle stops its rotors after this time without a valid command
+  std::int64_t step_ns = 1'000'000;  // integration step
+  double command_timeout_s = 0.5;    // the vehicle stops its rotors after this time without a valid command
+  // At which the vehicle accepts commands; not a key of the file (`--level`).
+  ControlLevels control_levels = ControlLevel::kActuators;
   double rotor_speed_rate_hz = 100.0;  // of rotor speed samples; 0: the vehicle does not measure them
   ImuSettings imu;
   MocapSettings mocap;

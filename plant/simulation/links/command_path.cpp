@@ -18,7 +18,7 @@ CommandPath::CommandPath(const SimulationSettings& settings)
       faultless_(!faults_.has(FaultKind::kCommandsStop) && !faults_.has(FaultKind::kCommandsDelay)),
       delayed_(delay_capacity(faults_, settings.imu)) {}
 
-bool CommandPath::send_with_faults(const ActuatorCommand& command, std::int64_t now_ns) {
+bool CommandPath::send_with_faults(const VehicleCommand& command, std::int64_t now_ns) {
   if (faults_.active(FaultKind::kCommandsStop, now_ns) != nullptr) return false;
   if (const Fault* delay = faults_.active(FaultKind::kCommandsDelay, now_ns)) {
     delayed_.put(command, now_ns + std::llround(delay->delay_s * 1.0e9));

@@ -1,10 +1,10 @@
-// Link of the actuator commands from the controller to the vehicle, with the injected faults (loss, delay).
+// Link of the commands from the controller to the vehicle, with the injected faults (loss, delay).
 #pragma once
 
 #include <cstdint>
 #include <optional>
 
-#include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/plant/model/vehicle_command.hpp"
 #include "swiftlet/plant/simulation/links/delay_line.hpp"
 #include "swiftlet/plant/simulation/links/faults.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
@@ -16,22 +16,22 @@ class CommandPath {
   explicit CommandPath(const SimulationSettings& settings);
 
   // Sends a command at now_ns. Returns true if it arrives immediately.
-  bool send(const ActuatorCommand& command, std::int64_t now_ns) {
+  bool send(const VehicleCommand& command, std::int64_t now_ns) {
     return faultless_ || send_with_faults(command, now_ns);
   }
 
   // The newest delayed command that has arrived by now_ns, if any.
-  std::optional<ActuatorCommand> arrived(std::int64_t now_ns) {
+  std::optional<VehicleCommand> arrived(std::int64_t now_ns) {
     if (delayed_.empty()) return std::nullopt;
     return delayed_.take(now_ns);
   }
 
  private:
-  bool send_with_faults(const ActuatorCommand& command, std::int64_t now_ns);
+  bool send_with_faults(const VehicleCommand& command, std::int64_t now_ns);
 
   FaultSchedule faults_;
   bool faultless_;
-  DelayLine<ActuatorCommand> delayed_;
+  DelayLine<VehicleCommand> delayed_;
 };
 
 }  // namespace swiftlet::plant

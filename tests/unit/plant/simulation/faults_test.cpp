@@ -249,7 +249,7 @@ TEST(CommandFaults, StopDropsCommandsAndDelayPostponesThem) {
     // From 40 ms on the commands under way are overtaken.
     ASSERT_EQ(late.has_value(), ms >= 35 && ms <= 40) << ms;
     if (late) {
-      ASSERT_EQ(late->stamp_ns, now - 5 * kMillisecond);
+      ASSERT_EQ(plant::header_of(*late).stamp_ns, now - 5 * kMillisecond);
     }
   }
 }

@@ -1,4 +1,4 @@
-#include "swiftlet/plant/simulation/actuator_watchdog.hpp"
+#include "swiftlet/plant/simulation/command_watchdog.hpp"
 
 #include <limits>
 #include <string>
@@ -10,8 +10,10 @@ namespace swiftlet::tests {
 namespace {
 
 using plant::ActuatorCommand;
-using plant::ActuatorWatchdog;
 using plant::CommandFault;
+using plant::CommandWatchdog;
+using plant::ControlLevel;
+using plant::ControlLevels;
 using plant::RotorState;
 
 constexpr std::int64_t kTimeout = 200;
@@ -25,15 +27,15 @@ ActuatorCommand command(std::int64_t stamp_ns, double throttle = 0.5) {
   return command;
 }
 
-TEST(ActuatorWatchdog, KeepsRotorsOffUntilTheFirstCommand) {
-  const ActuatorWatchdog watchdog(4, kTimeout);
+TEST(CommandWatchdog, KeepsRotorsOffUntilTheFirstCommand) {
+  const CommandWatchdog watchdog(4, kTimeout);
   EXPECT_EQ(watchdog.motor_command(0).state, RotorState::kOff);
   EXPECT_EQ(watchdog.motor_command(1'000'000).state, RotorState::kOff);
   EXPECT_FALSE(watchdog.expired(1'000'000));  // there was no command yet
 }
 
-TEST(ActuatorWatchdog, PassesValidCommandsOn) {
-  ActuatorWatchdog watchdog(4, kTimeout);
+TEST(CommandWatchdog, PassesValidCommandsOn) {
+  CommandWatchdog watchdog(4, kTimeout);
   ActuatorCommand good = command(1000);
   good.throttle = {0.0, 1.0, 0.25, 0.75, 0.9, 0.9, 0.9, 0.9};
   EXPECT_EQ(watchdog.accept(good, 1000), CommandFault::kNone);
@@ -45,8 +47,8 @@ TEST(ActuatorWatchdog, PassesValidCommandsOn) {
   EXPECT_EQ(watchdog.motor_command(1001).state, RotorState::kOff);
 }
 
-TEST(ActuatorWatchdog, StopsRotorsWhenCommandsStop) {
-  ActuatorWatchdog watchdog(4, kTimeout);
+TEST(CommandWatchdog, StopsRotorsWhenCommandsStop) {
+  CommandWatchdog watchdog(4, kTimeout);
   watchdog.accept(command(1000), 1100);
   EXPECT_FALSE(watchdog.expired(1200));
   EXPECT_EQ(watchdog.motor_command(1200).state, RotorState::kRunning);
@@ -57,8 +59,8 @@ TEST(ActuatorWatchdog, StopsRotorsWhenCommandsStop) {
   EXPECT_EQ(watchdog.motor_command(1300).state, RotorState::kRunning);
 }
 
-TEST(ActuatorWatchdog, RefusesLowerTermsUntilTheTermTimesOut) {
-  ActuatorWatchdog watchdog(4, kTimeout);
+TEST(CommandWatchdog, RefusesLowerTermsUntilTheTermTimesOut) {
+  CommandWatchdog watchdog(4, kTimeout);
   const auto with_term = [](std::uint32_t term, std::int64_t stamp_ns) {
     ActuatorCommand sent = command(stamp_ns);
     sent.term = term;
@@ -72,8 +74,8 @@ TEST(ActuatorWatchdog, RefusesLowerTermsUntilTheTermTimesOut) {
       << "the higher term has timed out";
 }
 
-TEST(ActuatorWatchdog, ReportsTheCommandInEffect) {
-  ActuatorWatchdog watchdog(4, kTimeout);
+TEST(CommandWatchdog, ReportsTheCommandInEffect) {
+  CommandWatchdog watchdog(4, kTimeout);
   EXPECT_TRUE(watchdog.obeyed().reported);
   EXPECT_FALSE(watchdog.obeyed().any);
   ActuatorCommand sent = command(1000);
@@ -121,10 +123,10 @@ std::vector<InvalidCommand> invalid_commands() {
   return all;
 }
 
-TEST(ActuatorWatchdog, RefusesInvalidCommandsWithoutEffect) {
+TEST(CommandWatchdog, RefusesInvalidCommandsWithoutEffect) {
   for (const InvalidCommand& invalid : invalid_commands()) {
     SCOPED_TRACE(invalid.name);
-    ActuatorWatchdog watchdog(4, kTimeout);
+    CommandWatchdog watchdog(4, kTimeout);
     ASSERT_EQ(watchdog.accept(command(900), 900), CommandFault::kNone);
     EXPECT_EQ(watchdog.accept(invalid.command, 1050), invalid.fault);
     EXPECT_EQ(plant::to_string(invalid.fault), invalid.sentence);
@@ -134,8 +136,58 @@ TEST(ActuatorWatchdog, RefusesInvalidCommandsWithoutEffect) {
   }
 }
 
-TEST(ActuatorWatchdog, RefusesCommandsOlderThanTheTimeout) {
-  ActuatorWatchdog watchdog(4, kTimeout);
+plant::VehicleCommand at_level(ControlLevel level, const plant::CommandHeader& header) {
+  plant::VehicleCommand sent = plant::rotors_off(level, header, 4);
+  plant::header_of(sent).rotor_state = header.rotor_state;
+  return sent;
+}
+
+// GIVEN a vehicle that accepts some levels THEN it obeys these alone, and "rotors off" at level actuators.
+TEST(CommandWatchdog, AcceptsOnlyTheLevelsOfTheVehicle) {
+  CommandWatchdog watchdog(4, kTimeout, ControlLevels::from_bits(0b1010));  // rates, trajectory
+  const ActuatorCommand header = command(1000);
+  EXPECT_EQ(watchdog.accept(at_level(ControlLevel::kActuators, header), 1000), CommandFault::kLevel);
+  EXPECT_EQ(watchdog.accept(at_level(ControlLevel::kAttitude, header), 1000), CommandFault::kLevel);
+  EXPECT_STREQ(plant::to_string(CommandFault::kLevel), "the vehicle does not accept commands at this level");
+  EXPECT_EQ(watchdog.motor_command(1000).state, RotorState::kOff);
+  EXPECT_EQ(watchdog.accept(at_level(ControlLevel::kRates, header), 1000), CommandFault::kNone);
+  EXPECT_EQ(watchdog.motor_command(1000).state, RotorState::kRunning);
+  EXPECT_EQ(watchdog.accept(plant::rotors_off(ControlLevel::kActuators, header, 4), 1001),
+            CommandFault::kNone);
+  EXPECT_EQ(watchdog.motor_command(1001).state, RotorState::kOff);
+}
+
+// GIVEN a controller that commands at one level WHEN one of a lower term commands at another THEN it is refused.
+TEST(CommandWatchdog, TermsHoldAcrossLevels) {
+  CommandWatchdog watchdog(4, kTimeout, ControlLevels::from_bits(0b1111));
+  ActuatorCommand header = command(1000);
+  header.term = 5;
+  EXPECT_EQ(watchdog.accept(at_level(ControlLevel::kAttitude, header), 1000), CommandFault::kNone);
+  header.term = 4;
+  header.stamp_ns = 1100;
+  for (const ControlLevel level : plant::kControlLevels)
+    EXPECT_EQ(watchdog.accept(at_level(level, header), 1100), CommandFault::kOvertaken);
+}
+
+TEST(CommandWatchdog, RefusesSetpointsThatAreNotFinite) {
+  CommandWatchdog watchdog(4, kTimeout, ControlLevels::from_bits(0b1111));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  plant::RatesSetpoint rates;
+  rates.body_rates_frd.y() = nan;
+  plant::RatesSetpoint pushing;
+  pushing.thrust_n = -0.1;
+  plant::AttitudeSetpoint attitude;
+  attitude.thrust_n = nan;
+  plant::TrajectorySetpoint trajectory;
+  trajectory.acceleration_ned.z() = nan;
+  for (const plant::VehicleCommand& invalid :
+       std::vector<plant::VehicleCommand>{rates, pushing, attitude, trajectory})
+    EXPECT_EQ(watchdog.accept(invalid, 0), CommandFault::kNotFinite);
+  EXPECT_FALSE(watchdog.obeyed().any);
+}
+
+TEST(CommandWatchdog, RefusesCommandsOlderThanTheTimeout) {
+  CommandWatchdog watchdog(4, kTimeout);
   EXPECT_EQ(watchdog.accept(command(999), 1200), CommandFault::kStale);
   EXPECT_EQ(watchdog.motor_command(1200).state, RotorState::kOff);
   EXPECT_EQ(watchdog.accept(command(1000), 1200), CommandFault::kNone);
