@@ -64,10 +64,18 @@ struct FlightController::Impl {
   void observe(const ControlSetpoint& setpoint, double dt_s);
   AttitudeDemand outer_loop(const ControlSetpoint& setpoint, double dt_s);
   Wrench inner_loop(const AttitudeDemand& demand) const;
-  void allocate(const AttitudeDemand& demand, const Wrench& wrench);
+  void command_vehicle(const ControlSetpoint& setpoint, const AttitudeDemand& demand);
   void idle_rotors(plant::RotorState rotor_state);
   void report(const SupervisorInputs& inputs);
-  const plant::ActuatorCommand& stamp_command(const plant::ImuSample& sample);
+  const plant::VehicleCommand& stamp_command(const plant::ImuSample& sample);
+
+  // The command at each level.
+  void allocate(const AttitudeDemand& demand, const Wrench& wrench);
+  void send_rates(const AttitudeDemand& demand);
+  void send_attitude(const AttitudeDemand& demand);
+  void send_trajectory(const ControlSetpoint& setpoint);
+  void send_idle();
+  double thrust_along_body(const AttitudeDemand& demand) const;
 
   // Changes of gains.
   void begin_gain_change(const Request& request, const Outcome& outcome);
@@ -79,6 +87,8 @@ struct FlightController::Impl {
   AttitudeDemand spool_up(double lift_fraction) const;
   AttitudeDemand descend_level(double speed) const;
   AttitudeDemand follow_direct_setpoint(const ControlSetpoint& setpoint) const;
+
+  bool controls_position() const { return level != plant::ControlLevel::kTrajectory; }
 
   plant::Vehicle vehicle;
   ControlSettings settings;
@@ -109,7 +119,11 @@ struct FlightController::Impl {
   std::int64_t battery_stamp_ns = 0;
   double supply_voltage_v;
   Allocator::Supply supply;
-  plant::ActuatorCommand command;
+  plant::ControlLevel level = plant::ControlLevel::kActuators;
+  plant::ControlLevels accepted_levels = plant::ControlLevel::kActuators;
+  plant::ActuatorCommand command;  // at other levels without throttles
+  double thrust_n = 0.0;           // collective thrust of the command, at other levels
+  plant::VehicleCommand sent;      // the command at the level
   Reference reference;
   Heading heading;  // of the reference's yaw
   AttitudeSetpoint attitude_setpoint;
@@ -133,6 +147,7 @@ FlightController::Impl::Impl(const plant::Vehicle& vehicle_in, const ControlSett
       supply_voltage_v(allocator.plausible_supply().assumed),
       supply(allocator.supply_at(supply_voltage_v)) {
   command.rotor_count = vehicle.rotor_count();
+  sent = command;
   gains = control_gains(design_in, settings_in);
   gain_change.from = gain_change.to = gains;
   gain_change.name = settings_name(settings_in.name);
@@ -179,6 +194,8 @@ SupervisorInputs FlightController::Impl::inputs() const {
   inputs.rotor_speed = *std::max_element(rotors.speeds().begin(), rotors.speeds().end());
   inputs.imu_unusable_s = unusable_s;
   inputs.imu_gap_s = imu_gap_s;
+  inputs.level = level;
+  inputs.accepted_levels = accepted_levels;
   inputs.gains = &gain_change.to;
   inputs.gains_progress = gain_change.progress(last_stamp_ns);
   inputs.gains_changing_s = gain_change.remaining_s(last_stamp_ns);
@@ -193,7 +210,11 @@ double FlightController::Impl::store_sample(const plant::ImuSample& sample) {
   const double dt_s = std::min(imu_gap_s, kMaxStep_s);
   last_stamp_ns = sample.stamp_ns;
   specific_force_frd = sample.specific_force_frd;
-  rotors.step(dt_s, command, supply_voltage_v);
+  if (level == plant::ControlLevel::kActuators) {
+    rotors.step(dt_s, command, supply_voltage_v);
+  } else {
+    rotors.step(dt_s, thrust_n);
+  }
   return dt_s;
 }
 
@@ -241,7 +262,7 @@ void FlightController::Impl::observe(const ControlSetpoint& setpoint, double dt_
     case ControlMode::kAttitude:
     case ControlMode::kBodyRates:
       takeoff_monitor.step(dt_s, specific_force_frd, estimate.q_ned_from_frd, estimate.position_ned.z());
-      if (!setpoint.integrate) return;
+      if (!setpoint.integrate || !controls_position()) return;
       disturbance.step(dt_s, specific_force_frd - estimate.accelerometer_bias, estimate.q_ned_from_frd,
                        rotors.thrust_n() / vehicle.mass_kg);
       return;
@@ -265,8 +286,8 @@ AttitudeDemand FlightController::Impl::outer_loop(const ControlSetpoint& setpoin
 // Eq. (48), then the map from its acceleration to thrust and attitude.
 AttitudeDemand FlightController::Impl::follow_reference(bool integrate, double dt_s) {
   const Estimate& estimate = estimator.estimate();
-  const PositionCommand wanted =
-      position.step(estimate.position_ned, estimate.velocity_ned, reference, dt_s, !integrate);
+  const PositionCommand wanted = position.step(estimate.position_ned, estimate.velocity_ned, reference, dt_s,
+                                               !integrate || !controls_position());
   const ThrustAttitude outer = thrust_attitude(
       vehicle.mass_kg, wanted.acceleration_ned - disturbance.acceleration_ned(), max_tilt_tangent);
   if (heading.yaw_rad != reference.yaw_rad) heading = reference.yaw_rad;
@@ -284,10 +305,10 @@ AttitudeDemand FlightController::Impl::follow_reference(bool integrate, double d
 }
 
 AttitudeDemand FlightController::Impl::spool_up(double lift_fraction) const {
-  AttitudeDemand level;
-  level.thrust_n = lift_fraction * vehicle.mass_kg * plant::kGravity;
-  level.attitude.heading = reference.yaw_rad;
-  return level;
+  AttitudeDemand upright;
+  upright.thrust_n = lift_fraction * vehicle.mass_kg * plant::kGravity;
+  upright.attitude.heading = reference.yaw_rad;
+  return upright;
 }
 
 AttitudeDemand FlightController::Impl::descend_level(double speed) const {
@@ -326,11 +347,88 @@ Wrench FlightController::Impl::inner_loop(const AttitudeDemand& demand) const {
         attitude.moments_for_rates(estimate.body_rates_frd, rotors.moment_frd(), demand.attitude.body_rates);
     return wrench;
   }
-  const Vector3d body_z_ned = body_z(estimate.q_ned_from_frd);
-  wrench.thrust_n = demand.thrust_n * std::max(demand.attitude.body_z_ned.dot(body_z_ned), 0.0);
+  wrench.thrust_n = thrust_along_body(demand);
   wrench.moment_frd = attitude.moments(estimate.q_ned_from_frd, estimate.body_rates_frd, rotors.moment_frd(),
                                        demand.attitude);
   return wrench;
+}
+
+double FlightController::Impl::thrust_along_body(const AttitudeDemand& demand) const {
+  const Vector3d body_z_ned = body_z(estimator.estimate().q_ned_from_frd);
+  return demand.thrust_n * std::max(demand.attitude.body_z_ned.dot(body_z_ned), 0.0);
+}
+
+void FlightController::Impl::command_vehicle(const ControlSetpoint& setpoint, const AttitudeDemand& demand) {
+  if (level == plant::ControlLevel::kActuators) return allocate(demand, inner_loop(demand));
+  command.rotor_state = plant::RotorState::kRunning;
+  command.throttle = plant::PerRotor{};
+  thrust_n = std::max(demand.rates_only ? demand.thrust_n : thrust_along_body(demand), 0.0);
+  attitude_setpoint = {demand.attitude.body_z_ned, demand.attitude.heading.yaw_rad, thrust_n,
+                       Vector3d::Zero()};
+  status.saturated = false;  // not known
+  if (level == plant::ControlLevel::kRates) return send_rates(demand);
+  if (level == plant::ControlLevel::kAttitude) return send_attitude(demand);
+  send_trajectory(setpoint);
+}
+
+void FlightController::Impl::send_rates(const AttitudeDemand& demand) {
+  plant::RatesSetpoint rates;
+  rates.body_rates_frd = demand.rates_only
+                             ? demand.attitude.body_rates
+                             : attitude.rates(estimator.estimate().q_ned_from_frd, demand.attitude);
+  const double rate = rates.body_rates_frd.norm();
+  if (rate > settings.limits.max_body_rate) rates.body_rates_frd *= settings.limits.max_body_rate / rate;
+  rates.thrust_n = thrust_n;
+  sent = rates;
+}
+
+// Body-rate setpoints of a client: the vehicle's attitude law adds nothing at the present attitude.
+void FlightController::Impl::send_attitude(const AttitudeDemand& demand) {
+  plant::AttitudeSetpoint wanted;
+  wanted.q_ned_from_frd =
+      demand.rates_only
+          ? estimator.estimate().q_ned_from_frd
+          : Eigen::Quaterniond(attitude_along(demand.attitude.body_z_ned, demand.attitude.heading));
+  wanted.body_rates_frd = demand.attitude.body_rates;
+  wanted.thrust_n = thrust_n;
+  sent = wanted;
+}
+
+// While the vehicle has no position, or its thrust is to rise at take-off, only velocity and acceleration.
+void FlightController::Impl::send_trajectory(const ControlSetpoint& setpoint) {
+  plant::TrajectorySetpoint wanted;
+  wanted.yaw_rad = reference.yaw_rad;
+  if (setpoint.control_mode == ControlMode::kSpoolUp) {
+    wanted.acceleration_ned.z() = (1.0 - setpoint.lift_fraction) * plant::kGravity;
+  } else if (setpoint.control_mode == ControlMode::kLevelDescent) {
+    wanted.velocity_ned.z() = setpoint.descent_speed;
+    wanted.yaw_rad = euler_angles(estimator.estimate().q_ned_from_frd).heading.yaw_rad;
+  } else {
+    wanted.position_used = setpoint.control_mode == ControlMode::kFly;
+    wanted.position_ned = reference.position_ned;
+    wanted.velocity_ned = reference.velocity_ned;
+    wanted.acceleration_ned = reference.acceleration_ned;
+    wanted.yaw_rate = reference.yaw_rate;
+  }
+  sent = wanted;
+}
+
+// Rotors off, or running without thrust. At level trajectory, free fall asks for no thrust.
+void FlightController::Impl::send_idle() {
+  thrust_n = 0.0;
+  const Heading now = euler_angles(estimator.estimate().q_ned_from_frd).heading;
+  if (level == plant::ControlLevel::kRates) {
+    sent = plant::RatesSetpoint();
+  } else if (level == plant::ControlLevel::kAttitude) {
+    plant::AttitudeSetpoint upright;
+    upright.q_ned_from_frd = Eigen::Quaterniond(attitude_along(Vector3d::UnitZ(), now));
+    sent = upright;
+  } else {
+    plant::TrajectorySetpoint falling;
+    falling.acceleration_ned.z() = plant::kGravity;
+    falling.yaw_rad = now.yaw_rad;
+    sent = falling;
+  }
 }
 
 void FlightController::Impl::allocate(const AttitudeDemand& demand, const Wrench& wrench) {
@@ -348,6 +446,7 @@ void FlightController::Impl::idle_rotors(plant::RotorState rotor_state) {
   command.throttle = plant::PerRotor{};
   attitude_setpoint = AttitudeSetpoint();
   status.saturated = false;
+  if (level != plant::ControlLevel::kActuators) send_idle();
 }
 
 void FlightController::Impl::report(const SupervisorInputs& inputs) {
@@ -356,6 +455,7 @@ void FlightController::Impl::report(const SupervisorInputs& inputs) {
   status.has_pose = inputs.has_estimate && inputs.pose_age_s <= settings.failsafe.mocap_timeout_s;
   status.pose_age_s = inputs.pose_age_s;
   status.airborne = supervisor.airborne();
+  status.level = level;
   status.ground_links = supervisor.ground_links();
   status.supply_voltage_v = supply_voltage_v;
   status.mission = supervisor.mission();
@@ -363,12 +463,17 @@ void FlightController::Impl::report(const SupervisorInputs& inputs) {
   status.gains_progress = gain_change.progress(last_stamp_ns);
 }
 
-const plant::ActuatorCommand& FlightController::Impl::stamp_command(const plant::ImuSample& sample) {
+const plant::VehicleCommand& FlightController::Impl::stamp_command(const plant::ImuSample& sample) {
   command.stamp_ns = sample.stamp_ns;
   command.imu_sequence = sample.sequence;
   command.mocap_sequence = estimator.pose_sequence();
   ++command.sequence;
-  return command;
+  if (level == plant::ControlLevel::kActuators) {
+    sent = command;
+  } else {
+    plant::header_of(sent) = command;
+  }
+  return sent;
 }
 
 FlightController::FlightController(const plant::Vehicle& vehicle, const ControlSettings& settings)
@@ -378,13 +483,12 @@ FlightController::~FlightController() = default;
 FlightController::FlightController(FlightController&&) noexcept = default;
 FlightController& FlightController::operator=(FlightController&&) noexcept = default;
 
-const plant::ActuatorCommand& FlightController::on_imu(const plant::ImuSample& sample) {
+const plant::VehicleCommand& FlightController::on_imu(const plant::ImuSample& sample) {
   ClientInputs none;
   return on_imu(sample, none);
 }
 
-const plant::ActuatorCommand& FlightController::on_imu(const plant::ImuSample& sample,
-                                                       ClientInputs& clients) {
+const plant::VehicleCommand& FlightController::on_imu(const plant::ImuSample& sample, ClientInputs& clients) {
   Impl& c = *impl_;
   // Estimate.
   c.restart_if_clock_went_back(sample);
@@ -410,12 +514,22 @@ const plant::ActuatorCommand& FlightController::on_imu(const plant::ImuSample& s
     c.idle_rotors(setpoint.control_mode == ControlMode::kOff ? plant::RotorState::kOff
                                                              : plant::RotorState::kRunning);
   } else {
-    const AttitudeDemand demand = c.outer_loop(setpoint, dt_s);
-    c.allocate(demand, c.inner_loop(demand));
+    c.command_vehicle(setpoint, c.outer_loop(setpoint, dt_s));
   }
   if (c.status.saturated) c.saturated_ns = sample.stamp_ns;
   c.report(inputs);
   return c.stamp_command(sample);
+}
+
+void FlightController::set_levels(plant::ControlLevels accepted, std::optional<plant::ControlLevel> wanted) {
+  Impl& c = *impl_;
+  const bool obeyed = c.command.rotor_state == plant::RotorState::kRunning && accepted.has(c.level);
+  c.accepted_levels = accepted;
+  const plant::ControlLevel level = wanted.value_or(accepted.lowest());
+  if (obeyed || level == c.level) return;
+  c.level = level;
+  c.command.throttle = plant::PerRotor{};
+  if (level != plant::ControlLevel::kActuators) c.send_idle();
 }
 
 void FlightController::on_pose(const plant::PoseSample& sample) {

@@ -1,9 +1,10 @@
-// The whole controller as pure code: samples and requests in, actuator commands out. No clock, no I/O, no
+// The whole controller as pure code: samples and requests in, commands of the vehicle out. No clock, no I/O, no
 // threads, no heap allocation after construction. Time is the samples' stamps. One thread calls it.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "swiftlet/control/estimation/estimator.hpp"
 #include "swiftlet/control/flight_state.hpp"
@@ -13,8 +14,10 @@
 #include "swiftlet/control/types/reference.hpp"
 #include "swiftlet/control/types/request.hpp"
 #include "swiftlet/control/types/settings.hpp"
+#include "swiftlet/plant/model/control_level.hpp"
 #include "swiftlet/plant/model/samples.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/vehicle_command.hpp"
 
 namespace swiftlet::control {
 
@@ -40,8 +43,18 @@ class FlightController {
   // until the next call. Requests and setpoints are accepted or refused in every step, by the mode and the
   // estimate at its sample. A refused one changes nothing. A mission or trajectory must have passed check()
   // of planning/checks.hpp before; setpoints are accepted in holding and setpoint mode.
-  const plant::ActuatorCommand& on_imu(const plant::ImuSample& sample);
-  const plant::ActuatorCommand& on_imu(const plant::ImuSample& sample, ClientInputs& clients);
+  const plant::VehicleCommand& on_imu(const plant::ImuSample& sample);
+  const plant::VehicleCommand& on_imu(const plant::ImuSample& sample, ClientInputs& clients);
+
+  // The levels that the vehicle accepts, and the one at which it is to be commanded; nullopt: the lowest of them.
+  // Without a call the vehicle is commanded at level actuators. Rotors that turn on commands of an accepted level
+  // keep it. At a level that the vehicle does not accept, arming is refused.
+  //
+  // Estimator, supervision, guidance and failsafes work alike at every level; so does the position law except at
+  // level trajectory. What the vehicle controls itself is not integrated here: at level trajectory position integral
+  // and disturbance observer stand still. Without throttles, the rotors are taken to give the commanded collective
+  // thrust, at level trajectory that of the position law.
+  void set_levels(plant::ControlLevels accepted, std::optional<plant::ControlLevel> wanted);
 
   void on_pose(const plant::PoseSample& sample);
   void on_battery(const plant::BatterySample& sample);

@@ -62,6 +62,20 @@ Eigen::Vector3d AttitudeController::moments_for_rates(const Eigen::Vector3d& bod
   return linearised(command, body_rates_frd, present_moment_frd, Eigen::Vector3d::Zero());
 }
 
+Eigen::Vector3d AttitudeController::rates(const Eigen::Quaterniond& q_ned_from_frd,
+                                          const AttitudeReference& reference) const {
+  Eigen::Vector3d rates_r = feed_forward_ ? reference.body_rates : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  Eigen::Vector3d angle_error;
+  if (error_ == AttitudeErrorKind::kEulerAngles) {
+    angle_error = euler_error(q_ned_from_frd, reference.body_z_ned, reference.heading.yaw_rad);
+  } else {
+    const RotationError error = rotation_error(q_ned_from_frd, reference.body_z_ned, reference.heading);
+    angle_error = error.angle;
+    rates_r = error.r_frd_from_reference * rates_r;
+  }
+  return rates_r + k_angle_.cwiseQuotient(k_rate_).cwiseProduct(angle_error);
+}
+
 void AttitudeController::set_gains(const ControlGains& gains) {
   k_angle_ = gains.attitude_angle;
   k_rate_ = gains.attitude_rate;

@@ -47,6 +47,10 @@ class AttitudeController {
                                     const Eigen::Vector3d& present_moment_frd,
                                     const Eigen::Vector3d& wanted_rates_frd) const;
 
+  // For a vehicle that controls its body rates itself: the rates at which the law of moments() asks for no moment
+  // beyond its feed-forward, omega_r + (k_angle / k_rate) e for each axis, with the error e of attitude.error's kind.
+  Eigen::Vector3d rates(const Eigen::Quaterniond& q_ned_from_frd, const AttitudeReference& reference) const;
+
   // Changes the gains, which must be designed on the model of the settings.
   void set_gains(const ControlGains& gains);
 

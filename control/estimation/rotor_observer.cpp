@@ -3,11 +3,16 @@
 #include <cmath>
 
 #include "swiftlet/plant/model/esc.hpp"
+#include "swiftlet/plant/model/rotor.hpp"
 
 namespace swiftlet::control {
 
 RotorObserver::RotorObserver(const plant::Vehicle& vehicle, double bandwidth)
-    : esc_(vehicle.esc), motor_(vehicle.motor), bandwidth_(bandwidth), count_(vehicle.rotor_count()) {
+    : esc_(vehicle.esc),
+      motor_(vehicle.motor),
+      rotor_(vehicle.rotor),
+      bandwidth_(bandwidth),
+      count_(vehicle.rotor_count()) {
   wrench_per_square_.setZero();
   wrench_per_square_.leftCols(count_) = vehicle.rotor.thrust * plant::effectiveness(vehicle);  // Eq. (25)
 }
@@ -21,6 +26,16 @@ void RotorObserver::step(double dt_s, const plant::ActuatorCommand& command, dou
     const double v_a = running ? plant::motor_voltage(esc_, supply_voltage_v, command.throttle[n]) : 0.0;
     const double steady = plant::steady_speed_from_voltage(motor_, v_a);
     speeds_[n] = steady + kept * (speeds_[n] - steady);
+  }
+  update_wrench();
+}
+
+void RotorObserver::step(double dt_s, double thrust_n) {
+  const double kept = std::exp(-dt_s / motor_.time_constant_s);
+  const double steady = plant::speed_from_thrust(rotor_, thrust_n / count_);
+  for (int i = 0; i < count_; ++i) {
+    double& speed = speeds_[static_cast<std::size_t>(i)];
+    speed = steady + kept * (speed - steady);
   }
   update_wrench();
 }

@@ -23,6 +23,10 @@ class RotorObserver {
   // order with the time constant of Eq. (18), whichever motor model the vehicle file names.
   void step(double dt_s, const plant::ActuatorCommand& command, double supply_voltage_v);
 
+  // The same for a vehicle that chooses the throttles itself: thrust_n is the collective thrust that it is to give,
+  // which all rotors share. 0 for rotors that are off.
+  void step(double dt_s, double thrust_n);
+
   // Corrects the speeds by measured ones: a difference decays by exp(-bandwidth dt), dt being the time since
   // the last sample, at any sample rate. The first sample sets the speeds. Ignores samples that are not
   // finite, negative, not newer than the last, or for another number of rotors.
@@ -38,6 +42,7 @@ class RotorObserver {
 
   plant::Esc esc_;
   plant::Motor motor_;
+  plant::RotorCoefficients rotor_;
   Eigen::Matrix<double, 4, plant::kMaxRotors> wrench_per_square_;  // per speed squared; unused columns: 0
   double bandwidth_;
   int count_ = 0;

@@ -102,9 +102,16 @@ Outcome inside_fence(const SupervisorContext& context) {
   return check_inside_fence("the vehicle", context.estimate().position_ned, limits);
 }
 
-constexpr ArmingCheck kChecks[] = {pose_available, pose_accepted, imu_usable,   battery_available,
-                                   imu_at_rest,    not_turning,   rotors_still, level,
-                                   not_moving,     inside_fence};
+Outcome level_accepted(const SupervisorContext& context) {
+  const SupervisorInputs& inputs = context.inputs;
+  if (inputs.accepted_levels.has(inputs.level)) return accept();
+  return refuse("the vehicle does not accept commands at level %s, it accepts %s",
+                plant::to_string(inputs.level), inputs.accepted_levels.names().data());
+}
+
+constexpr ArmingCheck kChecks[] = {
+    level_accepted, pose_available, pose_accepted, imu_usable, battery_available, imu_at_rest,
+    not_turning,    rotors_still,   level,         not_moving, inside_fence};
 
 // Appends "; sentence" if it fits.
 void append(const char* sentence, Outcome& outcome) {

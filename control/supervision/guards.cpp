@@ -207,6 +207,9 @@ Outcome check_attitude(const Setpoint& setpoint, const Limits& limits) {
 Outcome check_direct_setpoint(const SupervisorContext& context) {
   const Setpoint& setpoint = *context.setpoint;
   const Limits& limits = context.limits;
+  if (context.inputs.level == plant::ControlLevel::kTrajectory)
+    return refuse("setpoint: a vehicle that is commanded at level trajectory follows no %s",
+                  setpoint.kind == SetpointKind::kAttitude ? "attitudes" : "body rates");
   if (context.state.mode == Mode::kHolding && context.state.reason == Reason::kSetpointsViolatedFence)
     return refuse(
         "setpoint: the stream violated the fence; send hold or goto before more setpoints of its kind");

@@ -7,6 +7,7 @@
 #include "swiftlet/control/estimation/estimator.hpp"
 #include "swiftlet/control/types/gains.hpp"
 #include "swiftlet/control/types/reference.hpp"
+#include "swiftlet/plant/model/control_level.hpp"
 
 namespace swiftlet::control {
 
@@ -31,6 +32,9 @@ struct SupervisorInputs {
   const ControlGains* gains = nullptr;                           // in force; null: not known
   double gains_progress = 1.0;                                   // of their change
   double gains_changing_s = 0.0;                                 // time until they stop changing
+  // At which the vehicle is commanded, and which it accepts.
+  plant::ControlLevel level = plant::ControlLevel::kActuators;
+  plant::ControlLevels accepted_levels = plant::ControlLevel::kActuators;
   // Time since the rotors' limits cut a command.
   double unsaturated_s = std::numeric_limits<double>::infinity();
 };

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "swiftlet/control/types/gains.hpp"
+#include "swiftlet/plant/model/control_level.hpp"
 
 namespace swiftlet::control {
 
@@ -82,7 +83,8 @@ struct Status {
   bool airborne = false;
   int ground_links = 0;  // ground clients with the link-loss failsafe on
   double supply_voltage_v = 0.0;
-  bool saturated = false;  // the rotors' limits cut the last command
+  bool saturated = false;                                       // the rotors' limits cut the last command
+  plant::ControlLevel level = plant::ControlLevel::kActuators;  // of the commands
   MissionProgress mission;
   SettingsName settings{};      // name of the control settings in force, or that the gains change to
   double gains_progress = 1.0;  // 0 .. 1, of the change of gains

@@ -6,6 +6,8 @@
 #include <random>
 #include <utility>
 
+#include <spdlog/spdlog.h>
+
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
@@ -40,7 +42,8 @@ std::uint64_t random_number() {
 ControlService::ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
                                int failover_priority, comms::Node& node,
                                const runtime::RealtimeSettings& realtime, runtime::Clock clock,
-                               std::vector<control::FixedSetting> fixed)
+                               std::vector<control::FixedSetting> fixed,
+                               std::optional<plant::ControlLevel> level)
     : controller_(random_number()),
       clock_(clock),
       realtime_(realtime),
@@ -50,14 +53,16 @@ ControlService::ControlService(const plant::Vehicle& vehicle, const control::Con
                  {vehicle.motor.time_constant_s, settings.estimator.rotor_speed_bandwidth}),
       failover_(controller_, failover_priority),
       reports_(node.publish(topics::kControllerState)),
-      commands_(node.publish(topics::kActuatorCommand, failover_.next_term())),
-      rotor_count_(static_cast<std::uint8_t>(vehicle.rotor_count())),
+      commands_(node, failover_.next_term(), vehicle.rotor_count()),
+      rotor_count_(vehicle.rotor_count()),
+      wanted_level_(level),
       wanted_strength_(failover_.next_term()),
       active_heard_ns_(runtime::monotonic_ns()),
       offered_strength_(failover_.next_term()) {
   report_.controller = controller_;
   report_.failover_priority = failover_priority;
   report_.rotor_count = vehicle.rotor_count();
+  loop_.levels.put({plant::ControlLevel::kActuators, wanted_level_});
   command_server_.set_active(clock == runtime::Clock::kLockstep);
   subscribe(node, clock);
 }
@@ -103,6 +108,8 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
   sensors_.push_back(
       {"rotor speeds", node.subscribe<msg::RotorSpeeds>(topics::kRotorSpeeds, take_rotor_speeds,
                                                         Delivery::kShared, comms::kSourceSilence)});
+  subscriptions_.push_back(node.subscribe<msg::VehicleInfo>(
+      topics::kVehicleInfo, [this](const auto& message) { on_vehicle_info(message); }));
   subscriptions_.push_back(node.subscribe<msg::Setpoint>(
       topics::kSetpoint, deliver<msg::Setpoint>(loop_.setpoint, setpoint_faults_)));
   subscriptions_.push_back(node.subscribe<msg::GroundLink>(
@@ -227,9 +234,10 @@ Role ControlService::take_role_in_lockstep(const msg::Imu& message) {
 // requests are answered, and the same command is published again.
 void ControlService::on_imu_in_lockstep(const msg::Imu& message) {
   const std::lock_guard<std::mutex> lock(gate_mutex_);
+  if (!levels_known_.load(std::memory_order_acquire)) return;  // the plant sends the sample again
   if (!gate_.offer(message)) {
     loop_.answer_requests();
-    publish_command(last_answer_);
+    commands_.publish(last_answer_);
     if (loop_.finish(runtime::monotonic_ns())) wake_.post();
   } else if (const auto imu = gate_.take()) {
     answer(*imu, take_role_in_lockstep(*imu));
@@ -253,9 +261,10 @@ void ControlService::answer(const msg::Imu& message, Role role) {
     sample.sequence = message.sequence_number();
     sample.specific_force_frd.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
-  last_answer_ = comms::to_message(loop_.step(sample, arrived_ns, role, failover_.followed_term()));
-  last_answer_.term(clock_ == runtime::Clock::kLockstep ? failover_.next_term() : failover_.term());
-  if (role == Role::kActive && !loop_.detecting_airborne()) publish_command(last_answer_);
+  last_answer_ = loop_.step(sample, arrived_ns, role, failover_.followed_term());
+  plant::header_of(last_answer_).term =
+      clock_ == runtime::Clock::kLockstep ? failover_.next_term() : failover_.term();
+  if (role == Role::kActive && !loop_.detecting_airborne()) commands_.publish(last_answer_);
   if (loop_.finish(runtime::monotonic_ns(), failover_.loop_delay().figures())) wake_.post();
   if (loop_.report_due()) report(message.stamp_ns());
 }
@@ -263,13 +272,14 @@ void ControlService::answer(const msg::Imu& message, Role role) {
 void ControlService::report(std::int64_t stamp_ns) {
   report_.stamp_ns = stamp_ns;
   ++report_.sequence;
-  report_.term = last_answer_.term();
+  report_.term = plant::header_of(last_answer_).term;
   loop_.report(report_);
   reports_.publish(comms::to_message(report_));
 }
 
 void ControlService::run(const std::atomic<bool>& stop) {
   while (!stop.load(std::memory_order_relaxed)) {
+    adopt_levels();
     update_strength();
     const StreamAges ages = stream_ages();
     publish_pending_stop(ages);
@@ -281,12 +291,26 @@ void ControlService::run(const std::atomic<bool>& stop) {
   }
 }
 
-// Two threads publish commands: that of the IMU samples, and while there are none, run(). Neither waits for
-// the other: a sample whose command is left out for that reason counts as unanswered at the vehicle.
-void ControlService::publish_command(const msg::ActuatorCommand& command) {
-  if (commands_in_use_.test_and_set(std::memory_order_acquire)) return;
-  commands_.publish(command);
-  commands_in_use_.clear(std::memory_order_release);
+void ControlService::on_vehicle_info(const msg::VehicleInfo& message) {
+  const std::uint8_t levels = plant::ControlLevels::from_bits(message.control_levels()).bits();
+  if (reported_levels_.exchange(levels, std::memory_order_relaxed) != levels) wake_.post();
+}
+
+// Opens the topic of the level before the inner loop commands at it.
+void ControlService::adopt_levels() {
+  const std::uint8_t reported = reported_levels_.load(std::memory_order_relaxed);
+  if (reported == adopted_levels_) return;
+  adopted_levels_ = reported;
+  const auto levels = plant::ControlLevels::from_bits(reported);
+  const plant::ControlLevel level = wanted_level_.value_or(levels.lowest());
+  if (levels.has(level)) {
+    commands_.open(level);
+  } else {
+    spdlog::warn("the vehicle does not accept commands at level {}, it accepts {}: it cannot be armed",
+                 plant::to_string(level), levels.names().data());
+  }
+  loop_.levels.put({levels, wanted_level_});
+  levels_known_.store(true, std::memory_order_release);
 }
 
 // A stop request that no IMU sample lets the inner loop evaluate: commands rotors off until one does. In
@@ -297,14 +321,12 @@ void ControlService::publish_pending_stop(const StreamAges& ages) {
   if (!waits) stop = command_server_.accept_overdue_stop(ages.imu_s, imu_arrivals_.stamp_ns());
   telemetry_.set_unconfirmed_stop(stop);
   if (!stop) return;
-  msg::ActuatorCommand command;
-  command.stamp_ns(imu_arrivals_.stamp_ns());
-  command.sequence_number(imu_arrivals_.sequence());
-  command.imu_sequence_number(imu_arrivals_.sequence());
-  command.rotor_state(msg::ActuatorCommand_Constants::ROTORS_OFF);
-  command.rotor_count(rotor_count_);
-  command.term(wanted_strength_.load(std::memory_order_relaxed));
-  publish_command(command);
+  plant::CommandHeader header;
+  header.stamp_ns = imu_arrivals_.stamp_ns();
+  header.sequence = imu_arrivals_.sequence();
+  header.imu_sequence = imu_arrivals_.sequence();
+  header.term = wanted_strength_.load(std::memory_order_relaxed);
+  commands_.publish(plant::rotors_off(loop_.level(), header, rotor_count_));
 }
 
 StreamAges ControlService::stream_ages() const {

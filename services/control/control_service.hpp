@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <boost/lockfree/spsc_queue.hpp>
 
 #include "swiftlet/services/control/arrivals.hpp"
+#include "swiftlet/services/control/command_publisher.hpp"
 #include "swiftlet/services/control/command_server.hpp"
 #include "swiftlet/services/control/failover.hpp"
 #include "swiftlet/services/control/inner_loop.hpp"
@@ -40,10 +42,13 @@ class ControlService {
  public:
   // Throws std::invalid_argument as FlightController does, std::runtime_error as Node does.
   // failover_priority: of several standbys the one of the highest priority takes over first. fixed: the
-  // settings that cannot change in flight; empty: changes of them are not noticed.
+  // settings that cannot change in flight; empty: changes of them are not noticed. level: at which the vehicle is
+  // commanded; nullopt: the lowest that vehicle_info says it accepts. In lockstep no sample is answered before
+  // vehicle_info has come.
   ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
                  int failover_priority, comms::Node& node, const runtime::RealtimeSettings& realtime,
-                 runtime::Clock clock, std::vector<control::FixedSetting> fixed = {});
+                 runtime::Clock clock, std::vector<control::FixedSetting> fixed = {},
+                 std::optional<plant::ControlLevel> level = std::nullopt);
 
   void run(const std::atomic<bool>& stop);
   void wake() { wake_.post(); }
@@ -71,7 +76,8 @@ class ControlService {
   StreamAges stream_ages() const;
   std::string source_conflict() const;
   void publish_pending_stop(const StreamAges& ages);
-  void publish_command(const comms::msg::ActuatorCommand& command);
+  void on_vehicle_info(const comms::msg::VehicleInfo& message);
+  void adopt_levels();
   template <class Message, class Sample>
   std::function<void(const Message&)> deliver(runtime::LatestValue<Sample>& latest,
                                               comms::ThrottledWarning& faults);
@@ -92,11 +98,15 @@ class ControlService {
   Failover failover_;
   comms::Publisher<comms::msg::ControllerState> reports_;
   comms::ControllerReport report_;
-  comms::msg::ActuatorCommand last_answer_;
+  plant::VehicleCommand last_answer_;
 
-  comms::Publisher<comms::msg::ActuatorCommand> commands_;
-  std::atomic_flag commands_in_use_ = ATOMIC_FLAG_INIT;  // by the thread that publishes a command
-  const std::uint8_t rotor_count_;
+  CommandPublisher commands_;
+  const int rotor_count_;
+  const std::optional<plant::ControlLevel> wanted_level_;
+  std::atomic<std::uint8_t> reported_levels_{
+      0};                                  // by vehicle_info, as ControlLevels::bits(); 0: not known yet
+  std::uint8_t adopted_levels_ = 0;        // used by the thread of run() only
+  std::atomic<bool> levels_known_{false};  // the inner loop has them, or will at its next step
   Arrivals imu_arrivals_, pose_arrivals_, battery_arrivals_;
   boost::lockfree::spsc_queue<Heartbeat, boost::lockfree::capacity<64>> heartbeats_;
   std::atomic<bool> active_{false};

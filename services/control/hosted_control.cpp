@@ -13,7 +13,7 @@ HostedControl::HostedControl(const comms::Participant& participant, const std::s
     : HostedVehicle(name),
       node_(participant, name, [this](const std::string& fault) { fail(fault); }),
       service_(settings.vehicle, settings.control, settings.failover_priority, node_, settings.realtime,
-               settings.clock, settings.fixed) {
+               settings.clock, settings.fixed, settings.level) {
   comms::log_peers(node_);
 }
 

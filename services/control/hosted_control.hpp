@@ -1,6 +1,7 @@
 // The flight controller of a vehicle of swiftlet-control, which serves one or several.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct ControllerSettings {
   control::ControlSettings control;
   std::vector<control::FixedSetting> fixed;
   int failover_priority = 0;
+  std::optional<plant::ControlLevel> level;  // nullopt: the lowest that the vehicle accepts
   runtime::Clock clock = runtime::Clock::kRealtime;
   runtime::RealtimeSettings realtime;
 };

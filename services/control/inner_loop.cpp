@@ -15,20 +15,22 @@ constexpr std::int64_t kStandbyReportNs = 100'000'000;
 InnerLoop::InnerLoop(const plant::Vehicle& vehicle, const control::ControlSettings& settings)
     : controller_(vehicle, settings) {}
 
-plant::ActuatorCommand InnerLoop::step(const plant::ImuSample& sample, std::int64_t now_ns, Role role,
-                                       std::uint32_t followed_term) {
+plant::VehicleCommand InnerLoop::step(const plant::ImuSample& sample, std::int64_t now_ns, Role role,
+                                      std::uint32_t followed_term) {
   last_arrival_ns_.store(now_ns, std::memory_order_relaxed);
   role_ = role;
   take_samples();
+  take_levels();
   take_heartbeats();
   if (role == Role::kStandby) follow(followed_term);
   if (detecting_airborne()) detect_airborne(sample);
   Clients clients;
   take_setpoint(clients);
   take_requests(clients);
-  const plant::ActuatorCommand command = controller_.on_imu(sample, clients.inputs);
+  const plant::VehicleCommand command = controller_.on_imu(sample, clients.inputs);
+  level_.store(plant::level_of(command), std::memory_order_relaxed);
   return_outcomes(clients, sample.stamp_ns);
-  rotors_running_ = command.rotor_state == plant::RotorState::kRunning;
+  rotors_running_ = plant::header_of(command).rotor_state == plant::RotorState::kRunning;
   stamp_ns_ = sample.stamp_ns;
   last_imu_sequence_ = imu_sequence_;
   imu_sequence_ = sample.sequence;
@@ -46,6 +48,12 @@ void InnerLoop::take_samples() {
     controller_.on_rotor_speeds(new_rotor_speeds);
     ++rotor_samples_;
   }
+}
+
+// A choice that comes while the rotors turn may take effect only when they are off.
+void InnerLoop::take_levels() {
+  if (levels.take(level_choice_) || !rotors_running_)
+    controller_.set_levels(level_choice_.accepted, level_choice_.wanted);
 }
 
 void InnerLoop::take_setpoint(Clients& clients) {
@@ -128,7 +136,8 @@ void InnerLoop::answer_requests() {
 
 void InnerLoop::report(comms::ControllerReport& report) const {
   report.active = role_ == Role::kActive;
-  report.ready = (report.active && !detecting_airborne()) || (knows_plan_ && controller_.status().has_pose);
+  report.ready = (report.active && !detecting_airborne()) ||
+                 (knows_plan_ && controller_.status().has_pose && level_choice_.accepted.has(level()));
   if (!report.active) return;
   report.flight = controller_.state();
 }

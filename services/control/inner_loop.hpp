@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include <boost/lockfree/spsc_queue.hpp>
 
@@ -56,6 +57,12 @@ struct FailoverState {
   const control::Trajectory* trajectory = nullptr;
 };
 
+// At which level the vehicle can be commanded, and is to be; see FlightController::set_levels().
+struct LevelChoice {
+  plant::ControlLevels accepted = plant::ControlLevel::kActuators;
+  std::optional<plant::ControlLevel> wanted;
+};
+
 class InnerLoop {
  public:
   // Throws std::invalid_argument as FlightController does.
@@ -67,6 +74,7 @@ class InnerLoop {
   runtime::LatestValue<plant::RotorSpeedSample> rotor_speeds;
   runtime::LatestValue<control::Setpoint> setpoint;
   runtime::LatestValue<FailoverState> failover_state;
+  runtime::LatestValue<LevelChoice> levels;
   boost::lockfree::spsc_queue<PendingRequest*, boost::lockfree::capacity<kMaxPendingRequests>> requests;
 
   boost::lockfree::spsc_queue<control::GroundHeartbeat, boost::lockfree::capacity<32>> ground_heartbeats;
@@ -79,8 +87,8 @@ class InnerLoop {
   // command is sent, and returns true if there is new output. now_ns, monotonic: arrival of the sample for
   // step(), departure of the command for finish(). A standby steps too and adopts the active controller's
   // state of term followed_term; its command must not be sent. loop_delay: for telemetry.
-  plant::ActuatorCommand step(const plant::ImuSample& sample, std::int64_t now_ns, Role role = Role::kActive,
-                              std::uint32_t followed_term = 0);
+  plant::VehicleCommand step(const plant::ImuSample& sample, std::int64_t now_ns, Role role = Role::kActive,
+                             std::uint32_t followed_term = 0);
   bool finish(std::int64_t now_ns, const LoopDelay::Figures& loop_delay = {});
 
   // In-air restart, if there is no controller state to continue from: from the next step on detects whether
@@ -93,6 +101,9 @@ class InnerLoop {
   // report_due(): this step must publish a controller_state. report() fills in its flight fields.
   bool report_due() const { return report_due_; }
   void report(comms::ControllerReport& report) const;
+
+  // Of the last command. Call from any thread.
+  plant::ControlLevel level() const { return level_.load(std::memory_order_relaxed); }
 
   // The number of the newest FailoverState that was taken. Call from any thread.
   std::uint64_t adopted_state() const { return adopted_state_.load(std::memory_order_acquire); }
@@ -113,6 +124,7 @@ class InnerLoop {
   };
 
   void take_samples();
+  void take_levels();
   void take_requests(Clients& clients);
   void take_setpoint(Clients& clients);
   void return_outcomes(const Clients& clients, std::int64_t stamp_ns);
@@ -135,6 +147,8 @@ class InnerLoop {
   std::uint64_t last_imu_sequence_ = 0;  // of the sample before
   std::atomic<std::int64_t> last_arrival_ns_{0};
   std::atomic<std::uint64_t> adopted_state_{0};
+  LevelChoice level_choice_;
+  std::atomic<plant::ControlLevel> level_{plant::ControlLevel::kActuators};
   Role role_ = Role::kStandby;
   Role snapshot_role_ = Role::kStandby;
   SetpointTally setpoints_;

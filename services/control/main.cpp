@@ -1,6 +1,7 @@
 // swiftlet-control: the flight controllers.
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,6 +34,7 @@ struct Options {
   std::string vehicle = "kaylion";
   std::string control = "motor_lag";
   int failover_priority = 0;
+  std::optional<plant::ControlLevel> level;
   runtime::Clock clock = runtime::Clock::kRealtime;
   comms::NodeSettings node;
   runtime::ProcessOptions process;
@@ -47,6 +49,15 @@ void add_options(runtime::CommandLine app, Options& options) {
                  "When the active controller fails, the standby of the highest priority takes over")
       .range(0, 1000)
       .show_default();
+  using plant::ControlLevel;
+  app.add_choice<std::optional<ControlLevel>>("--level", options.level,
+                                              {{"actuators", ControlLevel::kActuators},
+                                               {"rates", ControlLevel::kRates},
+                                               {"attitude", ControlLevel::kAttitude},
+                                               {"trajectory", ControlLevel::kTrajectory}},
+                                              "Level at which the vehicle is commanded: throttles, body "
+                                              "rates, attitude, or the trajectory itself; default: the "
+                                              "first of these that the vehicle accepts");
   runtime::add_clock_option(app, options.clock);
   options.node.name = "control";
   comms::add_service_options(app, options.node);
@@ -62,6 +73,7 @@ void run(const Options& options) {
   settings.control = runtime::load_control_settings(settings_file);
   settings.fixed = runtime::load_fixed_settings(settings_file);
   settings.failover_priority = options.failover_priority;
+  settings.level = options.level;
   settings.clock = options.clock;
 
   runtime::StopSignal stop;

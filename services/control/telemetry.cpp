@@ -132,6 +132,8 @@ void Telemetry::take(const Snapshot& snapshot) {
       spdlog::warn("mocap lost: the last pose is {:.2f} s old", now.pose_age_s);
     }
   }
+  if (now.level != before.level)
+    spdlog::info("commands the vehicle at level {}", plant::to_string(now.level));
   if (now.ground_links != before.ground_links)
     spdlog::info("link-loss failsafe watches {} ground tools", now.ground_links);
   if ((now.gains_progress < 1.0) != (before.gains_progress < 1.0))
@@ -205,6 +207,7 @@ void Telemetry::publish_status() {
   message.delay_margin_s(delay.margin_s);
   message.delay_near_margin(delay.near_margin);
   message.realtime_scheduling(realtime_);
+  message.control_level(plant::ControlLevels(status.level).bits());
   message.controller(controller_);
   message.settings() = status.settings.data();
   message.gains_progress(status.gains_progress);

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "swiftlet/plant/model/samples.hpp"
-#include "swiftlet/plant/simulation/actuator_watchdog.hpp"
+#include "swiftlet/plant/simulation/command_watchdog.hpp"
 #include "swiftlet/plant/simulation/vehicle_state.hpp"
 #include "swiftlet/services/microcontroller/protocol/frame.hpp"
 #include "swiftlet/services/microcontroller/protocol/messages.hpp"
@@ -63,7 +63,7 @@ class Firmware {
   Send send_;
   protocol::FrameEncoder encoder_;
   protocol::FrameDecoder decoder_;
-  plant::ActuatorWatchdog watchdog_;
+  plant::CommandWatchdog watchdog_;
   bool has_session_ = false;
   std::int64_t heard_us_ = 0;  // last frame of the session
   bool timed_out_ = false;     // until a command to turn the rotors off

@@ -36,8 +36,8 @@ LockstepLoop::LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSet
       advance_to_ns_(lockstep.paused ? -1 : std::numeric_limits<std::int64_t>::max()),
       paced_ns_(lockstep.speed > 0.0 ? 0 : std::numeric_limits<std::int64_t>::max()) {
   if (!lockstep.trace.empty()) trace_.emplace(lockstep.trace, rotor_count);
-  commands_ = node.subscribe<comms::msg::ActuatorCommand>(
-      comms::topics::kActuatorCommand, [this](const auto& message) { on_command(message); });
+  commands_ = subscribe_commands(node, settings.control_levels, comms::Delivery::kShared,
+                                 [this](const ReceivedCommand& received) { on_command(received); });
   poses_ = node.subscribe<comms::msg::MocapPose>(comms::topics::kMocapPose,
                                                  [this](const auto& message) { on_pose(message); });
   if (lockstep.paused) {
@@ -61,11 +61,13 @@ void LockstepLoop::run(const std::atomic<bool>& stop) {
   if (trace_) trace_->close();
 }
 
-void LockstepLoop::on_command(const comms::msg::ActuatorCommand& message) {
+// An invalid command answers nothing: its sample number may be invalid too.
+void LockstepLoop::on_command(const ReceivedCommand& received) {
   const Lock lock(mutex_);
   if (!started_ || !command_due()) return;  // a repeated answer
-  if (message.imu_sequence_number() != vehicle_.simulation().imu()->sequence) return;
-  const ReceivedCommand received(message, runtime::monotonic_ns());
+  const bool answers =
+      plant::header_of(received.command).imu_sequence == vehicle_.simulation().imu()->sequence;
+  if (!received.fault && !answers) return;
   if (!vehicle_.obey(received)) return;
   control_heard_ = true;
   command_ = received.command;
@@ -76,6 +78,9 @@ void LockstepLoop::on_command(const comms::msg::ActuatorCommand& message) {
 void LockstepLoop::on_pose(const comms::msg::MocapPose& message) {
   const Lock lock(mutex_);
   mocap_heard_ = true;
+  plant::PoseSample pose;
+  const bool is_new = message.sequence_number() > mocap_sequence_;
+  if (is_new && vehicle_.needs_poses() && !comms::from_message(message, pose)) vehicle_.on_pose(pose);
   mocap_sequence_ = std::max(mocap_sequence_, message.sequence_number());
   if (message.sequence_number() == 0) mocap_seen_ns_ = std::max(mocap_seen_ns_, message.stamp_ns());
   advance();
@@ -115,7 +120,7 @@ void LockstepLoop::advance() {
     if (!may_advance()) return;
     silence_s_ = 0.0;
     command_arrived_ = false;
-    if (trace_) trace_->add(vehicle_.simulation().truth(), command_);
+    if (trace_) trace_->add(vehicle_.simulation().truth(), vehicle_.as_actuators(command_));
     advance_to_imu_stamp();
   }
 }

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "swiftlet/plant/simulation/links/mocap_path.hpp"
 #include "swiftlet/plant/simulation/mocap_schedule.hpp"
@@ -40,7 +41,7 @@ class LockstepLoop {
   void run(const std::atomic<bool>& stop);
 
  private:
-  void on_command(const comms::msg::ActuatorCommand& message);
+  void on_command(const ReceivedCommand& received);
   void on_pose(const comms::msg::MocapPose& message);
   void on_clock(const comms::msg::SimulationClock& message);
 
@@ -69,7 +70,7 @@ class LockstepLoop {
 
   std::mutex mutex_;
   bool started_ = false;  // the first samples have been published
-  plant::ActuatorCommand command_;
+  plant::VehicleCommand command_;
   bool command_arrived_ = false;
   bool control_heard_ = false;
   bool mocap_heard_ = false;
@@ -86,7 +87,7 @@ class LockstepLoop {
   double clock_silence_s_ = 0.0;  // since simulation_clock was last heard
   std::optional<runtime::FlightTrace> trace_;
 
-  comms::Subscription commands_;  // last: their callbacks use all members above
+  std::vector<comms::Subscription> commands_;  // last: their callbacks use all members above
   comms::Subscription poses_;
   comms::Subscription clock_;
 };

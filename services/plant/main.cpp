@@ -44,7 +44,8 @@ struct Options {
   std::uint64_t seed = 1;
   std::array<double, 2> start{};  // m, north and east
   double spacing_m = 1.0;
-  int per_row = 0;   // 0: all in one row
+  int per_row = 0;  // 0: all in one row
+  std::string levels = "actuators";
   int imu_rate = 0;  // Hz; 0: as in the simulation file
   runtime::Clock clock = runtime::Clock::kRealtime;
   double speed = 0.0;  // 0: real time, or in lockstep no limit
@@ -103,6 +104,11 @@ void add_autopilot_options(runtime::CommandLine app, Options& options) {
       .needs(chosen);
 }
 
+std::string fault_of_levels(const std::string& list) {
+  if (plant::control_levels_from(list)) return {};
+  return "'" + list + "' is not a list of the levels actuators, rates, attitude and trajectory";
+}
+
 void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--vehicle", options.vehicle, "Vehicle file, or the name of one in config/vehicles")
       .show_default();
@@ -120,6 +126,12 @@ void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--per-row", options.per_row,
                  "Number of vehicles in a row; further rows stand to the north; default: all in one row")
       .range(1, 1000);
+  app.add_option(
+         "--level", options.levels,
+         "Levels at which the vehicle accepts commands, separated by commas: actuators, rates, attitude, "
+         "trajectory. At all but actuators it flies by loops of its own, as flight-control firmware does")
+      .check(fault_of_levels, "LEVELS")
+      .show_default();
   app.add_option("--imu-rate", options.imu_rate,
                  "IMU rate, Hz, 500 or 1000; default: as in the simulation file")
       .one_of({"500", "1000"});
@@ -183,6 +195,7 @@ PlantSettings load(const Options& options) {
       runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
   settings.simulation = runtime::load_simulation_settings(
       runtime::configuration_file(runtime::kinds::kSimulation, options.simulation));
+  settings.simulation.control_levels = plant::control_levels_from(options.levels).value();
   if (options.imu_rate != 0) settings.simulation.imu.rate_hz = options.imu_rate;
   for (const plant::Violation& violation : plant::validate(settings.simulation)) {
     throw std::invalid_argument("--imu-rate: " + violation.key + " " + violation.message);

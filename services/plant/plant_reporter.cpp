@@ -11,7 +11,7 @@ namespace {
 constexpr std::int64_t kPeriodNs = 1'000'000'000;
 constexpr std::int64_t kTroublePeriodNs = 10'000'000'000;
 
-comms::msg::VehicleInfo describe(const plant::Vehicle& vehicle, double imu_rate_hz,
+comms::msg::VehicleInfo describe(const plant::Vehicle& vehicle, const plant::SimulationSettings& settings,
                                  const std::string& autopilot) {
   comms::msg::VehicleInfo info;
   info.name() = vehicle.name;
@@ -19,7 +19,8 @@ comms::msg::VehicleInfo describe(const plant::Vehicle& vehicle, double imu_rate_
   info.autopilot() = autopilot;
   info.rotor_count(static_cast<std::uint8_t>(vehicle.rotor_count()));
   info.mass_kg(vehicle.mass_kg);
-  info.imu_rate_hz(imu_rate_hz);
+  info.imu_rate_hz(settings.imu.rate_hz);
+  info.control_levels(settings.control_levels.bits());
   return info;
 }
 
@@ -43,7 +44,7 @@ void update(comms::msg::VehicleInfo& info, const PlantReport& report, const std:
 PlantReporter::PlantReporter(comms::Node& node, const plant::Vehicle& vehicle,
                              const plant::SimulationSettings& settings, const std::string& autopilot)
     : publisher_(node.publish(comms::topics::kVehicleInfo)),
-      info_(describe(vehicle, settings.imu.rate_hz, autopilot)),
+      info_(describe(vehicle, settings, autopilot)),
       timeout_fault_(fmt::format("no actuator command for {:g} s", settings.command_timeout_s)) {}
 
 void PlantReporter::publish_due(const PlantReport& report) {

@@ -22,10 +22,14 @@ RealtimeLoop::RealtimeLoop(SimulatedVehicle& vehicle, const plant::SimulationSet
       sample_period_ns_(scaled(plant::period_ns(settings.imu.rate_hz), speed)),
       truth_(settings),
       realtime_(realtime),
-      commands_(node.subscribe<comms::msg::ActuatorCommand>(
-          comms::topics::kActuatorCommand, [this](const auto& message) { on_command(message); },
-          comms::Delivery::kOwnThread)),
-      clock_(node, [this] { return simulated_ns(); }) {}
+      subscriptions_(subscribe_commands(node, settings.control_levels, comms::Delivery::kOwnThread,
+                                        [this](const ReceivedCommand& received) { on_command(received); })),
+      clock_(node, [this] { return simulated_ns(); }) {
+  if (!vehicle.needs_poses()) return;
+  subscriptions_.push_back(node.subscribe<comms::msg::MocapPose>(
+      comms::topics::kMocapPose, [this](const auto& message) { on_pose(message); },
+      comms::Delivery::kOwnThread));
+}
 
 void RealtimeLoop::run(const std::atomic<bool>& stop) {
   if (realtime_.enabled) runtime::make_this_thread_realtime(realtime_);
@@ -48,13 +52,22 @@ void RealtimeLoop::step_to_sample(std::int64_t sample_due_ns) {
   for (std::int64_t left = steps_per_sample_ - 1; left >= 0; --left) {
     const bool is_last = left == 0;
     const std::int64_t due_ns = sample_due_ns - sample_period_ns_ * left / steps_per_sample_;
-    while (received_.read_available() > 0 && (is_last || received_.front().received_ns <= due_ns)) {
-      vehicle_.obey(received_.front());
-      received_.pop();
-    }
+    obey_due(due_ns, is_last);
+    plant::PoseSample pose;
+    if (pose_.take(pose)) vehicle_.on_pose(pose);
     vehicle_.step();
     publish();
     vehicle_.report();
+  }
+}
+
+void RealtimeLoop::obey_due(std::int64_t due_ns, bool is_last) {
+  for (Link& link : links_) {
+    auto& received = link.received;
+    while (received.read_available() > 0 && (is_last || received.front().received_ns <= due_ns)) {
+      vehicle_.obey(received.front());
+      received.pop();
+    }
   }
 }
 
@@ -73,9 +86,16 @@ std::optional<std::int64_t> RealtimeLoop::simulated_ns() const {
 }
 
 // Runs in the subscription's thread.
-void RealtimeLoop::on_command(const comms::msg::ActuatorCommand& message) {
-  listener_.enter(realtime_);
-  received_.push(ReceivedCommand(message, runtime::monotonic_ns()));
+void RealtimeLoop::on_command(const ReceivedCommand& received) {
+  Link& link = links_[static_cast<std::size_t>(plant::level_of(received.command))];
+  link.listener.enter(realtime_);
+  link.received.push(received);
+}
+
+void RealtimeLoop::on_pose(const comms::msg::MocapPose& message) {
+  plant::PoseSample pose;
+  if (message.sequence_number() == 0 || comms::from_message(message, pose)) return;
+  pose_.put(pose);
 }
 
 }  // namespace swiftlet::services

@@ -1,9 +1,11 @@
 // Real time: simulated time follows the computer's clock.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include <boost/lockfree/spsc_queue.hpp>
 
@@ -27,8 +29,10 @@ class RealtimeLoop {
   void run(const std::atomic<bool>& stop);
 
  private:
-  void on_command(const comms::msg::ActuatorCommand& message);
+  void on_command(const ReceivedCommand& received);
+  void on_pose(const comms::msg::MocapPose& message);
   void step_to_sample(std::int64_t sample_due_ns);
+  void obey_due(std::int64_t due_ns, bool is_last);
   void publish();
   void set_origin(std::int64_t tick_ns);
   std::optional<std::int64_t> simulated_ns() const;
@@ -41,11 +45,16 @@ class RealtimeLoop {
   TruthSchedule truth_;
   runtime::RealtimeSettings realtime_;
 
-  boost::lockfree::spsc_queue<ReceivedCommand, boost::lockfree::capacity<64>> received_;
-  runtime::RealtimeThread listener_;
+  // Each level's commands come in a thread of their own.
+  struct Link {
+    boost::lockfree::spsc_queue<ReceivedCommand, boost::lockfree::capacity<64>> received;
+    runtime::RealtimeThread listener;
+  };
+  std::array<Link, plant::kControlLevelCount> links_;  // by level
+  runtime::LatestValue<plant::PoseSample> pose_;
   // The computer's clock at stamp 0, monotonic; 0 before the first step.
   std::atomic<std::int64_t> origin_ns_{0};
-  comms::Subscription commands_;  // last two: their callbacks use all members above
+  std::vector<comms::Subscription> subscriptions_;  // last two: their callbacks use all members above
   comms::ClockServer clock_;
 };
 

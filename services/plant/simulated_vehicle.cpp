@@ -1,7 +1,8 @@
 #include "swiftlet/services/plant/simulated_vehicle.hpp"
 
-#include <cmath>
 #include <cstdio>
+#include <type_traits>
+#include <utility>
 
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
@@ -17,16 +18,42 @@ constexpr std::int64_t kReportPeriodNs = 50'000'000;
 
 }  // namespace
 
+std::vector<comms::Subscription> subscribe_commands(comms::Node& node, plant::ControlLevels levels,
+                                                    comms::Delivery delivery,
+                                                    std::function<void(const ReceivedCommand&)> callback) {
+  std::vector<comms::Subscription> subscriptions;
+  const auto subscribe = [&](const auto& topic, auto command) {
+    using Message = typename std::decay_t<decltype(topic)>::Message;
+    subscriptions.push_back(node.subscribe<Message>(
+        topic,
+        [callback, command](const Message& message) mutable {
+          const comms::Fault fault = comms::from_message(message, command);
+          callback({command, runtime::monotonic_ns(), fault});
+        },
+        delivery));
+  };
+  subscribe(comms::topics::kActuatorCommand, plant::ActuatorCommand());
+  if (levels.has(plant::ControlLevel::kRates))
+    subscribe(comms::topics::kRatesSetpoint, plant::RatesSetpoint());
+  if (levels.has(plant::ControlLevel::kAttitude))
+    subscribe(comms::topics::kAttitudeSetpoint, plant::AttitudeSetpoint());
+  if (levels.has(plant::ControlLevel::kTrajectory))
+    subscribe(comms::topics::kTrajectorySetpoint, plant::TrajectorySetpoint());
+  return subscriptions;
+}
+
 SimulatedVehicle::SimulatedVehicle(const plant::Vehicle& vehicle, const plant::SimulationSettings& settings,
                                    std::uint64_t seed, const plant::VehicleState& initial, comms::Node& node)
     : simulation_(vehicle, settings, seed, initial),
       command_path_(settings),
-      watchdog_(vehicle.rotor_count(), std::llround(settings.command_timeout_s * 1e9)),
+      firmware_(vehicle, settings),
       answers_(plant::period_ns(settings.imu.rate_hz)),
       imu_(node.publish(kImu)),
       ground_truth_(node.publish(kGroundTruth)),
       rotor_speeds_(node.publish(kRotorSpeeds)),
-      battery_(node.publish(kBattery)) {}
+      battery_(node.publish(kBattery)) {
+  inform_firmware();
+}
 
 bool SimulatedVehicle::obey(const ReceivedCommand& received) {
   if (received.fault) {
@@ -35,12 +62,12 @@ bool SimulatedVehicle::obey(const ReceivedCommand& received) {
   }
   if (!command_path_.send(received.command, simulation_.stamp_ns())) return true;
   if (!accept(received.command)) return false;
-  answers_.answered(received.command.imu_sequence, received.received_ns);
+  answers_.answered(plant::header_of(received.command).imu_sequence, received.received_ns);
   return true;
 }
 
-bool SimulatedVehicle::accept(const plant::ActuatorCommand& command) {
-  const plant::CommandFault refusal = watchdog_.accept(command, simulation_.stamp_ns());
+bool SimulatedVehicle::accept(const plant::VehicleCommand& command) {
+  const plant::CommandFault refusal = firmware_.accept(command, simulation_.stamp_ns());
   if (refusal == plant::CommandFault::kNone) {
     ++report_.commands;
     return true;
@@ -58,21 +85,27 @@ void SimulatedVehicle::refuse(const comms::Fault& fault) {
 
 void SimulatedVehicle::step() {
   if (const auto arrived = command_path_.arrived(simulation_.stamp_ns())) accept(*arrived);
-  const plant::MotorCommand command = watchdog_.motor_command(simulation_.stamp_ns());
+  const plant::MotorCommand command = firmware_.motor_command(simulation_.stamp_ns());
   const bool running = command.state == plant::RotorState::kRunning;
   if (running && !report_.rotors_running) {
     answers_.reset();
     report_.timed_out = false;
   }
-  if (!running && report_.rotors_running) report_.timed_out = watchdog_.expired(simulation_.stamp_ns());
+  if (!running && report_.rotors_running) report_.timed_out = firmware_.expired(simulation_.stamp_ns());
   report_.rotors_running = running;
   simulation_.step(command);
+  inform_firmware();
+}
+
+void SimulatedVehicle::inform_firmware() {
+  if (simulation_.imu()) firmware_.on_imu(*simulation_.imu());
+  if (simulation_.battery()) firmware_.on_battery(*simulation_.battery());
 }
 
 void SimulatedVehicle::publish_samples(bool truth_needed) {
   if (simulation_.imu()) {
     imu_message_ = comms::to_message(*simulation_.imu());
-    comms::set_obeyed_command(watchdog_.obeyed(), imu_message_);
+    comms::set_obeyed_command(firmware_.obeyed(), imu_message_);
     if (report_.rotors_running) answers_.written(simulation_.imu()->sequence, runtime::monotonic_ns());
     imu_.publish(imu_message_);
   }
@@ -90,7 +123,7 @@ void SimulatedVehicle::publish_samples_in_order(std::uint64_t mocap_sequence, bo
   // truth.
   const bool frame_due = mocap_sequence > imu_message_.mocap_sequence_number();
   imu_message_ = comms::to_message(*simulation_.imu());
-  comms::set_obeyed_command(watchdog_.obeyed(), imu_message_);
+  comms::set_obeyed_command(firmware_.obeyed(), imu_message_);
   imu_message_.mocap_sequence_number(mocap_sequence);
   imu_message_.battery_sequence_number(battery_message_.sequence_number());
   imu_message_.rotor_speeds_sequence_number(rotor_speeds_message_.sequence_number());

@@ -1,11 +1,13 @@
-// The simulated vehicle on DDS: publishes its sensor samples, obeys actuator commands. RealtimeLoop and
+// The simulated vehicle on DDS: publishes its sensor samples, obeys commands at the levels that it accepts. RealtimeLoop and
 // LockstepLoop advance its time.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <vector>
 
-#include "swiftlet/plant/simulation/actuator_watchdog.hpp"
+#include "swiftlet/plant/simulation/firmware/firmware.hpp"
 #include "swiftlet/plant/simulation/links/command_path.hpp"
 #include "swiftlet/plant/simulation/plant_simulation.hpp"
 #include "swiftlet/services/dds/node.hpp"
@@ -35,16 +37,18 @@ struct PlantReport {
   std::int64_t slipped_ns = 0;  // total
 };
 
-// An actuator command as received.
+// A command as received, of any level.
 struct ReceivedCommand {
-  explicit ReceivedCommand(const comms::msg::ActuatorCommand& message, std::int64_t now_ns)
-      : received_ns(now_ns), fault(comms::from_message(message, command)) {}
-  ReceivedCommand() = default;
-
-  plant::ActuatorCommand command;
+  plant::VehicleCommand command;
   std::int64_t received_ns = 0;  // monotonic
   comms::Fault fault;
 };
+
+// Subscribes to the commands of the levels that the vehicle accepts, and to those of level actuators, with which a
+// controller turns the rotors off before it knows the levels. The callback runs in the threads of the subscriptions.
+std::vector<comms::Subscription> subscribe_commands(comms::Node& node, plant::ControlLevels levels,
+                                                    comms::Delivery delivery,
+                                                    std::function<void(const ReceivedCommand&)> callback);
 
 // Not thread-safe.
 class SimulatedVehicle {
@@ -57,6 +61,13 @@ class SimulatedVehicle {
   // Returns false if the command is refused, that is ignored. A command that a simulated fault delays or
   // drops is not refused.
   bool obey(const ReceivedCommand& received);
+  // A pose of motion capture, for the loops of levels attitude and trajectory.
+  void on_pose(const plant::PoseSample& pose) { firmware_.on_pose(pose); }
+  bool needs_poses() const { return firmware_.needs_poses(); }
+  // The command with the throttles that carry it out, for a trace.
+  plant::ActuatorCommand as_actuators(const plant::VehicleCommand& command) const {
+    return firmware_.as_actuators(command);
+  }
   // Advances one integration step.
   void step();
   // Publishes the samples due at this stamp, the IMU's first: the controller waits for it.
@@ -75,14 +86,15 @@ class SimulatedVehicle {
   runtime::LatestValue<PlantReport>& reports() { return reports_; }
 
  private:
-  bool accept(const plant::ActuatorCommand& command);
+  bool accept(const plant::VehicleCommand& command);
+  void inform_firmware();
   void refuse(const comms::Fault& fault);
   void publish_truth();
   void publish_slow_samples();
 
   plant::PlantSimulation simulation_;
   plant::CommandPath command_path_;
-  plant::ActuatorWatchdog watchdog_;
+  plant::Firmware firmware_;
   // The newest samples; sequence number 0 before the first.
   comms::msg::Imu imu_message_;
   comms::msg::Battery battery_message_;

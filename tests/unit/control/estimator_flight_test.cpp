@@ -84,15 +84,15 @@ Vector3d fly_with_signs(bool flips) {
     const double end = flown.time_s() + time_s;
     while (flown.time_s() < end) {
       do {
-        flown.plant.step(flown.watchdog.motor_command(flown.plant.stamp_ns()));
+        flown.plant.step(flown.firmware.motor_command(flown.plant.stamp_ns()));
       } while (!flown.plant.imu());
       auto pose = flown.mocap.update(flown.plant.truth());
       if (pose && flips && pose->sequence % 3 == 0) pose->q_ned_from_frd.coeffs() *= -1.0;
       if (pose) flown.controller.on_pose(*pose);
       if (flown.plant.battery()) flown.controller.on_battery(*flown.plant.battery());
       if (flown.plant.rotor_speeds()) flown.controller.on_rotor_speeds(*flown.plant.rotor_speeds());
-      flown.command = flown.controller.on_imu(*flown.plant.imu());
-      flown.watchdog.accept(flown.command, flown.plant.stamp_ns());
+      flown.command = std::get<plant::ActuatorCommand>(flown.controller.on_imu(*flown.plant.imu()));
+      flown.firmware.accept(flown.command, flown.plant.stamp_ns());
     }
   };
   step_for(0.5);

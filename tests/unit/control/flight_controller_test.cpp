@@ -232,16 +232,16 @@ TEST_F(InFlight, StepAllocatesNoMemory) {
   const auto flown = [&](int steps) {
     for (int i = 0; i < steps; ++i) {
       do {
-        loop_.plant.step(loop_.watchdog.motor_command(loop_.plant.stamp_ns()));
+        loop_.plant.step(loop_.firmware.motor_command(loop_.plant.stamp_ns()));
       } while (!loop_.plant.imu());
       const auto pose = loop_.mocap.update(loop_.plant.truth());
       const test::MallocGuard guard;
       if (pose) loop_.controller.on_pose(*pose);
       if (loop_.plant.battery()) loop_.controller.on_battery(*loop_.plant.battery());
       if (loop_.plant.rotor_speeds()) loop_.controller.on_rotor_speeds(*loop_.plant.rotor_speeds());
-      loop_.command = loop_.controller.on_imu(*loop_.plant.imu());
+      loop_.command = std::get<plant::ActuatorCommand>(loop_.controller.on_imu(*loop_.plant.imu()));
       calls += guard.calls();
-      loop_.watchdog.accept(loop_.command, loop_.plant.stamp_ns());
+      loop_.firmware.accept(loop_.command, loop_.plant.stamp_ns());
     }
   };
   ASSERT_TRUE(loop_.controller.request(upload).accepted);
@@ -327,7 +327,7 @@ TEST_F(InFlight, StopsTheRotorsAfterATenthOfASecondOfInvalidImu) {
   while (command.rotor_state == plant::RotorState::kRunning && commands < 200) {
     broken.stamp_ns += 2'000'000;
     ++broken.sequence;
-    command = loop_.controller.on_imu(broken);
+    command = std::get<plant::ActuatorCommand>(loop_.controller.on_imu(broken));
     EXPECT_EQ(command.imu_sequence, broken.sequence);
     for (const double throttle : command.throttle) EXPECT_TRUE(std::isfinite(throttle));
     ++commands;

@@ -214,14 +214,14 @@ TEST_P(SetpointFlight, AllocatesNoMemoryForAnyKind) {
     }
     for (int i = 0; i < 20; ++i) {
       do {
-        loop_.plant.step(loop_.watchdog.motor_command(loop_.plant.stamp_ns()));
+        loop_.plant.step(loop_.firmware.motor_command(loop_.plant.stamp_ns()));
       } while (!loop_.plant.imu());
       const auto pose = loop_.mocap.update(loop_.plant.truth());
       const test::MallocGuard guard;
       if (pose) loop_.controller.on_pose(*pose);
-      loop_.command = loop_.controller.on_imu(*loop_.plant.imu());
+      loop_.command = std::get<plant::ActuatorCommand>(loop_.controller.on_imu(*loop_.plant.imu()));
       calls += guard.calls();
-      loop_.watchdog.accept(loop_.command, loop_.plant.stamp_ns());
+      loop_.firmware.accept(loop_.command, loop_.plant.stamp_ns());
     }
   }
   EXPECT_EQ(calls, 0U);

@@ -335,5 +335,19 @@ TEST(AttitudeController, RefusesAnInvalidInertia) {
   EXPECT_THROW(AttitudeController(vehicle, s.attitude, gains), std::invalid_argument);
 }
 
+// GIVEN any attitude and reference WHEN the body turns with the rates of rates() THEN moments() asks for the gyroscopic
+// moment alone.
+TEST_P(AttitudeControllerTest, RatesAreThoseAtWhichTheLawAsksForNoMoment) {
+  const ControlledVehicle vehicle(AttitudeModel::kDoubleIntegrator, GetParam());
+  for (int i = 0; i < 100; ++i) {
+    AttitudeReference reference = reference_at(any(0.5));
+    reference.body_rates = any(1.0);
+    const Quaterniond q = quaternion_from_euler(any(0.5));
+    const Vector3d rates = vehicle.controller->rates(q, reference);
+    const Vector3d moment = vehicle.controller->moments(q, rates, Vector3d::Zero(), reference);
+    EXPECT_LT((moment - rates.cross(vehicle.vehicle.inertia * rates)).norm(), 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace swiftlet::control

@@ -53,6 +53,23 @@ TEST(RotorObserver, SpeedsFollowTheLagForAnySteps) {
   }
 }
 
+// Without throttles: all rotors approach the speed of their share of the thrust, with the same lag.
+TEST(RotorObserver, RotorsShareACommandedThrust) {
+  for (const int rotors : {4, 6}) {
+    RotorObserver observer(rotors == 4 ? kaylion() : multirotor(rotors), kBandwidth);
+    observer.step(kTau_s, 0.8);
+    const double steady = std::sqrt(0.8 / rotors / 3.7901e-8);
+    for (int i = 0; i < rotors; ++i) {
+      EXPECT_NEAR(observer.speeds()[static_cast<std::size_t>(i)], steady * (1.0 - std::exp(-1.0)), 1e-6);
+    }
+    observer.step(10.0, 0.8);
+    EXPECT_NEAR(observer.thrust_n(), 0.8, 1e-9);
+    EXPECT_LT(observer.moment_frd().norm(), 1e-9);
+    observer.step(10.0, 0.0);
+    EXPECT_NEAR(observer.thrust_n(), 0.0, 1e-9);
+  }
+}
+
 TEST(RotorObserver, RotorsThatAreOffDecayForAnySteps) {
   RotorObserver observer(kaylion(), kBandwidth);
   observer.step(10.0, running(4, kThrottles), kSupply_v);

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "swiftlet/io/settings/vehicle_file.hpp"
-#include "swiftlet/plant/simulation/actuator_watchdog.hpp"
+#include "swiftlet/plant/simulation/command_watchdog.hpp"
 #include "swiftlet/plant/simulation/imu.hpp"
 #include "swiftlet/plant/simulation/mocap.hpp"
 #include "swiftlet/plant/simulation/plant_simulation.hpp"
@@ -172,7 +172,7 @@ class CommandedVehicle {
 
   CommandDefects defects_;
   plant::PlantSimulation simulation_;
-  plant::ActuatorWatchdog watchdog_;
+  plant::CommandWatchdog watchdog_;
   plant::ActuatorCommand command_;
   plant::ObeyedCommand obeyed_{true, false, 0, 0};
   bool silent_ = false;

@@ -45,7 +45,7 @@ class CommandServerTest : public testing::Test {
     last_imu_.stamp_ns = stamp;
     last_imu_.sequence = sequence_;
     last_imu_.specific_force_frd = {0.0, 0.0, -plant::kGravity};
-    const plant::ActuatorCommand command = loop_.step(last_imu_, 1'000'000'000 + stamp);
+    const auto command = std::get<plant::ActuatorCommand>(loop_.step(last_imu_, 1'000'000'000 + stamp));
     loop_.finish(1'000'000'000 + stamp + 20'000);
     return command;
   }

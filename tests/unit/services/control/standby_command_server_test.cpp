@@ -38,7 +38,7 @@ class StandbyCommandServerTest : public CommandServerTest {
     standby_loop_.battery.put(last_battery_);
     standby_loop_.rotor_speeds.put(last_rotor_speeds_);
     const std::int64_t now_ns = 1'000'000'000 + last_imu_.stamp_ns;
-    const plant::ActuatorCommand command = standby_loop_.step(last_imu_, now_ns, role, kTerm);
+    const auto command = std::get<plant::ActuatorCommand>(standby_loop_.step(last_imu_, now_ns, role, kTerm));
     standby_loop_.finish(now_ns + 20'000);
     return command;
   }

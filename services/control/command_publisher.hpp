@@ -1,0 +1,46 @@
+// Publishes the commands at the level at which the vehicle is commanded: each level has a topic of its own.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "swiftlet/plant/model/control_level.hpp"
+#include "swiftlet/plant/model/vehicle_command.hpp"
+#include "swiftlet/services/dds/node.hpp"
+
+namespace swiftlet::services {
+
+class CommandPublisher {
+ public:
+  // Level actuators is open from the start. strength: ownership strength of the commands, of every level.
+  CommandPublisher(comms::Node& node, std::uint32_t strength, int rotor_count);
+
+  // Creates the topic of a level. Call open() and set_strength() from one thread.
+  void open(plant::ControlLevel level);
+  void set_strength(std::uint32_t strength);
+
+  // While the topic of the command's level is not open, the vehicle's levels are not known: a command of rotors off then
+  // goes out at level actuators, others do not. Two threads publish: that of the IMU samples, and while there are none
+  // that of the telemetry. Neither waits for the other: a sample whose command is left out for that reason counts as
+  // unanswered at the vehicle. Does not allocate.
+  void publish(const plant::VehicleCommand& command);
+
+ private:
+  void publish_as(const plant::ActuatorCommand& command);
+  void publish_as(const plant::RatesSetpoint& setpoint);
+  void publish_as(const plant::AttitudeSetpoint& setpoint);
+  void publish_as(const plant::TrajectorySetpoint& setpoint);
+
+  comms::Node& node_;
+  std::uint32_t strength_;
+  const int rotor_count_;
+  std::array<std::atomic<bool>, plant::kControlLevelCount> open_{};
+  std::atomic_flag in_use_ = ATOMIC_FLAG_INIT;
+  comms::Publisher<comms::msg::ActuatorCommand> actuators_;
+  comms::Publisher<comms::msg::RatesSetpoint> rates_;
+  comms::Publisher<comms::msg::AttitudeSetpoint> attitude_;
+  comms::Publisher<comms::msg::TrajectorySetpoint> trajectory_;
+};
+
+}  // namespace swiftlet::services

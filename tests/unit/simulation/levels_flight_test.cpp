@@ -1,0 +1,251 @@
+// The square at each level at which a vehicle can be commanded, in one process.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/io/configuration.hpp"
+#include "swiftlet/io/missions/mission_file.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/io/settings/simulation_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/simulation/simulated_flight.hpp"
+#include "tests/support/malloc_guard.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using plant::ControlLevel;
+
+class Levels : public testing::TestWithParam<ControlLevel> {
+ protected:
+  Levels() { world_.control_levels = GetParam(); }
+
+  bool own_position_loop() const { return GetParam() == ControlLevel::kTrajectory; }
+
+  // Arms, takes off to 1 m and holds.
+  void hover(ClosedLoop& loop) {
+    ASSERT_TRUE(loop.step_until([&] { return loop.time_s() > 1.0; }, 2.0));
+    control::Request request;
+    request.kind = control::RequestKind::kArm;
+    const control::Outcome armed = loop.controller.request(request);
+    ASSERT_TRUE(armed.accepted) << armed.reason;
+    request.kind = control::RequestKind::kTakeoff;
+    request.position_ned.z() = -1.0;
+    ASSERT_TRUE(loop.controller.request(request).accepted);
+    ASSERT_TRUE(loop.step_until([&] { return mode(loop) == control::Mode::kHolding; }, 10.0));
+    run(loop, 2.0);
+  }
+  void land(ClosedLoop& loop) {
+    control::Request request;
+    request.kind = control::RequestKind::kLand;
+    ASSERT_TRUE(loop.controller.request(request).accepted);
+    ASSERT_TRUE(loop.step_until([&] { return mode(loop) == control::Mode::kDisarmed; }, 10.0));
+  }
+  void run(ClosedLoop& loop, double duration_s) {
+    const double end_s = loop.time_s() + duration_s;
+    loop.step_until([&] { return loop.time_s() >= end_s; }, duration_s + 1.0);
+  }
+  static control::Mode mode(const ClosedLoop& loop) { return loop.controller.status().mode; }
+
+  plant::Vehicle vehicle_ = runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml"));
+  plant::SimulationSettings world_ =
+      runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
+  control::ControlSettings settings_ =
+      runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml"));
+};
+
+// Tracking error of a mission from take-off to the start of the landing, m.
+struct Errors {
+  double rms_m = 0.0;
+  double greatest_m = 0.0;
+};
+
+Errors fly_square(const plant::Vehicle& vehicle, const plant::SimulationSettings& world,
+                  const control::ControlSettings& settings) {
+  ClosedLoop loop(vehicle, world, settings, 1);
+  control::Mission mission =
+      load_mission_file(runtime::find_config("missions/square.yaml"), settings.limits).mission;
+  mission.id = 1;
+  Errors errors;
+  double sum = 0.0;
+  int count = 0;
+  const auto watch = [&] {
+    const control::Status& status = loop.controller.status();
+    const bool landing = status.mission.item_index + 1 == status.mission.item_count;
+    if (status.mission.state != control::MissionState::kRunning || landing) return false;
+    const double error_m = loop.tracking_error().norm();
+    errors.greatest_m = std::max(errors.greatest_m, error_m);
+    sum += error_m * error_m;
+    ++count;
+    return false;
+  };
+  const SimulatedFlight done =
+      fly(loop, mission, planned_duration_s(mission, settings.limits), {nullptr, nullptr, watch});
+  EXPECT_TRUE(done.completed) << done.reason;
+  EXPECT_EQ(plant::level_of(loop.sent), world.control_levels.lowest());
+  EXPECT_LT(loop.plant.state().position_ned.norm(), 0.1) << "landed elsewhere";
+  errors.rms_m = std::sqrt(sum / count);
+  return errors;
+}
+
+TEST_P(Levels, TheSquareIsTracked) {
+  const Errors errors = fly_square(vehicle_, world_, settings_);
+  RecordProperty("rms_mm", std::to_string(1e3 * errors.rms_m));
+  std::printf("%s: rms %.1f mm, greatest %.1f mm\n", plant::to_string(GetParam()), 1e3 * errors.rms_m,
+              1e3 * errors.greatest_m);
+  EXPECT_LT(errors.rms_m, own_position_loop() ? 0.05 : 0.01);
+  EXPECT_LT(errors.greatest_m, own_position_loop() ? 0.15 : 0.05);
+}
+
+// A vehicle that does not measure its rotors, and one that is heavier than the controller's model.
+TEST_P(Levels, FliesWithoutMeasuredRotorsAndWithAWrongMass) {
+  world_.rotor_speed_rate_hz = 0.0;
+  plant::Vehicle heavy = vehicle_;
+  heavy.mass_kg *= 1.1;
+  ClosedLoop loop(heavy, vehicle_, world_, settings_, 1);
+  hover(loop);
+  EXPECT_LT(loop.tracking_error().norm(), 0.05);
+  land(loop);
+  EXPECT_TRUE(loop.plant.on_ground());
+}
+
+// GIVEN hover in steady wind THEN control integrates at the levels at which it controls the position, and at level
+// trajectory the vehicle does it alone.
+TEST_P(Levels, OnlyWhoClosesTheLoopIntegrates) {
+  world_.air.wind_ned = {1.5, -1.0, 0.0};
+  ClosedLoop loop(vehicle_, world_, settings_, 1);
+  hover(loop);
+  run(loop, 3.0);
+  const Eigen::Vector3d integral = loop.controller.state().position_integral;
+  EXPECT_EQ(integral.isZero(0.0), own_position_loop()) << integral.transpose();
+  EXPECT_EQ(loop.firmware.position_loop().integral().isZero(0.0), !own_position_loop());
+  EXPECT_LT(loop.tracking_error().norm(), 0.03);
+}
+
+// GIVEN a vehicle that is held back WHEN it stands on the ground after the landing THEN no integral is left.
+TEST_P(Levels, NothingIsWoundUpOnTheGround) {
+  ClosedLoop loop(vehicle_, world_, settings_, 1);
+  hover(loop);
+  land(loop);
+  run(loop, 0.01);
+  EXPECT_TRUE(loop.controller.state().position_integral.isZero(0.0));
+  EXPECT_TRUE(loop.firmware.position_loop().integral().isZero(0.0));
+  EXPECT_TRUE(loop.firmware.rate_loop().integral().isZero(0.0));
+}
+
+TEST_P(Levels, WithoutPosesTheVehicleDescendsAndStopsItsRotors) {
+  ClosedLoop loop(vehicle_, world_, settings_, 1);
+  hover(loop);
+  loop.mocap_connected = false;
+  ASSERT_TRUE(loop.step_until([&] { return mode(loop) == control::Mode::kDescent; }, 2.0));
+  ASSERT_TRUE(loop.step_until([&] { return control::rotors_off(mode(loop)); }, 8.0));
+  EXPECT_EQ(mode(loop), control::Mode::kDisarmed) << control::to_string(loop.controller.status().reason);
+  EXPECT_EQ(loop.controller.status().reason, control::Reason::kLandedWithoutPosition);
+  EXPECT_LT(loop.plant.state().position_ned.head<2>().norm(), 0.5);
+}
+
+TEST_P(Levels, AStepOfControllerAndFirmwareAllocatesNoMemory) {
+  ClosedLoop loop(vehicle_, world_, settings_, 1);
+  hover(loop);
+  const test::MallocGuard guard;
+  for (int i = 0; i < 500; ++i) loop.step();
+  EXPECT_EQ(guard.calls(), 0U);
+}
+
+TEST_P(Levels, StopTurnsTheRotorsOffAtOnce) {
+  ClosedLoop loop(vehicle_, world_, settings_, 1);
+  hover(loop);
+  control::Request stop;
+  stop.kind = control::RequestKind::kStop;
+  ASSERT_TRUE(loop.controller.request(stop).accepted);
+  loop.step();
+  EXPECT_EQ(plant::header_of(loop.sent).rotor_state, plant::RotorState::kOff);
+  loop.step();
+  EXPECT_EQ(loop.firmware.motor_command(loop.plant.stamp_ns()).state, plant::RotorState::kOff);
+}
+
+TEST_P(Levels, StreamsOfAttitudesAreFollowedOrRefusedByName) {
+  ClosedLoop loop(vehicle_, world_, settings_, 1);
+  hover(loop);
+  control::Setpoint tilted;
+  tilted.kind = control::SetpointKind::kAttitude;
+  tilted.q_ned_from_frd = Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitX());
+  tilted.specific_thrust = plant::kGravity;
+  const control::Outcome outcome = loop.controller.on_setpoint(tilted);
+  if (own_position_loop()) {
+    EXPECT_STREQ(outcome.reason,
+                 "setpoint: a vehicle that is commanded at level trajectory follows no attitudes");
+    return;
+  }
+  ASSERT_TRUE(outcome.accepted) << outcome.reason;
+  run(loop, 0.5);
+  EXPECT_LT(loop.plant.state().q_ned_from_frd.angularDistance(tilted.q_ned_from_frd), 0.03);
+  control::Setpoint turning;
+  turning.kind = control::SetpointKind::kBodyRates;
+  turning.body_rates_frd = {0.0, 0.0, 0.8};
+  turning.specific_thrust = plant::kGravity;
+  ASSERT_TRUE(loop.controller.on_setpoint(turning).accepted);
+  run(loop, 0.7);
+  EXPECT_NEAR(loop.plant.state().body_rates_frd.z(), 0.8, 0.15);
+}
+
+TEST_P(Levels, AnotherVehicleFliesWithTheSameSettings) {
+  const plant::Vehicle crazyflie = runtime::load_vehicle(runtime::find_config("vehicles/crazyflie2.yaml"));
+  EXPECT_LT(fly_square(crazyflie, world_, settings_).rms_m, own_position_loop() ? 0.05 : 0.02);
+}
+
+// GIVEN a controller of level attitude WHEN the vehicle accepts other levels only THEN it cannot be armed.
+TEST(LevelChoice, ArmingIsRefusedAtALevelThatTheVehicleDoesNotAccept) {
+  plant::SimulationSettings world =
+      runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
+  world.control_levels = plant::ControlLevels::from_bits(0b1010);
+  ClosedLoop loop(runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml")), world,
+                  runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml")), 1);
+  loop.controller.set_levels(world.control_levels, ControlLevel::kAttitude);
+  loop.step_until([&] { return loop.time_s() > 1.0; }, 2.0);
+  control::Request arm;
+  arm.kind = control::RequestKind::kArm;
+  const control::Outcome refused = loop.controller.request(arm);
+  EXPECT_FALSE(refused.accepted);
+  EXPECT_STREQ(
+      refused.reason,
+      "cannot arm: the vehicle does not accept commands at level attitude, it accepts rates, trajectory");
+  loop.controller.set_levels(world.control_levels, std::nullopt);
+  EXPECT_TRUE(loop.controller.request(arm).accepted);
+  loop.step();
+  EXPECT_EQ(plant::level_of(loop.sent), ControlLevel::kRates);
+}
+
+// GIVEN rotors that turn WHEN the choice changes THEN the level stays until they are off.
+TEST(LevelChoice, StaysWhileTheRotorsTurn) {
+  plant::SimulationSettings world =
+      runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
+  world.control_levels = plant::ControlLevels::from_bits(0b0110);
+  ClosedLoop loop(runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml")), world,
+                  runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml")), 1);
+  loop.step_until([&] { return loop.time_s() > 1.0; }, 2.0);
+  control::Request request;
+  request.kind = control::RequestKind::kArm;
+  ASSERT_TRUE(loop.controller.request(request).accepted);
+  loop.step();
+  loop.controller.set_levels(world.control_levels, ControlLevel::kAttitude);
+  loop.step();
+  EXPECT_EQ(plant::level_of(loop.sent), ControlLevel::kRates);
+  request.kind = control::RequestKind::kDisarm;
+  ASSERT_TRUE(loop.controller.request(request).accepted);
+  loop.step();
+  loop.controller.set_levels(world.control_levels, ControlLevel::kAttitude);
+  loop.step();
+  EXPECT_EQ(plant::level_of(loop.sent), ControlLevel::kAttitude);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Levels, testing::ValuesIn(plant::kControlLevels),
+                         [](const auto& level) { return std::string(plant::to_string(level.param)); });
+
+}  // namespace
+}  // namespace swiftlet::ground
