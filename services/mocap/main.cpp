@@ -120,6 +120,8 @@ void simulate(const Options& options) {
 void check_capture(const Options& options) {
   if (options.capture.clock == runtime::Clock::kLockstep)
     throw std::invalid_argument("--clock lockstep: only with --source simulation");
+  if (options.capture.frame_clock == FrameClock::kHost)
+    throw std::invalid_argument("--frame-clock host: only with --source simulation");
   if (options.source.room.empty() && options.source.frame.empty())
     throw std::invalid_argument(
         "--frame is required without --room: zup or yup, as the motion capture is set");

@@ -258,6 +258,8 @@ TEST_F(MotionCaptureOptions, ThatDoNotGoTogetherAreRefused) {
        "--frame is required without --room: zup or yup, as the motion capture is set"},
       {{"--source", "natnet", "--frame", "zup", "--clock", "lockstep"},
        "--clock lockstep: only with --source simulation"},
+      {{"--source", "natnet", "--frame", "zup", "--frame-clock", "host"},
+       "--frame-clock host: only with --source simulation"},
       {{"--source", "vrpn", "--frame", "zup"}, "--source vrpn needs --server"},
       {{"--source", "replay", "--frame", "zup"}, "--source replay needs --file"},
       {{"--source", "vrpn", "--frame", "zup", "--server", "127.0.0.1:99999"},
