@@ -1,4 +1,6 @@
 // Fuzzes what a motion capture sends. The first byte selects the protocol, the second the layout.
+#include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "swiftlet/io/mocap/natnet.hpp"

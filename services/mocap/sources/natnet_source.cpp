@@ -1,6 +1,7 @@
 #include "swiftlet/services/mocap/sources/natnet_source.hpp"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
 #include <spdlog/spdlog.h>

@@ -1,6 +1,7 @@
 #include "swiftlet/io/mocap/vrpn.hpp"
 
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <string>
 
