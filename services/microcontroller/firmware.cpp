@@ -19,7 +19,7 @@ std::array<float, 3> to_wire(const Eigen::Vector3d& vector) {
 
 plant::ActuatorCommand from_wire(const protocol::Command& in) {
   plant::ActuatorCommand out;
-  out.stamp_ns = in.stamp_us * kNsPerUs;
+  out.stamp_ns = protocol::ns_of_us(in.stamp_us);
   out.term = in.term;
   out.rotor_state = in.rotors_running != 0 ? plant::RotorState::kRunning : plant::RotorState::kOff;
   out.rotor_count = in.rotor_count;

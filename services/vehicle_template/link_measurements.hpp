@@ -26,7 +26,7 @@ struct LinkMeasurements {
   // microcontroller_ns: its clock at the arrival of the sample, if it is known.
   void note(const protocol::Imu& sample, std::optional<std::int64_t> microcontroller_ns) {
     ++samples;
-    if (microcontroller_ns) sample_to_host.record(*microcontroller_ns - sample.stamp_us * 1000);
+    if (microcontroller_ns) sample_to_host.record(*microcontroller_ns - protocol::ns_of_us(sample.stamp_us));
     if (sample.has_command == 0 || sample.command_stamp_us == command_stamp_us_) return;
     command_stamp_us_ = sample.command_stamp_us;
     sample_to_motor.record(std::int64_t{sample.command_age_us} * 1000);

@@ -57,7 +57,7 @@ void LinkReporter::publish_due() {
   changed_ = false;
   due_ns_ = now_ns + kPeriodNs;
   const runtime::LatencyHistogram& times = last_.sample_to_motor;
-  info_.stamp_ns(last_.state.stamp_us * 1000);
+  info_.stamp_ns(protocol::ns_of_us(last_.state.stamp_us));
   info_.sequence_number(info_.sequence_number() + 1);
   if (last_.link.microcontroller) {
     info_.simulated(last_.link.microcontroller->simulated != 0);

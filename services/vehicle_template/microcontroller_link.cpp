@@ -18,7 +18,6 @@ constexpr std::int64_t kHelloPeriodNs = 100'000'000;
 constexpr std::int64_t kTimeRequestPeriodNs = 50'000'000;
 constexpr std::int64_t kSilenceNs =
     500'000'000;  // without a frame of the microcontroller the session has ended
-constexpr std::int64_t kNsPerUs = 1000;
 
 }  // namespace
 
@@ -109,7 +108,8 @@ void MicrocontrollerLink::on_hello_reply(const protocol::HelloReply& reply) noex
 void MicrocontrollerLink::on_time_reply(const protocol::TimeReply& reply) noexcept {
   if (status_.state != LinkState::kConnected) return;
   heard_ns_ = arrived_ns_;
-  clock_.add({reply.sent_ns, reply.received_us * kNsPerUs, reply.answered_us * kNsPerUs, arrived_ns_});
+  clock_.add({reply.sent_ns, protocol::ns_of_us(reply.received_us), protocol::ns_of_us(reply.answered_us),
+              arrived_ns_});
   update_clock();
 }
 

@@ -6,7 +6,6 @@
 namespace swiftlet::services {
 namespace {
 
-constexpr std::int64_t kNsPerUs = 1000;
 constexpr double kFullThrottle = 65535.0;
 
 std::array<double, 3> widened(const std::array<float, 3>& vector) {
@@ -18,18 +17,18 @@ std::array<double, 3> widened(const std::array<float, 3>& vector) {
 comms::msg::Imu to_message(const protocol::Imu& in) {
   using namespace comms::msg::Imu_Constants;
   comms::msg::Imu out;
-  out.stamp_ns(in.stamp_us * kNsPerUs);
+  out.stamp_ns(protocol::ns_of_us(in.stamp_us));
   out.specific_force_frd(widened(in.specific_force_frd));
   out.body_rates_frd(widened(in.body_rates_frd));
   out.commands(in.has_command != 0 ? COMMANDS_OBEYED : COMMANDS_NONE);
   out.command_term(in.command_term);
-  out.command_stamp_ns(in.command_stamp_us * kNsPerUs);
+  out.command_stamp_ns(protocol::ns_of_us(in.command_stamp_us));
   return out;
 }
 
 comms::msg::RotorSpeeds to_message(const protocol::RotorSpeeds& in) {
   comms::msg::RotorSpeeds out;
-  out.stamp_ns(in.stamp_us * kNsPerUs);
+  out.stamp_ns(protocol::ns_of_us(in.stamp_us));
   out.rotor_count(in.rotor_count);
   std::copy(in.speeds.begin(), in.speeds.end(), out.speeds().begin());
   return out;
@@ -37,7 +36,7 @@ comms::msg::RotorSpeeds to_message(const protocol::RotorSpeeds& in) {
 
 comms::msg::Battery to_message(const protocol::Battery& in) {
   comms::msg::Battery out;
-  out.stamp_ns(in.stamp_us * kNsPerUs);
+  out.stamp_ns(protocol::ns_of_us(in.stamp_us));
   out.voltage_v(in.voltage_v);
   out.current_a(in.current_a);
   out.state_of_charge(in.state_of_charge);
@@ -46,7 +45,7 @@ comms::msg::Battery to_message(const protocol::Battery& in) {
 
 protocol::Command to_wire(const plant::ActuatorCommand& in) {
   protocol::Command out;
-  out.stamp_us = in.stamp_ns / kNsPerUs;
+  out.stamp_us = in.stamp_ns / 1000;
   out.term = in.term;
   out.rotors_running = in.rotor_state == plant::RotorState::kRunning ? 1 : 0;
   out.rotor_count = static_cast<std::uint8_t>(in.rotor_count);

@@ -16,6 +16,14 @@ namespace swiftlet::protocol {
 constexpr std::uint16_t kVersion = 1;
 constexpr std::size_t kMaxRotors = 8;
 
+// A stamp in ns. Any number may come over the wire: beyond 73 years, which no clock shows, it is limited, so that neither this
+// nor a difference of two such stamps overflows.
+constexpr std::int64_t ns_of_us(std::int64_t stamp_us) {
+  constexpr std::int64_t kLimitUs = (std::int64_t{1} << 61) / 1000;
+  if (stamp_us > kLimitUs) return kLimitUs * 1000;
+  return (stamp_us < -kLimitUs ? -kLimitUs : stamp_us) * 1000;
+}
+
 // ---- host -> microcontroller: kinds below 0x80
 
 // Begins a session. The microcontroller answers with HelloReply, whatever the version. It sends nothing else and obeys

@@ -1,6 +1,8 @@
 // What the simulated firmware does at its end of the link; firmware of a real vehicle must do the same.
 #include "swiftlet/services/microcontroller/firmware.hpp"
 
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -172,12 +174,21 @@ TEST_F(FirmwareTest, RefusesWhatItMustNotObey) {
   old.term = 5;
   say(old);
   EXPECT_EQ(refusal(), "answers an outdated IMU sample");
+  for (const std::int64_t limit :
+       {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()}) {
+    auto senseless = command(true);
+    senseless.stamp_us = limit;
+    senseless.term = 5;
+    say(senseless);
+    EXPECT_EQ(refusal(),
+              limit < 0 ? "answers an outdated IMU sample" : "answers an IMU sample of the future");
+  }
   auto six = command(true);
   six.rotor_count = 6;
   say(six);
   EXPECT_EQ(refusal(), "rotor count differs from the vehicle's");
   EXPECT_EQ(firmware_.state().commands_obeyed, 1U);
-  EXPECT_EQ(firmware_.state().commands_refused, 4U);
+  EXPECT_EQ(firmware_.state().commands_refused, 6U);
 }
 
 TEST_F(FirmwareTest, EndsTheSessionOfASilentHost) {

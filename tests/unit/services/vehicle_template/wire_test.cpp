@@ -1,5 +1,9 @@
 #include "swiftlet/services/vehicle_template/wire.hpp"
 
+#include <array>
+#include <cstdint>
+#include <limits>
+
 #include <gtest/gtest.h>
 
 namespace swiftlet::services {
@@ -40,6 +44,14 @@ TEST(Wire, ACommandNamesTheSampleThatItAnswersInItsOwnMicroseconds) {
   in.rotor_state = plant::RotorState::kOff;
   EXPECT_EQ(to_wire(in).rotors_running, 0);
 }
+
+// Any number may come over the wire. Evaluated by the compiler, which refuses an overflow.
+static_assert(protocol::ns_of_us(-7) == -7000);
+static_assert(protocol::ns_of_us(std::numeric_limits<std::int64_t>::max()) ==
+              protocol::ns_of_us(std::numeric_limits<std::int64_t>::max() / 4));
+static_assert(protocol::ns_of_us(std::numeric_limits<std::int64_t>::max()) -
+                  protocol::ns_of_us(std::numeric_limits<std::int64_t>::min()) >
+              0);
 
 TEST(Wire, RotorSpeedsAndBatteryKeepTheirValues) {
   protocol::RotorSpeeds speeds;
