@@ -1,75 +1,22 @@
 #include "swiftlet/services/vehicle_template/byte_link.hpp"
 
-#include <algorithm>
 #include <arpa/inet.h>
 #include <cerrno>
-#include <fcntl.h>
-#include <iterator>
-#include <linux/serial.h>
 #include <stdexcept>
-#include <sys/ioctl.h>
 #include <sys/socket.h>
-#include <termios.h>
 #include <unistd.h>
 #include <utility>
 
 #include "swiftlet/services/dds/discovery/host_address.hpp"
+#include "swiftlet/services/runtime/serial_device.hpp"
 
 namespace swiftlet::services {
-namespace {
-
-struct Baud {
-  int rate;
-  speed_t code;
-};
-constexpr Baud kBauds[] = {
-    {115'200, B115200},    {230'400, B230400},    {460'800, B460800},    {500'000, B500000},
-    {576'000, B576000},    {921'600, B921600},    {1'000'000, B1000000}, {1'152'000, B1152000},
-    {1'500'000, B1500000}, {2'000'000, B2000000}, {2'500'000, B2500000}, {3'000'000, B3000000},
-    {3'500'000, B3500000}, {4'000'000, B4000000},
-};
-
-const Baud* find(int rate) {
-  const auto* const found =
-      std::find_if(std::begin(kBauds), std::end(kBauds), [=](const Baud& baud) { return baud.rate == rate; });
-  return found == std::end(kBauds) ? nullptr : found;
-}
-
-// 8 data bits, no parity, no flow control, no translation of bytes.
-bool set_raw(int device, speed_t speed) noexcept {
-  termios settings{};
-  if (::tcgetattr(device, &settings) != 0) return false;
-  ::cfmakeraw(&settings);
-  settings.c_cflag |= CLOCAL | CREAD;
-  settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
-  settings.c_cc[VMIN] = 1;  // so that 0 bytes mean that the device has vanished
-  settings.c_cc[VTIME] = 0;
-  return ::cfsetspeed(&settings, speed) == 0 && ::tcsetattr(device, TCSANOW, &settings) == 0 &&
-         ::tcflush(device, TCIOFLUSH) == 0;
-}
-
-// Some adapters collect bytes for up to 16 ms otherwise. Others have no such setting.
-void ask_for_low_latency(int device) noexcept {
-  serial_struct settings{};
-  if (::ioctl(device, TIOCGSERIAL, &settings) != 0) return;
-  settings.flags |= ASYNC_LOW_LATENCY;
-  ::ioctl(device, TIOCSSERIAL, &settings);
-}
-
-}  // namespace
-
-std::string fault_of_baud(int baud) {
-  if (find(baud) != nullptr) return "";
-  std::string rates;
-  for (const Baud& known : kBauds) rates += (rates.empty() ? "" : ", ") + std::to_string(known.rate);
-  return "is " + std::to_string(baud) + ", must be one of " + rates;
-}
 
 ByteLink::ByteLink(ByteLinkSettings settings) : settings_(std::move(settings)) {
   if (settings_.device.empty() == settings_.udp.empty())
     throw std::invalid_argument("the link: give either --device or --udp");
   if (!settings_.device.empty()) {
-    const std::string fault = fault_of_baud(settings_.baud);
+    const std::string fault = runtime::fault_of_baud(settings_.baud);
     if (!fault.empty()) throw std::invalid_argument("--baud: " + fault);
     return;
   }
@@ -91,12 +38,8 @@ int ByteLink::open() noexcept {
 }
 
 int ByteLink::open_device() noexcept {
-  descriptor_ = ::open(settings_.device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor_ < 0) return errno;
-  if (::ioctl(descriptor_, TIOCEXCL) != 0) return errno;  // no second process on the line
-  if (!set_raw(descriptor_, find(settings_.baud)->code)) return errno;
-  ask_for_low_latency(descriptor_);
-  return 0;
+  descriptor_ = runtime::open_serial_device(settings_.device.c_str(), settings_.baud);
+  return descriptor_ < 0 ? -descriptor_ : 0;
 }
 
 int ByteLink::open_socket() noexcept {

@@ -10,14 +10,11 @@ namespace swiftlet::services {
 
 struct ByteLinkSettings {
   std::string device;  // "/dev/ttyACM0"; empty: UDP
-  int baud = 921'600;  // of the device; see fault_of_baud()
+  int baud = 921'600;  // of the device; see runtime::fault_of_baud()
   std::string udp;     // HOST:PORT of the microcontroller
 
   const std::string& name() const { return device.empty() ? udp : device; }
 };
-
-// Why the system has no such rate: a sentence; empty if it has.
-std::string fault_of_baud(int baud);
 
 // One thread. It does not allocate after construction.
 class ByteLink {
@@ -28,7 +25,8 @@ class ByteLink {
   ByteLink(const ByteLink&) = delete;
   ByteLink& operator=(const ByteLink&) = delete;
 
-  // Opens it, without the bytes that were received before. Returns 0, or the errno of the fault.
+  // Opens it, without the bytes that were received before. Returns 0, or the errno of the fault: EBUSY if another vehicle
+  // process has the device.
   int open() noexcept;
   void close() noexcept;
   bool is_open() const noexcept { return descriptor_ >= 0; }

@@ -238,7 +238,7 @@ TEST_F(VehicleTemplate, RefusesWrongUsage) {
   EXPECT_NE(refusal("swiftlet-vehicle-template", {}).find("give either --device or --udp"),
             std::string::npos);
   EXPECT_NE(refusal("swiftlet-vehicle-template", {"--device", "/dev/x", "--baud", "1"})
-                .find("--baud: is 1, must be one of 115200, "),
+                .find("--baud: is 1, must be one of 57600, 115200, "),
             std::string::npos);
   EXPECT_NE(refusal("swiftlet-microcontroller", {}).find("give --pty PATH or --udp HOST:PORT"),
             std::string::npos);

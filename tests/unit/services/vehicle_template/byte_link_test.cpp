@@ -27,7 +27,7 @@ std::string refusal(const ByteLinkSettings& settings) {
 TEST(ByteLink, RefusesLinksThatCannotBe) {
   EXPECT_EQ(refusal({}), "the link: give either --device or --udp");
   EXPECT_EQ(refusal({"/dev/x", 921'600, "127.0.0.1:9000"}), "the link: give either --device or --udp");
-  EXPECT_EQ(refusal({"/dev/x", 12'345, ""}).rfind("--baud: is 12345, must be one of 115200, ", 0), 0U);
+  EXPECT_EQ(refusal({"/dev/x", 12'345, ""}).rfind("--baud: is 12345, must be one of 57600, 115200, ", 0), 0U);
   EXPECT_EQ(refusal({"", 921'600, "127.0.0.1"}), "--udp: is '127.0.0.1', must be HOST:PORT, with a port");
   EXPECT_NE(refusal({"", 921'600, "a:b"}), "");
 }
@@ -80,6 +80,21 @@ TEST(ByteLink, ClosesWhenTheDeviceVanishesAndOpensWhenItIsBack) {
   EXPECT_FALSE(link.write(&byte, 1));
   far_end = open_pseudo_terminal(path);
   EXPECT_EQ(link.open(), 0);
+}
+
+// GIVEN a link that has a device, WHEN another one asks for it, THEN it gets it as soon as the first has closed it, not before,
+// although the far end keeps the device open.
+TEST(ByteLink, HasADeviceAlone) {
+  const tests::TemporaryFolder folder;
+  const std::string path = folder.path() / "tty";
+  const auto far_end = open_pseudo_terminal(path);
+  ByteLink first({path, 921'600, ""});
+  ByteLink second({path, 921'600, ""});
+  ASSERT_EQ(first.open(), 0);
+  EXPECT_EQ(second.open(), EBUSY);
+  EXPECT_FALSE(second.is_open());
+  first.close();
+  EXPECT_EQ(second.open(), 0);
 }
 
 TEST(PseudoTerminal, ReplacesALinkButNoFile) {
