@@ -36,6 +36,7 @@ LinkReporter::LinkReporter(comms::Node& node, const plant::Vehicle& vehicle, std
 }
 
 void LinkReporter::update(const LinkMeasurements& measurements) {
+  updated_ = true;
   const LinkMeasurements before = std::exchange(last_, measurements);
   changed_ = changed_ || before.state.rotors_running != last_.state.rotors_running ||
              before.link.state != last_.link.state || before.link.sessions != last_.link.sessions;
@@ -53,7 +54,7 @@ void LinkReporter::update(const LinkMeasurements& measurements) {
 
 void LinkReporter::publish_due() {
   const std::int64_t now_ns = runtime::monotonic_ns();
-  if (!changed_ && now_ns < due_ns_) return;
+  if (!updated_ || (!changed_ && now_ns < due_ns_)) return;
   changed_ = false;
   due_ns_ = now_ns + kPeriodNs;
   const runtime::LatencyHistogram& times = last_.sample_to_motor;

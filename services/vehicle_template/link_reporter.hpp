@@ -17,7 +17,8 @@ class LinkReporter {
 
   // Logs what has changed.
   void update(const LinkMeasurements& measurements);
-  // Publishes vehicle_info every second, and at once when the rotors start or stop or the link comes or goes.
+  // Publishes vehicle_info every second, and at once when the rotors start or stop or the link comes or goes. Not before the
+  // first update(): nothing is known of the link.
   void publish_due();
   // Why this microcontroller cannot be flown: a sentence; empty if it can, or is not known yet.
   std::string fault_of_microcontroller() const;
@@ -38,6 +39,7 @@ class LinkReporter {
   LinkMeasurements logged_;
   bool clock_logged_ = false;
   bool changed_ = true;
+  bool updated_ = false;
   std::int64_t due_ns_ = 0;
   std::int64_t frames_due_ns_ = 0;
 };

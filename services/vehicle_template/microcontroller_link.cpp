@@ -46,6 +46,7 @@ void MicrocontrollerLink::wait() noexcept {
 // What a session needs from the host by time: an open device, Hello, time requests.
 void MicrocontrollerLink::do_duty(std::int64_t now_ns) noexcept {
   if (!bytes_.is_open()) {
+    if (status_.state != LinkState::kClosed) status_.open_fault = ENODEV;  // it has vanished
     status_.state = LinkState::kClosed;
     if (now_ns < duty_due_ns_) return;
     status_.open_fault = bytes_.open();

@@ -27,7 +27,7 @@ enum class LinkState : std::uint8_t {
 
 struct LinkStatus {
   LinkState state = LinkState::kClosed;
-  int open_fault = 0;                                   // errno, while it is closed
+  int open_fault = 0;  // errno, while it is closed; 0 before the first attempt
   std::optional<protocol::HelloReply> microcontroller;  // the last that answered
   std::uint32_t sessions = 0;
   protocol::FrameDecoder::Counts frames;      // from the microcontroller

@@ -2,6 +2,7 @@
 // the test's.
 #include "swiftlet/services/vehicle_template/microcontroller_link.hpp"
 
+#include <cerrno>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -97,6 +98,8 @@ TEST_F(MicrocontrollerLinkTest, HealsWhenTheCableIsPluggedAgain) {
     turn();
     return link_.status().state == LinkState::kClosed;
   }));
+  EXPECT_TRUE(link_.status().open_fault == ENODEV || link_.status().open_fault == ENOENT)
+      << link_.status().open_fault << ": vanished, or looked for again";
   EXPECT_FALSE(link_.clock_ns(runtime::monotonic_ns())) << "unknown without a session";
   FirmwareSettings restarted;
   restarted.boot = 2;
