@@ -41,6 +41,7 @@ struct LinkMeasurements {
       samples = late = 0;
       obeyed_before_ = report.commands_obeyed;
     }
+    if (report.commands_obeyed < obeyed_before_) obeyed_before_ = 0;  // it has restarted
     state = report;
     answered = std::min<std::uint64_t>(state.commands_obeyed - obeyed_before_, samples);
   }
