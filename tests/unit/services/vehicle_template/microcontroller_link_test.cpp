@@ -3,6 +3,7 @@
 #include "swiftlet/services/vehicle_template/microcontroller_link.hpp"
 
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -136,7 +137,8 @@ TEST_F(MicrocontrollerLinkTest, AllocatesNothing) {
   ASSERT_TRUE(tests::eventually([&] { return turn() && link_.status().clock; }));
   const test::MallocGuard guard;
   int samples = 0;
-  for (int i = 0; i < 200; ++i) {
+  const auto give_up = std::chrono::steady_clock::now() + tests::kStuck;
+  for (int i = 0; (i < 200 || samples == 0) && std::chrono::steady_clock::now() < give_up; ++i) {
     if (turn()) ++samples;
     protocol::Command command;
     command.stamp_us = newest_imu_.stamp_us;
