@@ -35,6 +35,19 @@ void add_mission_options(runtime::CommandLine app, FlyOptions& options) {
       .one_of({"500", "1000"});
 }
 
+void add_level_option(runtime::CommandLine app, plant::ControlLevel& level) {
+  using plant::ControlLevel;
+  app.add_choice("--level", level,
+                 {{"actuators", ControlLevel::kActuators},
+                  {"rates", ControlLevel::kRates},
+                  {"attitude", ControlLevel::kAttitude},
+                  {"trajectory", ControlLevel::kTrajectory}},
+                 "level at which the vehicle is commanded: throttles, body rates, attitude, or the "
+                 "trajectory itself; at "
+                 "all but actuators the simulated vehicle flies by loops of its own")
+      .show_default("actuators");
+}
+
 void add_frame_option(runtime::CommandLine app, std::optional<MissionFrame>& frame) {
   app.add_choice<std::optional<MissionFrame>>(
       "--frame", frame, {{"ned", MissionFrame::kNed}, {"enu", MissionFrame::kEnu}},
@@ -43,6 +56,7 @@ void add_frame_option(runtime::CommandLine app, std::optional<MissionFrame>& fra
 
 void add_fly_options(runtime::CommandLine app, FlyOptions& options) {
   add_mission_options(app, options);
+  add_level_option(app, options.level);
   const runtime::Option record = app.add_option(
       "--record", options.record,
       "new folder for flight.csv, report.json, flight.png and logs; default: flights/<date>-<mission>");

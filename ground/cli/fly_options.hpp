@@ -12,8 +12,10 @@ namespace swiftlet::ground {
 
 // Adds mission, --frame, --vehicle, --control, --simulation, --seed and --imu-rate.
 void add_mission_options(runtime::CommandLine app, FlyOptions& options);
-// Adds the options of add_mission_options(), --record, --replace, --sensors and --json.
+// Adds the options of add_mission_options(), --level, --record, --replace, --sensors and --json.
 void add_fly_options(runtime::CommandLine app, FlyOptions& options);
+// Adds --level: at which the vehicle is commanded.
+void add_level_option(runtime::CommandLine app, plant::ControlLevel& level);
 // Adds --frame: the frame of a CSV file that does not name its own.
 void add_frame_option(runtime::CommandLine app, std::optional<MissionFrame>& frame);
 // Adds --dispersion.

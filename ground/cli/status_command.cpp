@@ -1,5 +1,7 @@
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <string>
 #include <vector>
 
 #include <fmt/core.h>
@@ -16,6 +18,7 @@
 #include "swiftlet/ground/terminal/clock_text.hpp"
 #include "swiftlet/ground/terminal/state_lines.hpp"
 #include "swiftlet/math/euler.hpp"
+#include "swiftlet/plant/model/control_level.hpp"
 #include "swiftlet/services/messages/wire.hpp"
 
 namespace swiftlet::ground {
@@ -66,6 +69,9 @@ nlohmann::ordered_json age_of(const Latest<T>& latest, Clock::time_point now) {
   if (!latest.seen()) return nullptr;
   return latest.age_s(now);
 }
+
+// The names of the LEVEL_* of VehicleInfo.
+std::string levels_text(std::uint8_t bits) { return plant::ControlLevels::from_bits(bits).names().data(); }
 
 const char* role_name(const LiveController& controller) { return controller.active ? "active" : "standby"; }
 
@@ -166,7 +172,8 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Comma
                        {"progress", control.request().progress()},
                        {"result", control.request().result().c_str()}};
   }
-  json["control"] = {{"rate_hz", control.rate_hz()},
+  json["control"] = {{"level", levels_text(control.control_level())},
+                     {"rate_hz", control.rate_hz()},
                      {"cycles", control.cycles()},
                      {"deadline_misses", control.deadline_misses()},
                      {"step_time_max_us", control.step_time_max_us()},
@@ -197,6 +204,7 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Comma
                             {"simulated", info.simulated()},
                             {"autopilot", info.autopilot().c_str()},
                             {"imu_rate_hz", info.imu_rate_hz()},
+                            {"control_levels", levels_text(info.control_levels())},
                             {"rotors_running", info.rotors_running()},
                             {"fault", info.fault().c_str()},
                             {"sense_to_actuate_us",
@@ -293,8 +301,10 @@ void print(const View& view, const Rates& rates, const CommandOptions& options) 
     std::printf("  request   %s: %s, %.0f %%\n", kind_name(request), result, 100.0 * request.progress());
   }
   std::printf(
-      "  control   %.1f Hz since the rotors started, %llu of %llu steps late, longest step %.0f us%s\n",
-      control.rate_hz(), static_cast<unsigned long long>(control.deadline_misses()),
+      "  control   level %s, %.1f Hz since the rotors started, %llu of %llu steps late, longest step %.0f "
+      "us%s\n",
+      levels_text(control.control_level()).c_str(), control.rate_hz(),
+      static_cast<unsigned long long>(control.deadline_misses()),
       static_cast<unsigned long long>(control.cycles()), control.step_time_max_us(),
       control.realtime_scheduling() ? "" : ", no real-time scheduling");
   std::printf("  delay     %s\n", delay_text(control).c_str());

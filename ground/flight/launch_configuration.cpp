@@ -87,6 +87,10 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
   plan.simulation = runtime::load_simulation_settings(plan.simulation_file);
   plan.imu_rate_option_hz = options.imu_rate_hz;
   if (options.imu_rate_hz > 0) plan.simulation.imu.rate_hz = options.imu_rate_hz;
+  plan.simulation.control_levels = options.level;
+  if (options.sensors && options.level != plant::ControlLevel::kActuators)
+    throw InputError(
+        "--sensors: needs --level actuators: at other levels the vehicle does not report its throttles");
   for (const plant::Violation& violation : plant::validate(plan.simulation)) {
     throw InputError("--imu-rate: " + violation.key + " " + violation.message);
   }
@@ -210,6 +214,8 @@ std::vector<ProcessSettings> processes(const Fleet& fleet, const comms::NodeSett
   if (first.imu_rate_option_hz > 0) {
     plant.insert(plant.end(), {"--imu-rate", std::to_string(first.imu_rate_option_hz)});
   }
+  const char* const level = plant::to_string(first.simulation.control_levels.lowest());
+  plant.insert(plant.end(), {"--level", level});
   if (first.clock == runtime::Clock::kLockstep) {
     plant.emplace_back("--paused");
     const fs::path trace = several ? fleet.folder / "{}" / first.trace_file().filename() : first.trace_file();
@@ -220,7 +226,7 @@ std::vector<ProcessSettings> processes(const Fleet& fleet, const comms::NodeSett
       process("swiftlet-plant", first.plant_program, std::move(plant)),
       process("swiftlet-mocap", first.mocap_program, {"--simulation", simulation, "--seed", seed}),
       process("swiftlet-control", first.control_program,
-              {"--vehicle", vehicle, "--control", absolute_path(first.control_file)}),
+              {"--vehicle", vehicle, "--control", absolute_path(first.control_file), "--level", level}),
   };
 }
 

@@ -1,0 +1,132 @@
+// Real processes at each level at which a vehicle can be commanded.
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "swiftlet/plant/model/control_level.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/redundant_flight.hpp"
+#include "tests/support/separate_processes.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+namespace msg = comms::msg;
+using nlohmann::json;
+using plant::ControlLevel;
+
+constexpr std::int64_t kSecond = 1'000'000'000;  // ns
+
+std::string contents(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class LevelsInLockstep : public testing::TestWithParam<ControlLevel> {
+ protected:
+  struct Flight {
+    json report;
+    std::string trace;
+  };
+
+  Flight fly(std::vector<std::string> words, const std::string& name) {
+    const auto record = folder_.path() / name;
+    words.insert(words.end(), {mission_, "--seed", "4", "--level", plant::to_string(GetParam()), "--trace",
+                               "--json", "--record", record.string()});
+    const ProgramResult result = run_program("swiftlet", words, folder_.path(), kStuck);
+    EXPECT_EQ(result.exit_code, 0) << result.errors << result.output;
+    return {json::parse(result.output), contents(record / "trace.csv")};
+  }
+
+  TemporaryFolder folder_;
+  std::string mission_ =
+      folder_.write("hop.yaml",
+                    "name: hop\nframe: ned\ntolerance_m: 0.1\nitems:\n"
+                    "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.5}\n"
+                    "  - {kind: waypoint, position_m: [0.5, -0.3, -0.7], yaw_rad: 0.5, speed_m_s: 0.5}\n"
+                    "  - {kind: land, speed_m_s: 0.5}\n");
+};
+
+// GIVEN a vehicle of one level WHEN plant, mocap and control fly it in lockstep THEN the flight is that in one process,
+// to the last bit.
+TEST_P(LevelsInLockstep, EqualsTheFlightInOneProcess) {
+  const Flight over_dds = fly({"fly", "--clock", "lockstep"}, "dds");
+  const Flight in_process = fly({"sim", "fly"}, "process");
+  EXPECT_GT(in_process.trace.size(), 1'000'000U);
+  EXPECT_TRUE(over_dds.trace == in_process.trace);
+  EXPECT_EQ(over_dds.report.at("rms_3d_m"), in_process.report.at("rms_3d_m"));
+  EXPECT_LT(over_dds.report.at("rms_3d_m").get<double>(), 0.05);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, LevelsInLockstep, testing::ValuesIn(plant::kControlLevels),
+                         [](const auto& level) { return std::string(plant::to_string(level.param)); });
+
+class LevelsWithStandby : public testing::TestWithParam<ControlLevel> {
+ protected:
+  TemporaryFolder folder_;
+  RedundantFlight flight_{folder_.path(), {"--level", plant::to_string(GetParam())}};
+};
+
+// GIVEN a vehicle of one level and two controllers WHEN the active one dies in a mission THEN the standby continues it
+// at the same level.
+TEST_P(LevelsWithStandby, TakesOverDuringAMission) {
+  flight_.start_controller(5);
+  flight_.start_controller(1);
+  flight_.wait_for_roles(1, 1);
+  flight_.fly(square_laps(0.5, 50));
+  flight_.wait("the vehicle flies a side", [&] { return flight_.z_ned() < -0.95 && flight_.speed() > 0.3; });
+  const std::int64_t at_ns = flight_.stamp_ns();
+  flight_.kill(flight_.active());
+  const FlightMetrics metrics = flight_.metrics(at_ns, at_ns + kSecond);
+  EXPECT_LT(metrics.longest_gap_ms, 120.0);
+  EXPECT_GT(metrics.longest_gap_ms, 10.0) << "the gap must show the kill";
+  EXPECT_LT(metrics.largest_deviation_m, 0.1);
+  EXPECT_LT(metrics.largest_step_m, 0.01);
+  EXPECT_EQ(metrics.changes_of_controller, 1);
+  const msg::ControlStatus status = flight_.client().view().control.message;
+  EXPECT_EQ(status.mode(), msg::ControlStatus_Constants::MODE_MISSION);
+  EXPECT_EQ(status.control_level(), plant::ControlLevels(GetParam()).bits());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, LevelsWithStandby,
+                         testing::Values(ControlLevel::kRates, ControlLevel::kTrajectory),
+                         [](const auto& level) { return std::string(plant::to_string(level.param)); });
+
+using LevelsRefused = SeparateProcesses;
+
+// GIVEN a vehicle that accepts attitudes only WHEN control is told to send body rates THEN arming is refused with both
+// names, and the rotors stay off.
+TEST_F(LevelsRefused, ArmingNamesTheLevelThatTheVehicleDoesNotAccept) {
+  start_all({"--level", "rates"}, {"--level", "attitude"});
+  wait_until_ready();
+  const std::string refusal =
+      "cannot arm: the vehicle does not accept commands at level rates, it accepts attitude";
+  ground::Result armed;
+  ASSERT_TRUE(eventually([&] {
+    armed = ask(msg::Command_Constants::ARM);
+    return armed.reason == refusal;
+  })) << armed.reason;
+  EXPECT_FALSE(armed.accepted());
+  EXPECT_FALSE(client_->view().vehicle.message.rotors_running());
+}
+
+// GIVEN a vehicle that accepts several levels WHEN control is not told one THEN it takes the lowest.
+TEST_F(LevelsRefused, TheLowestLevelIsTaken) {
+  start_all({}, {"--level", "trajectory,attitude"});
+  wait_until_ready();
+  EXPECT_TRUE(eventually([&] {
+    return client_->view().control.message.control_level() ==
+           plant::ControlLevels(ControlLevel::kAttitude).bits();
+  }));
+  EXPECT_EQ(client_->view().vehicle.message.control_levels(),
+            msg::VehicleInfo_Constants::LEVEL_ATTITUDE | msg::VehicleInfo_Constants::LEVEL_TRAJECTORY);
+}
+
+}  // namespace
+}  // namespace swiftlet::tests
