@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "swiftlet/plant/model/control_level.hpp"
 #include "swiftlet/plant/model/samples.hpp"
 
 namespace swiftlet::ground {
@@ -38,6 +39,7 @@ struct VehicleDescription {
   int rotor_count = 0;
   double mass_kg = 0.0;
   double imu_rate_hz = 0.0;
+  plant::ControlLevels levels = plant::ControlLevel::kActuators;
 };
 
 // A request for the vehicle's clock and its answer.

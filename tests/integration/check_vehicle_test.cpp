@@ -103,6 +103,16 @@ TEST_F(CheckVehicle, ThePlantPassesAndItsRotorsEndOff) {
   })) << plant_->errors();
 }
 
+TEST_F(CheckVehicle, SendsNoThrottlesToAVehicleThatDoesNotAcceptThem) {
+  plant_ = start("swiftlet-plant", {"--level", "attitude"});
+  mocap_ = start("swiftlet-mocap");
+  const ProgramResult result = swiftlet({"check", "vehicle", "--props-off", "--yes", "--json"});
+  EXPECT_EQ(result.exit_code, 1) << result.errors;
+  EXPECT_EQ(json::parse(result.output).at("failed"), 1);
+  EXPECT_EQ(finding_of(result, "commands.steps"),
+            "fail: the check commands throttles, and the vehicle accepts only level attitude");
+}
+
 TEST_F(CheckVehicle, AVehicleInAHandPassesAndItsDefectsAreNamed) {
   constexpr HandStep kSteps[] = {HandStep::kRollRight, HandStep::kBack,      HandStep::kNoseUp,
                                  HandStep::kBack,      HandStep::kTurnRight, HandStep::kForward,

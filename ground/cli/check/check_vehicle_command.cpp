@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "swiftlet/ground/cli/check/check_report.hpp"
 #include "swiftlet/ground/cli/check/command_steps.hpp"
 #include "swiftlet/ground/cli/check/examine_standing.hpp"
@@ -76,8 +78,15 @@ CheckResults check_in_hand(SampleRecorder& recorder, const VehicleRecording& res
   return check_hand_motion(recorder.recording(), segments, rest);
 }
 
+void require_actuators(const VehicleDescription& vehicle) {
+  if (vehicle.levels.has(plant::ControlLevel::kActuators)) return;
+  throw std::runtime_error(fmt::format("the check commands throttles, and the vehicle accepts only level {}",
+                                       vehicle.levels.names().data()));
+}
+
 CheckResults command_and_check(SampleRecorder& recorder, const Options& options,
                                const plant::Vehicle& vehicle, const OperatorDialog& dialog) {
+  if (const auto vehicle_info = recorder.recording().description) require_actuators(*vehicle_info);
   recorder.restart();
   recorder.record(kStep, [] { return false; });
   if (options.tethered) {

@@ -69,8 +69,9 @@ SampleRecorder::SampleRecorder(const comms::NodeSettings& settings)
   rotor_speeds_ = subscribe(topics::kRotorSpeeds, recording_.rotor_speeds);
   info_ = node_.subscribe<msg::VehicleInfo>(topics::kVehicleInfo, [this](const msg::VehicleInfo& info) {
     const std::lock_guard lock(mutex_);
-    recording_.description = {info.name().c_str(), info.simulated(), info.rotor_count(), info.mass_kg(),
-                              info.imu_rate_hz()};
+    recording_.description = {info.name().c_str(), info.simulated(),
+                              info.rotor_count(),  info.mass_kg(),
+                              info.imu_rate_hz(),  plant::ControlLevels::from_bits(info.control_levels())};
     recording_.rotors_running.push_back({info.rotors_running(), runtime::monotonic_ns()});
   });
   clock_replies_ =
