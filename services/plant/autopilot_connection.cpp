@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <poll.h>
 #include <stdexcept>
 #include <time.h>
 
+#include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
-#include "swiftlet/services/plant/serial_port.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
+#include "swiftlet/services/runtime/serial_device.hpp"
 
 namespace swiftlet::services {
 namespace {
@@ -22,7 +24,11 @@ AutopilotConnection::AutopilotConnection(const AutopilotSettings& settings) : se
   if (settings_.device.empty()) {
     listener_.emplace(settings_.address, settings_.port);
   } else {
-    stream_ = open_serial_port(settings_.device, settings_.baud);
+    const int descriptor = runtime::open_serial_device(settings_.device.c_str(), settings_.baud);
+    if (descriptor < 0)
+      throw std::runtime_error(
+          fmt::format("cannot open the serial device {}: {}", settings_.device, std::strerror(-descriptor)));
+    stream_ = std::make_unique<ByteStream>(descriptor);
     connections_ = 1;
   }
 }
@@ -62,10 +68,8 @@ bool AutopilotConnection::connect() {
     stream_ = listener_->accept();
   } else if (runtime::monotonic_ns() >= reopen_ns_) {
     reopen_ns_ = runtime::monotonic_ns() + kReopenPeriodNs;
-    try {
-      stream_ = open_serial_port(settings_.device, settings_.baud);
-    } catch (const std::runtime_error&) {  // not there again yet
-    }
+    const int descriptor = runtime::open_serial_device(settings_.device.c_str(), settings_.baud);
+    if (descriptor >= 0) stream_ = std::make_unique<ByteStream>(descriptor);
   }
   if (!stream_) return false;
   ++connections_;

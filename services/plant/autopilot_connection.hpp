@@ -14,7 +14,8 @@ namespace swiftlet::services {
 
 class AutopilotConnection {
  public:
-  // Throws as TcpListener and open_serial_port() do.
+  // Throws as TcpListener does, std::runtime_error if the serial device cannot be opened. Precondition:
+  // runtime::fault_of_baud(settings.baud) is empty.
   explicit AutopilotConnection(const AutopilotSettings& settings);
 
   bool connected() const { return stream_ && !stream_->closed(); }

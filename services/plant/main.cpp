@@ -22,12 +22,12 @@
 #include "swiftlet/services/dds/vehicle_list.hpp"
 #include "swiftlet/services/plant/autopilot_settings.hpp"
 #include "swiftlet/services/plant/hosted_plant.hpp"
-#include "swiftlet/services/plant/serial_port.hpp"
 #include "swiftlet/services/runtime/clock.hpp"
 #include "swiftlet/services/runtime/hosting.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/log_label.hpp"
 #include "swiftlet/services/runtime/process.hpp"
+#include "swiftlet/services/runtime/serial_device.hpp"
 #include "swiftlet/services/runtime/stop_signal.hpp"
 #include "swiftlet/services/runtime/version.hpp"
 
@@ -77,10 +77,7 @@ void add_autopilot_options(runtime::CommandLine app, Options& options) {
   const runtime::Option device = app.add_option("--autopilot-device", autopilot.device,
                                                 "Serial device of an autopilot in HITL mode, in place of TCP")
                                      .needs(chosen);
-  app.add_option("--baud", autopilot.baud, "Rate of the serial device, bit/s")
-      .one_of(serial_bauds())
-      .show_default()
-      .needs(device);
+  app.add_option("--baud", autopilot.baud, "Rate of the serial device, bit/s").show_default().needs(device);
   app.add_option("--autopilot-system-id", autopilot.system_id,
                  "MAVLink system to obey; 0: the first that is heard")
       .range(0, 255)
@@ -170,6 +167,8 @@ void check(const Options& options, std::size_t vehicles) {
 void check_autopilot(const Options& options, std::size_t vehicles) {
   if (options.autopilot_protocol.empty()) return;
   const AutopilotSettings& autopilot = options.autopilot;
+  const std::string baud_fault = runtime::fault_of_baud(autopilot.baud);
+  if (!baud_fault.empty()) throw std::invalid_argument("--baud: " + baud_fault);
   if (options.lockstep.paused) throw std::invalid_argument("--paused: is not possible with --autopilot");
   if (!autopilot.device.empty() && options.clock == runtime::Clock::kLockstep)
     throw std::invalid_argument("--autopilot-device: needs --clock realtime; a board keeps its own time");

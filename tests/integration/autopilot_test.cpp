@@ -271,6 +271,8 @@ TEST_F(Autopilot, WrongOptionsAreRefused) {
       {{"--autopilot-range", "1", "0"}, "--autopilot-range: is 1 to 0"},
       {{"--autopilot-address", "localhost"}, "must be an IPv4 address in digits"},
       {{"--autopilot-device", "/dev/null", "--clock", "lockstep"}, "needs --clock realtime"},
+      {{"--autopilot-device", "/dev/null", "--baud", "9600"},
+       "--baud: is 9600, must be one of 57600, 115200, "},
       {{"--clock", "lockstep", "--paused"}, "--paused: is not possible with --autopilot"},
   };
   for (const auto& [words, sentence] : cases) {
