@@ -41,12 +41,13 @@ std::size_t AutopilotConnection::receive(std::int64_t deadline_ns, std::uint8_t*
     connect();
     return 0;
   }
-  refuse_second();
   const std::size_t received = stream_->receive(bytes, size);
   if (stream_->closed()) {
     spdlog::warn("autopilot disconnected");
     stream_.reset();
     reopen_ns_ = runtime::monotonic_ns() + kReopenPeriodNs;
+  } else {
+    refuse_second();
   }
   return received;
 }
