@@ -66,7 +66,7 @@ class Autopilot : public testing::Test {
 
   const comms::DomainLock lock_;
   const TemporaryFolder folder_;
-  const int port_ = free_tcp_port();
+  const int port_ = 14'600 + 2 * lock_.domain();  // and the next one: nobody else's, as the domain
   const plant::Vehicle vehicle_ = runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
 };
 
