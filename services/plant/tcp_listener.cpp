@@ -22,6 +22,8 @@ TcpListener::TcpListener(const std::string& address, int port) {
     throw std::invalid_argument(fmt::format(
         "--autopilot-address: is {}, must be an IPv4 address in digits, such as 127.0.0.1", address));
   descriptor_ = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (descriptor_ < 0)
+    throw std::runtime_error(fmt::format("cannot open a socket: {}", std::strerror(errno)));
   const int on = 1;
   ::setsockopt(descriptor_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
   if (::bind(descriptor_, reinterpret_cast<const sockaddr*>(&where), sizeof where) == 0 &&
