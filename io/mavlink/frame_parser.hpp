@@ -9,9 +9,9 @@
 
 namespace swiftlet::mavlink {
 
-// After a wrong checksum it looks for the next frame from the second byte of the wrong one on, so that a start
-// byte within noise costs no frame. Frames of messages that it does not know cannot be checked, and are skipped
-// as a whole. Signatures are not verified.
+// After a wrong checksum it looks for the next frame from the second byte of the wrong one on. Frames of messages that
+// it does not know cannot be checked, and are skipped as a whole: a start byte within noise may cost the frames of
+// the following 280 bytes. Signatures are not verified.
 class FrameParser {
  public:
   struct Counts {
