@@ -65,18 +65,23 @@ void add_autopilot_options(runtime::CommandLine app, Options& options) {
              "An external autopilot flies the vehicle in place of swiftlet-control, by this protocol: "
              "mavlink, the simulator interface of PX4")
           .one_of({"mavlink"});
-  app.add_option("--autopilot-port", autopilot.port,
-                 "TCP port to which the autopilot connects; of several vehicles each has the next one")
-      .range(1, 65535)
-      .show_default()
-      .needs(chosen);
-  app.add_option("--autopilot-address", autopilot.address,
-                 "IPv4 address at which the port is open; 0.0.0.0: to all networks, without any protection")
-      .show_default()
-      .needs(chosen);
+  const runtime::Option port =
+      app.add_option("--autopilot-port", autopilot.port,
+                     "TCP port to which the autopilot connects; of several vehicles each has the next one")
+          .range(1, 65535)
+          .show_default()
+          .needs(chosen);
+  const runtime::Option address =
+      app.add_option(
+             "--autopilot-address", autopilot.address,
+             "IPv4 address at which the port is open; 0.0.0.0: to all networks, without any protection")
+          .show_default()
+          .needs(chosen);
   const runtime::Option device = app.add_option("--autopilot-device", autopilot.device,
                                                 "Serial device of an autopilot in HITL mode, in place of TCP")
-                                     .needs(chosen);
+                                     .needs(chosen)
+                                     .excludes(port)
+                                     .excludes(address);
   app.add_option("--baud", autopilot.baud, "Rate of the serial device, bit/s").show_default().needs(device);
   app.add_option("--autopilot-system-id", autopilot.system_id,
                  "MAVLink system to obey; 0: the first that is heard")

@@ -273,11 +273,12 @@ TEST_F(Autopilot, WrongOptionsAreRefused) {
       {{"--autopilot-device", "/dev/null", "--clock", "lockstep"}, "needs --clock realtime"},
       {{"--autopilot-device", "/dev/null", "--baud", "9600"},
        "--baud: is 9600, must be one of 57600, 115200, "},
+      {{"--autopilot-device", "/dev/null", "--autopilot-port", "4561"}, "excludes --autopilot-port"},
       {{"--clock", "lockstep", "--paused"}, "--paused: is not possible with --autopilot"},
   };
   for (const auto& [words, sentence] : cases) {
     std::vector<std::string> arguments = words;
-    arguments.insert(arguments.end(), {"--autopilot", "mavlink", "--autopilot-port", std::to_string(port_)});
+    arguments.insert(arguments.end(), {"--autopilot", "mavlink"});
     const ProgramResult result =
         run_program("swiftlet-plant", on_this_domain(arguments), folder_.path(), kStuck);
     EXPECT_EQ(result.exit_code, 2) << sentence << result.errors;
