@@ -223,6 +223,11 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Comma
   nlohmann::ordered_json peers = nlohmann::ordered_json::object();
   for (const auto& [name, count] : view.peers) peers[name] = count > 0;
   json["peers_alive"] = peers;
+  if (!view.control.seen()) {  // an autopilot flies in place of control
+    for (const char* of_control : {"source_conflict", "mode", "reason", "airborne", "has_pose", "mission",
+                                   "request", "control", "loop_delay_s", "settings"})
+      json[of_control] = nullptr;
+  }
   return json;
 }
 

@@ -127,12 +127,21 @@ TEST_F(Autopilot, HoversInRealTimeAndIsSeenByTheTools) {
   ASSERT_TRUE(pilot->fly_until(start_s + 6.0, kStuck)) << plant->errors();
   EXPECT_NEAR(pilot->log().height_m, 0.5, 0.1);
 
-  Program status("swiftlet", on_this_domain({"status"}), folder_.path());
   double time_s = start_s + 6.0;
-  while (!status.exit_code()) ASSERT_TRUE(pilot->fly_until(time_s += 0.1, kStuck));
-  EXPECT_EQ(status.exit_code(), 0) << status.errors();
-  const std::string flown_by = "flown by MAVLink on TCP port " + std::to_string(port_) + ", rotors running";
-  EXPECT_NE(status.output().find(flown_by), std::string::npos) << status.output();
+  const auto status = [&](std::vector<std::string> words) {
+    Program program("swiftlet", on_this_domain(std::move(words)), folder_.path());
+    while (!program.exit_code() && pilot->fly_until(time_s += 0.1, kStuck)) {
+    }
+    EXPECT_EQ(program.exit_code(), 0) << program.errors();
+    return program.output();
+  };
+  const std::string link = "MAVLink on TCP port " + std::to_string(port_);
+  const std::string text = status({"status"});
+  EXPECT_NE(text.find("flown by " + link + ", rotors running"), std::string::npos) << text;
+  const std::string json = status({"status", "--json"});
+  for (const std::string& part : {"\"autopilot\": \"" + link + "\"", std::string("\"mode\": null"),
+                                  std::string("\"airborne\": null"), std::string("\"control\": null")})
+    EXPECT_NE(json.find(part), std::string::npos) << part << "\n" << json;
 }
 
 TEST_F(Autopilot, HoversOverASerialDevice) {
