@@ -150,13 +150,11 @@ void AutopilotLoop::obey_until(std::int64_t due_ns) {
 }
 
 void AutopilotLoop::obey(const ReceivedControls& received) {
-  ReceivedCommand command;
-  command.command = mapping_.command(received.controls);
-  command.command.stamp_ns = stamp_answered_by(received);
-  command.command.imu_sequence =
-      static_cast<std::uint64_t>(std::max<std::int64_t>(command.command.stamp_ns, 0) / imu_period_ns_) + 1;
-  command.received_ns = received.received_ns;
-  if (vehicle_.obey(command)) command_ = command.command;
+  plant::ActuatorCommand command = mapping_.command(received.controls);
+  command.stamp_ns = stamp_answered_by(received);
+  command.imu_sequence =
+      static_cast<std::uint64_t>(std::max<std::int64_t>(command.stamp_ns, 0) / imu_period_ns_) + 1;
+  if (vehicle_.obey({command, received.received_ns, {}})) command_ = command;
 }
 
 // With lockstep the autopilot's clock is that of the samples; otherwise the controls answer the newest sample.

@@ -175,6 +175,8 @@ void check_autopilot(const Options& options, std::size_t vehicles) {
   const std::string baud_fault = runtime::fault_of_baud(autopilot.baud);
   if (!baud_fault.empty()) throw std::invalid_argument("--baud: " + baud_fault);
   if (options.lockstep.paused) throw std::invalid_argument("--paused: is not possible with --autopilot");
+  if (plant::control_levels_from(options.levels) != plant::ControlLevels(plant::ControlLevel::kActuators))
+    throw std::invalid_argument("--level: an autopilot commands throttles, level actuators");
   if (!autopilot.device.empty() && options.clock == runtime::Clock::kLockstep)
     throw std::invalid_argument("--autopilot-device: needs --clock realtime; a board keeps its own time");
   if (!autopilot.device.empty() && vehicles > 1)

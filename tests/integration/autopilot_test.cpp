@@ -284,6 +284,7 @@ TEST_F(Autopilot, WrongOptionsAreRefused) {
        "--baud: is 9600, must be one of 57600, 115200, "},
       {{"--autopilot-device", "/dev/null", "--autopilot-port", "4561"}, "excludes --autopilot-port"},
       {{"--clock", "lockstep", "--paused"}, "--paused: is not possible with --autopilot"},
+      {{"--level", "rates"}, "--level: an autopilot commands throttles, level actuators"},
   };
   for (const auto& [words, sentence] : cases) {
     std::vector<std::string> arguments = words;
