@@ -21,6 +21,7 @@
 #include "tests/support/hop_mission.hpp"
 #include "tests/support/natnet_server.hpp"
 #include "tests/support/separate_processes.hpp"
+#include "tests/support/terminal.hpp"
 #include "tests/support/vrpn_server.hpp"
 
 namespace swiftlet::tests {
@@ -236,6 +237,34 @@ TEST(MotionCaptureTool, CalibratesABodyAndListsIt) {
   EXPECT_EQ(listed.at("bodies")[0].at("id"), kBody);
   EXPECT_EQ(listed.at("bodies")[0].at("tracked"), true);
   EXPECT_GT(listed.at("bodies")[0].at("rate_hz").get<double>(), 10.0);
+}
+
+// GIVEN a motion capture that sends nothing WHEN Ctrl-C is pressed THEN the commands that wait end.
+TEST(MotionCaptureTool, EndsWhenItIsInterrupted) {
+  const TemporaryFolder folder;
+  const std::string room = (folder.path() / "room.yaml").string();
+  std::ofstream(room) << "source: vrpn\nserver: 127.0.0.1:9\nframe: zup\nvehicles:\n"
+                      << "  kl1: {body: kl1, lever_arm_frd_m: [0, 0, 0], misalignment_rad: [0, 0, 0]}\n";
+  const struct {
+    std::vector<std::string> words;
+    std::string ready;  // what it shows when it waits
+  } cases[] = {{{"watch", "--period", "0.1"}, "0 frames"}, {{"calibrate", "--no-prompt"}, "level ground"}};
+  for (const auto& one : cases) {
+    SCOPED_TRACE(one.words.front());
+    std::vector<std::string> words = {"mocap"};
+    words.insert(words.end(), one.words.begin(), one.words.end());
+    words.insert(words.end(), {"--room", room});
+    Program tool("swiftlet", words, folder.path());
+    ASSERT_TRUE(eventually([&] {
+      return (tool.output() + tool.errors()).find(one.ready) != std::string::npos;
+    })) << tool.errors();
+    tool.signal(SIGINT);
+    EXPECT_EQ(tool.wait(kStuck), 1) << tool.errors();
+  }
+  Terminal at_the_prompt("swiftlet", {"mocap", "calibrate", "--room", room}, 120, 40);
+  ASSERT_TRUE(eventually([&] { return at_the_prompt.text().find("press Enter") != std::string::npos; }));
+  at_the_prompt.type("\x03");
+  EXPECT_EQ(at_the_prompt.wait(kStuck), 1) << at_the_prompt.text();
 }
 
 class MotionCaptureOptions : public testing::Test {

@@ -2,8 +2,10 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <poll.h>
 #include <stdexcept>
 #include <string>
+#include <unistd.h>
 #include <vector>
 
 #include <fmt/core.h>
@@ -14,7 +16,6 @@
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/text_file.hpp"
-#include "swiftlet/services/runtime/stop_signal.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -39,25 +40,41 @@ struct Recording {
   double seconds = 0.0;
 };
 
-// Waits for Enter, or the end of the input.
-void wait_for_enter(const Options& options, const std::string& request) {
+void require_going_on(runtime::StopSignal& stop) {
+  if (is_interrupted(stop)) throw std::runtime_error("mocap calibrate: interrupted");
+}
+
+// Enter, or the end of the input.
+bool was_entered() {
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  char character = 0;
+  while (::poll(&input, 1, 0) > 0) {
+    if (::read(STDIN_FILENO, &character, 1) != 1 || character == '\n') return true;
+  }
+  return false;
+}
+
+// Waits for Enter. Receives meanwhile, so that the connection lives and what came before is not recorded.
+void wait_for_enter(const Options& options, const std::string& request, mocap::Source& source,
+                    runtime::StopSignal& stop) {
   std::fprintf(stderr, "%s%s\n", request.c_str(), options.no_prompt ? "." : ", then press Enter.");
   if (options.no_prompt) return;
-  for (int character = std::getchar(); character != '\n' && character != EOF; character = std::getchar()) {
+  mocap::SourceFrame unused;
+  while (!was_entered()) {
+    require_going_on(stop);
+    source.receive(unused, kPoll);
   }
 }
 
 // The tracked poses of the vehicle's body for this time, from the first on.
 Recording record(mocap::Source& source, const mocap::RoomFrame& frame, const mocap::VehicleBody& vehicle,
-                 double time_s, const runtime::StopSignal& stop) {
+                 double time_s, runtime::StopSignal& stop) {
   Recording recording;
   mocap::SourceFrame received;
-  while (source.receive(received, std::chrono::milliseconds(0))) {  // what came while the user read
-  }
   auto begin = Clock::now();
   const auto age_s = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
   while (age_s() < (recording.poses.empty() ? kLongestWait_s : time_s) && !source.has_ended()) {
-    if (stop.requested()) throw std::runtime_error("interrupted");
+    require_going_on(stop);
     if (!source.receive(received, kPoll)) continue;
     const auto body = mocap::find_body(source.bodies(), vehicle);
     for (const mocap::BodyPose& pose : received.poses) {
@@ -107,19 +124,21 @@ int calibrate(const Options& options) {
   const std::string text = runtime::read_text_file(file);
   with_calibration(text, file, options.vehicle, {},
                    {});  // refuses a file without the keys before anything is asked for
-  const runtime::StopSignal stop;
+  runtime::StopSignal stop;
   const std::unique_ptr<mocap::Source> source = open_mocap_source(options.source, {options.vehicle});
   const mocap::Room room = mocap::room_of(options.source, {options.vehicle});
   const mocap::RoomFrame frame(room);
   const mocap::VehicleBody& vehicle = *mocap::find(room, options.vehicle);
 
   wait_for_enter(options,
-                 "Put " + options.vehicle + " on level ground with its nose to the north of the room");
+                 "Put " + options.vehicle + " on level ground with its nose to the north of the room",
+                 *source, stop);
   const Recording rest = record(*source, frame, vehicle, options.rest_s, stop);
   const Misalignment misalignment = misalignment_of(rest.poses, rest.seconds);
   wait_for_enter(
       options,
-      fmt::format("Hold its centre of mass in place and turn it about all axes for {:g} s", options.turn_s));
+      fmt::format("Hold its centre of mass in place and turn it about all axes for {:g} s", options.turn_s),
+      *source, stop);
   const Recording turn = record(*source, frame, vehicle, options.turn_s, stop);
   const LeverArm arm = lever_arm_of(turn.poses, misalignment, turn.seconds);
 

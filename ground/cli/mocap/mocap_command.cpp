@@ -17,7 +17,6 @@
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/mocap/sources/source.hpp"
 #include "swiftlet/services/mocap/sources/source_options.hpp"
-#include "swiftlet/services/runtime/stop_signal.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -37,13 +36,13 @@ std::chrono::nanoseconds duration_of(double seconds) {
   return std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * seconds));
 }
 
-// Receives for this time; returns how long it was, s.
+// Receives for this time, or until a signal comes; returns how long it was, s.
 double receive(mocap::Source& source, BodyStatisticsList& statistics, double time_s,
-               const runtime::StopSignal& stop) {
+               runtime::StopSignal& stop) {
   const auto begin = Clock::now();
   const auto end = begin + duration_of(time_s);
   mocap::SourceFrame frame;
-  while (Clock::now() < end && !stop.requested() && !source.has_ended()) {
+  while (Clock::now() < end && !is_interrupted(stop) && !source.has_ended()) {
     if (source.receive(frame, kPoll)) statistics.take(frame, source);
   }
   return std::chrono::duration<double>(Clock::now() - begin).count();
@@ -124,7 +123,7 @@ void print(const mocap::Source& source, const BodyStatisticsList& statistics, do
 }
 
 int list(const Options& options) {
-  const runtime::StopSignal stop;
+  runtime::StopSignal stop;
   const std::unique_ptr<mocap::Source> source = open_mocap_source(options.source, {});
   BodyStatisticsList statistics;
   const double time_s = receive(*source, statistics, options.time_s, stop);
@@ -136,12 +135,12 @@ int list(const Options& options) {
 }
 
 int watch(const Options& options) {
-  const runtime::StopSignal stop;
+  runtime::StopSignal stop;
   const std::unique_ptr<mocap::Source> source = open_mocap_source(options.source, {});
   BodyStatisticsList statistics;
   const auto begin = Clock::now();
   const auto is_over = [&] {
-    return stop.requested() || source->has_ended() ||
+    return is_interrupted(stop) || source->has_ended() ||
            (options.time_s > 0.0 && Clock::now() - begin >= duration_of(options.time_s));
   };
   while (!is_over()) {
@@ -183,6 +182,8 @@ Command add_watch(const runtime::CommandLine& mocap) {
 }
 
 }  // namespace
+
+bool is_interrupted(runtime::StopSignal& stop) { return stop.wait_for(std::chrono::milliseconds(0)); }
 
 std::unique_ptr<mocap::Source> open_mocap_source(const mocap::SourceOptions& options,
                                                  const std::vector<std::string>& vehicles) {
