@@ -32,6 +32,15 @@ VehicleBody read_vehicle(const std::string& name, const ConfigNode& node) {
   return vehicle;
 }
 
+// Two vehicles that fly by the pose of one body would collide.
+void require_own_body(const std::vector<VehicleBody>& others, const VehicleBody& vehicle,
+                      const ConfigNode& node) {
+  for (const VehicleBody& other : others) {
+    if (other.body == vehicle.body && other.id == vehicle.id)
+      node.fail("is " + vehicle.body_text() + ", which is the vehicle " + other.vehicle + " already");
+  }
+}
+
 void read_source(const ConfigNode& root, Room& room) {
   room.source = root.at("source").choice<SourceKind>({{"natnet", SourceKind::kNatNet},
                                                       {"vrpn", SourceKind::kVrpn},
@@ -61,7 +70,11 @@ Room read_room(const ConfigNode& root) {
   if (const auto latency = root.find("latency_s"))
     room.latency_s = latency->number(runtime::between(0.0, kLongestLatencyS));
   const ConfigNode vehicles = root.at("vehicles");
-  for (const auto& [name, node] : vehicles.entries()) room.vehicles.push_back(read_vehicle(name, node));
+  for (const auto& [name, node] : vehicles.entries()) {
+    const VehicleBody vehicle = read_vehicle(name, node);
+    require_own_body(room.vehicles, vehicle, node);
+    room.vehicles.push_back(vehicle);
+  }
   if (room.vehicles.empty()) vehicles.fail("is empty, must name at least one vehicle");
   return room;
 }

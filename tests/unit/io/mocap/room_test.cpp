@@ -67,6 +67,8 @@ TEST(RoomFile, IsRefusedWithASentence) {
             std::string::npos);
   EXPECT_NE(fault(kHead + "north: 1\nvehicles:\n  kl1: {id: 1}\n").find("nearest is north_rad"),
             std::string::npos);
+  EXPECT_EQ(fault(kHead + "vehicles:\n  kl1: {body: a}\n  kl2: {body: a, id: 1}\n  kl3: {body: a}\n"),
+            "r:6: vehicles.kl3: is body 'a', which is the vehicle kl1 already");
   EXPECT_NE(fault(kHead + "vehicles: {}\n").find("must name at least one vehicle"), std::string::npos);
 }
 
