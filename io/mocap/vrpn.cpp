@@ -13,7 +13,6 @@ constexpr std::string_view kMagic = "vrpn: ver. 07.";  // followed by the minor 
 constexpr std::string_view kCookie = "vrpn: ver. 07.35  0";
 constexpr std::size_t kAlignment = 8;
 constexpr std::size_t kLongestName = 100;
-constexpr std::int64_t kLatestSecond = 9'000'000'000;  // an int64 of ns holds it
 
 constexpr std::size_t aligned(std::size_t bytes) {
   return (bytes + kAlignment - 1) / kAlignment * kAlignment;
@@ -43,7 +42,7 @@ Parsed parse_message(const std::uint8_t* data, std::size_t size, Message& messag
   message.type = in.i32();
   message.sequence = in.u32();
   if (!in.ok() || aligned(length) > size) return Parsed::kIncomplete;
-  if (seconds > kLatestSecond || microseconds < 0 || microseconds >= 1'000'000) return Parsed::kFault;
+  if (microseconds < 0 || microseconds >= 1'000'000) return Parsed::kFault;
   message.stamp_ns = seconds * 1'000'000'000 + microseconds * 1000;
   message.payload = in.part(length - kHeaderBytes);
   message.bytes = aligned(length);

@@ -108,7 +108,9 @@ void VrpnServer::answer(const vrpn::Message& message) {
   if (message.type == vrpn::kUdpDescription)
     udp_client_ = mocap::Endpoint{INADDR_LOOPBACK, static_cast<std::uint16_t>(message.sender)};
   const auto type = types_.find(message.type);
-  if (type == types_.end() || type->second != vrpn::kPingType || !settings_.answers_pings) return;
+  if (type == types_.end() || type->second != vrpn::kPingType) return;
+  ++pings_;
+  if (!settings_.answers_pings) return;
   write(vrpn::message(runtime::system_ns() + settings_.clock_offset_ns, message.sender, kPong, {}));
 }
 

@@ -35,6 +35,7 @@ class VrpnServer {
   std::string name() const { return "127.0.0.1:" + std::to_string(port_); }
   std::uint16_t port() const { return port_; }
   bool is_connected() const { return is_connected_; }
+  std::uint64_t pings() const { return pings_; }
   // Sends the pose of a tracker, exposed age_ns ago: x, y, z, and a quaternion x, y, z, w. false: nobody is connected.
   bool send(std::size_t tracker, const double (&pose)[7], std::int64_t age_ns = 0, std::int32_t sensor = 0);
   // Closes the connection.
@@ -56,6 +57,7 @@ class VrpnServer {
   std::map<std::int32_t, std::string> types_;  // of the client
   std::optional<mocap::Endpoint> udp_client_;
   std::uint32_t sequence_ = 0;
+  std::atomic<std::uint64_t> pings_{0};
   std::atomic<bool> is_connected_{false}, drop_{false}, stop_{false};
   std::thread thread_;
 };

@@ -126,7 +126,7 @@ void ReplaySource::add_frame(const NatNetSession& session, std::int64_t arrived_
 
 void ReplaySource::read_table(const std::string& text, const std::string& file) {
   const runtime::CsvTable table = runtime::parse_csv(text, file, kColumns);
-  const std::size_t body = body_of(std::filesystem::path(file).stem().string(), 0);
+  const std::size_t body = *body_of(std::filesystem::path(file).stem().string(), 0);
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     Recorded recorded;
     const double time_s = table.number(row, 0, runtime::between(0.0, 4e9), "s") - table.number(0, 0);

@@ -23,14 +23,13 @@ void Source::set_bodies(std::vector<Body> bodies) {
   ++revision_;
 }
 
-std::size_t Source::body_of(const std::string& name, std::int32_t id) {
+std::optional<std::size_t> Source::body_of(const std::string& name, std::int32_t id) {
   const auto known = std::find_if(bodies_.begin(), bodies_.end(),
                                   [&](const Body& body) { return body.id == id && body.name == name; });
   if (known != bodies_.end()) return static_cast<std::size_t>(known - bodies_.begin());
-  if (bodies_.size() < kMostBodies) {
-    bodies_.push_back({name, id});
-    ++revision_;
-  }
+  if (bodies_.size() == kMostBodies) return std::nullopt;
+  bodies_.push_back({name, id});
+  ++revision_;
   return bodies_.size() - 1;
 }
 

@@ -73,7 +73,8 @@ class Source {
 
  protected:
   void set_bodies(std::vector<Body> bodies);
-  std::size_t body_of(const std::string& name, std::int32_t id);  // adds it if it is new
+  // Its index in bodies(); adds it if it is new. nullopt: there are too many.
+  std::optional<std::size_t> body_of(const std::string& name, std::int32_t id);
   void refuse(const std::string& why);
 
   SourceStatistics statistics_;

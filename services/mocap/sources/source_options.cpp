@@ -44,6 +44,13 @@ Room room_with_file(const SourceOptions& options, const std::vector<std::string>
   return room;
 }
 
+// A tracker may have several sensors: without a number a vehicle is the first, in whatever order their poses come.
+void choose_first_sensors(Room& room) {
+  for (VehicleBody& vehicle : room.vehicles) {
+    if (!vehicle.id) vehicle.id = 0;
+  }
+}
+
 }  // namespace
 
 void add_source_options(runtime::CommandLine app, SourceOptions& options, std::vector<std::string> first) {
@@ -76,6 +83,7 @@ Room room_of(const SourceOptions& options, const std::vector<std::string>& vehic
     throw std::invalid_argument("--file: only with --source replay");
   if (room.source == SourceKind::kVrpn && room.server.empty())
     throw std::invalid_argument("--source vrpn needs --server");
+  if (room.source == SourceKind::kVrpn) choose_first_sensors(room);
   return room;
 }
 

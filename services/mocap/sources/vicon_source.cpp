@@ -92,9 +92,10 @@ bool ViconSource::take(std::int64_t arrived_ns, SourceFrame& frame) {
   frame.exposed_ns = arrived_ns - latency_ns_;
   frame.is_complete = true;
   frame.poses.clear();
-  for (const vicon::Object& object : frame_.objects)
-    frame.poses.push_back(
-        {body_of(object.name, 0), object.tracked, object.position, object.q_room_from_body, 0, 0});
+  for (const vicon::Object& object : frame_.objects) {
+    if (const auto body = body_of(object.name, 0))
+      frame.poses.push_back({*body, object.tracked, object.position, object.q_room_from_body, 0, 0});
+  }
   return true;
 }
 

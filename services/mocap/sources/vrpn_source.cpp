@@ -23,6 +23,7 @@ constexpr int kUnansweredPings = 3;  // then the server answers none
 // server's clock was set.
 constexpr std::int64_t kMostLateNs = 1'000'000'000;
 constexpr std::size_t kMostNames = 4000;
+constexpr const char* kControl = "VRPN Control";  // sender of the server itself: answers no pings
 
 // Our numbers of the types.
 enum OwnType : std::int32_t { kOwnPose, kOwnPing, kOwnPong };
@@ -154,16 +155,18 @@ void VrpnSource::ping_if_due(Time now) {
   if (!tcp_.send(vrpn::message(runtime::system_ns(), *tracker_, kOwnPing, {}))) lose("closed the connection");
 }
 
+// Takes what has arrived before it reads more: however fast the server sends, the stream holds at most one read and a part of a
+// message.
 bool VrpnSource::read_tcp(SourceFrame& frame) {
+  if (take_messages(stream_, stream_begin_, true, frame)) return true;
+  if (stage_ != Stage::kConnected) return false;
+  stream_.erase(stream_.begin(), stream_.begin() + static_cast<std::ptrdiff_t>(stream_begin_));
+  stream_begin_ = 0;
   if (!tcp_.receive(stream_)) {
     lose("closed the connection");
     return false;
   }
-  const bool is_pose = take_messages(stream_, stream_begin_, true, frame);
-  if (stage_ != Stage::kConnected) return false;
-  stream_.erase(stream_.begin(), stream_.begin() + static_cast<std::ptrdiff_t>(stream_begin_));
-  stream_begin_ = 0;
-  return is_pose;
+  return take_messages(stream_, stream_begin_, true, frame);
 }
 
 bool VrpnSource::read_udp(SourceFrame& frame) {
@@ -222,8 +225,9 @@ void VrpnSource::take_description(const vrpn::Message& message) {
   if (names.size() >= kMostNames && names.count(message.sender) == 0) return refuse("more than 4000 names");
   names[message.sender] = *name;
   // The server numbers our senders by their names: pings go to the tracker with the same name.
-  if (message.type == vrpn::kSenderDescription)
-    tcp_.send(vrpn::description(message.type, message.sender, *name));
+  if (message.type != vrpn::kSenderDescription) return;
+  tcp_.send(vrpn::description(message.type, message.sender, *name));
+  if (!tracker_ && *name != kControl) tracker_ = message.sender;
 }
 
 void VrpnSource::take_pong(const vrpn::Message& message) {
@@ -243,20 +247,24 @@ bool VrpnSource::take_pose(const vrpn::Message& message, SourceFrame& frame) {
     return false;
   }
   tracker_ = message.sender;
-  const std::size_t body = body_of(sender->second, pose.sensor);
-  const auto last = last_stamps_.find(body);
+  const auto body = body_of(sender->second, pose.sensor);
+  if (!body) {
+    refuse("more than 1000 bodies");
+    return false;
+  }
+  const auto last = last_stamps_.find(*body);
   if (last != last_stamps_.end() && message.stamp_ns <= last->second &&
       message.stamp_ns > last->second - kMostLateNs) {
     ++statistics_.late;
     return false;
   }
-  last_stamps_[body] = message.stamp_ns;
+  last_stamps_[*body] = message.stamp_ns;
   ++statistics_.frames;
   frame.arrived_ns = arrived_ns;
   frame.exposed_ns = unanswered_pings_ >= kUnansweredPings ? arrived_ns : clock_.to_host(message.stamp_ns);
   if (frame.exposed_ns) *frame.exposed_ns -= latency_ns_;
   frame.is_complete = false;
-  frame.poses.assign(1, {body, true, pose.position, pose.q_room_from_body.normalized(), 0, 0});
+  frame.poses.assign(1, {*body, true, pose.position, pose.q_room_from_body.normalized(), 0, 0});
   return true;
 }
 

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/services/mocap/sources/source_options.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/vrpn_server.hpp"
 
@@ -86,6 +87,34 @@ TEST_F(Vrpn, StampsAreThoseOfTheArrivalIfPingsAreNotAnswered) {
   EXPECT_EQ(*frame_.exposed_ns, frame_.arrived_ns);
 }
 
+// GIVEN a server that sees no body yet THEN pings keep the connection: it would be taken for dead otherwise.
+TEST_F(Vrpn, ServerWithoutPosesIsPinged) {
+  start({});
+  connect();
+  EXPECT_TRUE(eventually([&] {
+    source_->receive(frame_, 10ms);
+    return server_->pings() >= 3;
+  })) << source_->description();
+}
+
+// GIVEN poses that come in one burst THEN each arrives, in their order.
+TEST_F(Vrpn, PosesOfABurstArriveOneByOne) {
+  VrpnServer::Settings settings;
+  settings.by_udp = false;
+  start(settings);
+  connect();
+  ASSERT_TRUE(pass_until(0, [] { return true; }));
+  while (source_->receive(frame_, 20ms)) {
+  }
+  constexpr int kBurst = 800;  // more than one read of the socket
+  for (int i = 0; i < kBurst; ++i) ASSERT_TRUE(server_->send(0, kPose));
+  int arrived = 0;
+  EXPECT_TRUE(eventually([&] {
+    arrived += source_->receive(frame_, 10ms) ? 1 : 0;
+    return arrived + static_cast<int>(source_->statistics().late) >= kBurst;
+  })) << arrived;
+}
+
 TEST_F(Vrpn, PosesThatWereOvertakenAreLeftOut) {
   start({});
   connect();
@@ -115,6 +144,16 @@ TEST_F(Vrpn, ConnectionThatIsLostIsMadeAgain) {
   ASSERT_TRUE(pass_until(0, [] { return true; }));
   server_->drop();
   ASSERT_TRUE(pass_until(0, [&] { return source_->statistics().restarts == 1; })) << source_->description();
+}
+
+// GIVEN a vehicle without the number of a sensor THEN it is sensor 0, also if another came first.
+TEST_F(Vrpn, VehicleIsTheFirstSensorOfItsTracker) {
+  SourceOptions options;
+  options.source = "vrpn";
+  options.server = "127.0.0.1";
+  const VehicleBody vehicle = room_of(options, {"kl1"}).vehicles.at(0);
+  EXPECT_EQ(find_body({{"kl1", 1}, {"kl1", 0}}, vehicle), 1U);
+  EXPECT_EQ(find_body({{"kl1", 1}}, vehicle), std::nullopt);
 }
 
 TEST_F(Vrpn, AnotherVersionIsNamed) {
