@@ -20,6 +20,7 @@ constexpr std::uint32_t kGroup = 0xefff2a63;  // 239.255.42.99
 
 NatNetServer::NatNetServer(Settings settings)
     : settings_(std::move(settings)),
+      clock_offset_ns_(settings_.clock_offset_ns),
       commands_(settings_.address, settings_.port, true),
       thread_([this] { run(); }) {
   in_addr interface {};
@@ -43,7 +44,7 @@ bool NatNetServer::is_connected() const {
 }
 
 std::uint64_t NatNetServer::ticks(std::int64_t monotonic_ns) const {
-  const double seconds = 1e-9 * static_cast<double>(monotonic_ns + settings_.clock_offset_ns);
+  const double seconds = 1e-9 * static_cast<double>(monotonic_ns + clock_offset_ns_);
   return static_cast<std::uint64_t>(seconds * static_cast<double>(settings_.server.clock_hz));
 }
 

@@ -18,6 +18,8 @@ namespace swiftlet::tests {
 // Answers connect, discovery, definition and echo requests. Frames go to who has connected, by unicast, or to the group.
 class NatNetServer {
  public:
+  static constexpr std::int64_t kLatencyNs = 100'000;
+
   struct Settings {
     std::string address = "127.0.0.1";
     natnet::Server server;
@@ -36,8 +38,10 @@ class NatNetServer {
 
   // The models that requests are answered with.
   void set_models(std::vector<natnet::Body> models);
-  // Sends a frame that was exposed latency_ns ago. false: nobody is connected.
-  bool send(natnet::Frame frame, std::int64_t latency_ns = 0);
+  // Sends a frame that was exposed latency_ns ago; 0: as one without a stamp of the exposure. false: nobody is connected.
+  bool send(natnet::Frame frame, std::int64_t latency_ns = kLatencyNs);
+  // The clock jumps to this offset against the monotonic clock of this host.
+  void set_clock(std::int64_t offset_ns) { clock_offset_ns_ = offset_ns; }
   bool is_connected() const;
   std::uint64_t echoes() const { return echoes_; }
   std::uint64_t keep_alives() const { return keep_alives_; }
@@ -48,6 +52,7 @@ class NatNetServer {
   void answer(const std::vector<std::uint8_t>& datagram, const mocap::Endpoint& from);
 
   const Settings settings_;
+  std::atomic<std::int64_t> clock_offset_ns_;
   mocap::UdpSocket commands_;
   mutable std::mutex mutex_;  // guards the two below
   std::vector<natnet::Body> models_;

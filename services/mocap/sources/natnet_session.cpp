@@ -134,7 +134,7 @@ std::optional<std::int64_t> NatNetSession::exposed_ns(std::int64_t arrived_ns, b
   if (latency_ns == 0) return std::nullopt;
   if (clock_.is_known()) {
     if (frame_.exposed_ticks / server_->clock_hz > kLatestSecond) return std::nullopt;
-    return clock_.to_host(ns(frame_.exposed_ticks));
+    return clock_.to_host(ns(frame_.exposed_ticks), arrived_ns);
   }
   if (!by_arrival) return std::nullopt;
   return arrived_ns - latency_ns;

@@ -261,7 +261,8 @@ bool VrpnSource::take_pose(const vrpn::Message& message, SourceFrame& frame) {
   last_stamps_[*body] = message.stamp_ns;
   ++statistics_.frames;
   frame.arrived_ns = arrived_ns;
-  frame.exposed_ns = unanswered_pings_ >= kUnansweredPings ? arrived_ns : clock_.to_host(message.stamp_ns);
+  frame.exposed_ns =
+      unanswered_pings_ >= kUnansweredPings ? arrived_ns : clock_.to_host(message.stamp_ns, arrived_ns);
   if (frame.exposed_ns) *frame.exposed_ns -= latency_ns_;
   frame.is_complete = false;
   frame.poses.assign(1, {*body, true, pose.position, pose.q_room_from_body.normalized(), 0, 0});

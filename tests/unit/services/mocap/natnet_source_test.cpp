@@ -66,7 +66,7 @@ class NatNet : public testing::Test {
     })) << source_->description();
   }
   // Sends this frame, and receives for a short time. Returns whether it arrived.
-  bool pass(const packets::Frame& frame, std::int64_t latency_ns = 0) {
+  bool pass(const packets::Frame& frame, std::int64_t latency_ns = NatNetServer::kLatencyNs) {
     EXPECT_TRUE(server_->send(frame, latency_ns));
     return source_->receive(frame_, 200ms);
   }
@@ -197,6 +197,27 @@ TEST_F(NatNet, ServerThatIsRestartedIsMetAgain) {
     return frame_.exposed_ns && std::abs(*frame_.exposed_ns - frame_.arrived_ns) < 100'000'000;
   })) << source_->description();
   EXPECT_GE(source_->statistics().restarts, 1U);
+}
+
+// GIVEN a server whose clock was set THEN no frame is stamped by what was known of it before, and the new clock is learnt.
+TEST_F(NatNet, StampsOfAClockThatWasSetAreWithheld) {
+  for (const std::int64_t offset_ns : {5 * kHourNs, kHourNs / 2}) {
+    start(settings_of({4, 1}));
+    ASSERT_NO_FATAL_FAILURE(connect());
+    server_->set_clock(offset_ns);
+    ASSERT_TRUE(pass(frame_of(1)));
+    EXPECT_FALSE(frame_.exposed_ns);
+    std::int32_t number = 1;
+    ASSERT_TRUE(pass_until(number, [&] { return frame_.exposed_ns.has_value(); }));
+    EXPECT_LT(std::abs(*frame_.exposed_ns - frame_.arrived_ns), 100'000'000);
+  }
+}
+
+TEST_F(NatNet, FramesWithoutAnExposureAreStampedByTheirArrival) {
+  start(settings_of({4, 1}));
+  ASSERT_NO_FATAL_FAILURE(connect());
+  ASSERT_TRUE(pass(frame_of(1), 0));
+  EXPECT_EQ(frame_.exposed_ns, frame_.arrived_ns);
 }
 
 TEST_F(NatNet, ServerThatStartsLaterIsMet) {
