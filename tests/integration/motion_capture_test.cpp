@@ -43,13 +43,16 @@ struct Pose {
   Quaterniond attitude;
 };
 
-// The pose of the body that is fixed to the vehicle like this.
+// The pose of the body that is fixed to the vehicle like this, with the noise of cameras: they see no pose twice.
 Pose body_of(const comms::msg::GroundTruth& truth) {
+  constexpr double kNoiseM = 2e-5;
+  const auto phase = static_cast<double>(truth.stamp_ns() / 1'000'000);
+  const Vector3d noise = kNoiseM * Vector3d(std::sin(phase), std::sin(2.0 * phase), std::cos(phase));
   const auto& p = truth.position_ned();
   const auto& q = truth.q_ned_from_frd();
   const Quaterniond vehicle(q[0], q[1], q[2], q[3]);
   const Quaterniond turn(Eigen::AngleAxisd(kMisalignment.norm(), kMisalignment.normalized()));
-  return {Vector3d(p[0], p[1], p[2]) - vehicle * kLeverArm, vehicle * turn.conjugate()};
+  return {Vector3d(p[0], p[1], p[2]) - vehicle * kLeverArm + noise, vehicle * turn.conjugate()};
 }
 
 // Forward, up, right; forward, left, up.
