@@ -33,6 +33,7 @@ constexpr double kTetherRaise = 0.15;  // of hover, of one rotor
 constexpr auto kTetherTime = 800ms;
 constexpr auto kRaiseTime = 150ms;
 constexpr std::int64_t kRecentCommand_ns = 100'000'000;  // vehicle's clock
+constexpr std::int64_t kImuSilence_ns = 500'000'000;
 
 // Commands, and notes what was commanded when.
 class CommandSequence {
@@ -69,12 +70,15 @@ class CommandSequence {
     hold(CommandStage::kSilence, kSilenceTime);
   }
 
-  // Keeps the commands alive. Throws if somebody else commands the vehicle.
+  // Keeps the commands alive. Throws if somebody else commands the vehicle, or IMU samples cease.
   void renew() {
     commands_.renew();
     dialog_.require_going_on();
     const std::string other = recorder_.other_controller({commands_.term(), commands_.lower_term()});
     if (!other.empty()) throw std::runtime_error("stopped, rotors off: " + other);
+    if (recorder_.imu_silence_ns() > kImuSilence_ns)
+      throw std::runtime_error(
+          fmt::format("stopped, rotors off: no imu sample for {:g} s", 1e-9 * kImuSilence_ns));
   }
   const CommandPhases& phases() const { return phases_; }
 

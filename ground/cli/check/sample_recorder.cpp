@@ -186,6 +186,12 @@ std::optional<ImuReport> SampleRecorder::newest_imu() const {
   return samples.empty() ? std::nullopt : std::optional(samples.back().sample);
 }
 
+std::int64_t SampleRecorder::imu_silence_ns() const {
+  const std::lock_guard lock(mutex_);
+  const auto& samples = recording_.imu.samples;
+  return runtime::monotonic_ns() - (samples.empty() ? recording_.begin_ns : samples.back().received_ns);
+}
+
 std::string SampleRecorder::other_controller(const std::set<std::uint32_t>& own_terms) const {
   const std::int64_t now_ns = runtime::monotonic_ns();
   const std::lock_guard lock(mutex_);

@@ -34,6 +34,7 @@ class SampleRecorder {
   bool hears_imu() const;
   std::optional<Received<plant::PoseSample>> newest_tracked_pose() const;
   std::optional<ImuReport> newest_imu() const;
+  std::int64_t imu_silence_ns() const;  // since the newest sample, or since restart()
 
   // Who commands the vehicle: a control service that is alive, or another process that sends actuator_command; ""
   // if nobody. Commands of own_terms are those of this program.

@@ -1,9 +1,11 @@
-// Sends actuator commands to a vehicle that no controller flies, one for each IMU sample. Ends with rotors off.
+// Sends actuator commands to a vehicle that no controller flies, one for each IMU sample. Ends with rotors off, also if
+// no sample comes any more.
 #pragma once
 
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 
 #include "swiftlet/plant/model/samples.hpp"
 #include "swiftlet/services/dds/node.hpp"
@@ -19,7 +21,7 @@ class TestCommands {
   // Sends rotors off at first. term: of the commands, as that of a controller; their ownership strength too. Throws
   // std::runtime_error.
   TestCommands(const comms::NodeSettings& settings, int rotor_count, std::uint32_t term);
-  // Sends rotors off until a few commands have been sent, or for half a second without IMU samples.
+  // Sends rotors off until a few commands have been sent, for half a second at most.
   ~TestCommands();
   TestCommands(const TestCommands&) = delete;
   TestCommands& operator=(const TestCommands&) = delete;
@@ -43,6 +45,7 @@ class TestCommands {
 
   void set(const Order& order);
   void answer(const comms::msg::Imu& imu);
+  void send();  // answers the newest sample; the caller holds mutex_
 
   const std::uint32_t term_;
   const int rotor_count_;
@@ -50,6 +53,11 @@ class TestCommands {
   std::condition_variable sent_;
   Order order_;
   std::int64_t renewed_ns_ = 0;
+  struct Sample {
+    std::int64_t stamp_ns = 0;
+    std::uint64_t sequence = 0;
+  };
+  std::optional<Sample> newest_;
   std::uint64_t commands_ = 0;
   std::uint64_t commands_in_order_ = 0;  // since set()
 
