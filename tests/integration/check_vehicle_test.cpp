@@ -1,5 +1,6 @@
 // `swiftlet check vehicle` with real processes: the plant passes, and defects at the wire are named.
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <fstream>
@@ -241,6 +242,40 @@ TEST_F(CheckVehicle, AnInterruptTurnsTheRotorsOff) {
   })) << plant_->errors();
 }
 
+// GIVEN a vehicle without a command time-out WHEN its IMU samples cease with the rotors running THEN they are turned off.
+TEST_F(CheckVehicle, CeasingImuSamplesTurnTheRotorsOff) {
+  plant_ = start("swiftlet-plant");
+  const auto silent = std::make_shared<std::atomic<bool>>(false);
+  Spoil ignores_timeout;
+  ignores_timeout.repeats_last_command = true;
+  ignores_timeout.imu = [silent](msg::Imu&) { return !*silent; };
+  spoil(ignores_timeout);
+  Program check("swiftlet",
+                network({"check", "vehicle", "--props-off", "--yes", "--json", "--vehicle-name", "kl2"}),
+                folder_.path());
+  ASSERT_TRUE(eventually([&] { return plant_->errors().find("rotors started") != std::string::npos; }))
+      << check.errors();
+  *silent = true;
+  EXPECT_EQ(check.wait(kStuck), 1);
+  EXPECT_EQ(finding_of({1, check.output(), check.errors()}, "commands.steps"),
+            "fail: stopped, rotors off: no imu sample for 0.5 s");
+  EXPECT_TRUE(eventually([&] {
+    return plant_->errors().find("rotors stopped on command") != std::string::npos;
+  })) << plant_->errors();
+}
+
+TEST_F(CheckVehicle, OnATetherTheRotorsOfAnotherVehicleDoNotTurn) {
+  plant_ = start("swiftlet-plant");
+  const ProgramResult result =
+      swiftlet({"check", "vehicle", "--tethered", "--yes", "--json", "--vehicle", "crazyflie2"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(finding_of(result, "commands.steps")
+                .find("skipped: the vehicle file, which tells the throttle, is of another vehicle"),
+            0)
+      << result.output;
+  EXPECT_EQ(plant_->errors().find("rotors started"), std::string::npos) << plant_->errors();
+}
+
 TEST_F(CheckVehicle, WrongUsageIsRefused) {
   const ProgramResult unconfirmed = swiftlet({"check", "vehicle", "--props-off"});
   EXPECT_EQ(unconfirmed.exit_code, 2);
@@ -249,6 +284,7 @@ TEST_F(CheckVehicle, WrongUsageIsRefused) {
             "rotors will turn\n");
   EXPECT_EQ(swiftlet({"check", "vehicle", "--props-off", "--tethered"}).exit_code, 2);
   EXPECT_EQ(swiftlet({"fly", "square", "--skip-check"}).exit_code, 2) << "without --attach";
+  EXPECT_EQ(swiftlet({"check", "vehicle", "--hand", "--tethered", "--yes"}).exit_code, 2);
   const ProgramResult nobody = swiftlet({"check", "vehicle", "--timeout", "0.1", "--time", "1"});
   EXPECT_EQ(nobody.exit_code, 1);
   EXPECT_NE(nobody.output.find("missing: nobody publishes imu here"), std::string::npos) << nobody.output;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -109,25 +110,52 @@ CheckResults check_by_commands(SampleRecorder& recorder, const Options& options,
   }
 }
 
-// Checks of motion and of commands need the stamps and arrivals that are checked first.
-bool may_go_on(const CheckResults& results) {
-  return passes(results, "imu.received") && passes(results, "imu.clock") && passes(results, "imu.stamps");
+bool fails(const CheckResults& results, const std::string& name) {
+  return std::any_of(results.begin(), results.end(), [&](const CheckResult& result) {
+    return result.name == name && result.verdict == Verdict::kFail;
+  });
+}
+
+// Why the vehicle can be neither moved nor commanded; "" if it can. These checks need the stamps and arrivals that are
+// checked first.
+std::string fault_of_imu(const CheckResults& results) {
+  const bool sound =
+      passes(results, "imu.received") && passes(results, "imu.clock") && passes(results, "imu.stamps");
+  return sound ? "" : "imu does not arrive with stamps that rise with the clock";
+}
+
+// Why the rotors must not turn; "" if they may.
+std::string fault_of_rotors(const CheckResults& results, const Options& options) {
+  // The throttle of half the hover thrust of one vehicle may lift another.
+  const bool is_another = fails(results, "vehicle_info.rotors") || fails(results, "vehicle_info.mass") ||
+                          fails(results, "battery.voltage");
+  if (options.tethered && is_another)
+    return "the vehicle file, which tells the throttle, is of another vehicle or battery: choose it with "
+           "--vehicle";
+  return fault_of_imu(results);
+}
+
+// Why a hand must not take the vehicle; "" if it may.
+std::string fault_of_hand(const CheckResults& results) {
+  if (fails(results, "commands.stop")) return "the rotors did not stop";
+  return fault_of_imu(results);
 }
 
 CheckResults examine(const Options& options, const plant::Vehicle& vehicle, const OperatorDialog& dialog) {
   SampleRecorder recorder(options.network);
   StandingExamination standing = examine_at_rest(recorder, options, vehicle, dialog);
   CheckResults results = std::move(standing.results);
-  const bool sound = may_go_on(results);
-  if (options.hand)
-    append(results, sound ? check_in_hand(recorder, standing.recording, dialog)
-                          : CheckResults{skipped(
-                                "hand.steps", "imu does not arrive with stamps that rise with the clock")});
-  if (options.props_off || options.tethered)
-    append(results, sound
-                        ? check_by_commands(recorder, options, vehicle, dialog)
-                        : CheckResults{skipped("commands.steps",
-                                               "imu does not arrive with stamps that rise with the clock")});
+  // First the rotors, while the vehicle stands: they must not start in the hand.
+  if (options.props_off || options.tethered) {
+    const std::string fault = fault_of_rotors(results, options);
+    append(results, fault.empty() ? check_by_commands(recorder, options, vehicle, dialog)
+                                  : CheckResults{skipped("commands.steps", fault)});
+  }
+  if (options.hand) {
+    const std::string fault = fault_of_hand(results);
+    append(results, fault.empty() ? check_in_hand(recorder, standing.recording, dialog)
+                                  : CheckResults{skipped("hand.steps", fault)});
+  }
   return results;
 }
 
@@ -167,15 +195,17 @@ Command add_check_vehicle_command(runtime::CommandLine check_line) {
   app.add_option("--timeout", options->timeout_s, "longest wait for the first imu sample, s")
       .range(0.1, 600.0)
       .show_default();
-  app.add_flag("--hand", options->hand,
-               "guide motions of the vehicle in a hand, and compare IMU and motion capture");
+  const runtime::Option hand = app.add_flag(
+      "--hand", options->hand, "guide motions of the vehicle in a hand, and compare IMU and motion capture");
   runtime::Option props_off = app.add_flag("--props-off", options->props_off,
                                            "turn the rotors, without propellers: order, spin, time-out, "
                                            "terms, rotors off. No controller may be alive");
-  props_off.excludes(app.add_flag("--tethered", options->tethered,
-                                  "raise each rotor, with propellers, of a vehicle on a tether that lets it "
-                                  "turn but not leave: order and "
-                                  "spin by the turn of the vehicle. No controller may be alive"));
+  runtime::Option tethered =
+      app.add_flag("--tethered", options->tethered,
+                   "raise each rotor, with propellers, of a vehicle on a tether that lets it turn but not "
+                   "leave: order and spin by the turn of the vehicle. No controller may be alive");
+  tethered.excludes(props_off);
+  tethered.excludes(hand);
   app.add_flag("--yes", options->yes,
                "confirm that the propellers are off, or the vehicle tethered; do not ask");
   app.add_flag("--json", options->json, "print the results as JSON");
