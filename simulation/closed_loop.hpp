@@ -23,7 +23,8 @@ namespace swiftlet::ground {
 
 class ClosedLoop {
  public:
-  // Processes the samples of stamp 0. The vehicle is commanded at the lowest of simulation.control_levels. Throws std::invalid_argument like FlightController.
+  // Processes the samples of stamp 0. The vehicle is commanded at the lowest of simulation.control_levels. Throws
+  // std::invalid_argument like FlightController.
   ClosedLoop(const plant::Vehicle& vehicle, const plant::SimulationSettings& simulation,
              const control::ControlSettings& settings, std::uint64_t seed);
   // As above, with a controller that is designed for control_vehicle and flies plant_vehicle. Both must have

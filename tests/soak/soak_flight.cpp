@@ -72,7 +72,7 @@ class Run {
   }
 
   bool rotors_running() const {
-    return loop_.watchdog.motor_command(loop_.plant.stamp_ns()).state == plant::RotorState::kRunning;
+    return loop_.firmware.rotor_state(loop_.plant.stamp_ns()) == plant::RotorState::kRunning;
   }
   bool upside_down() const { return cosine_of_tilt(loop_.plant.state().q_ned_from_frd) < 0.0; }
   bool airborne() const { return !loop_.plant.on_ground(); }

@@ -47,6 +47,7 @@ class Firmware {
   ObeyedCommand obeyed() const { return watchdog_.obeyed(); }
 
   const MotorCommand& motor_command(std::int64_t now_ns);
+  RotorState rotor_state(std::int64_t now_ns) const { return watchdog_.motor_command(now_ns).state; }
 
   // For records: this command as one of level actuators. Those of other levels have the throttles that the loops gave
   // last.
