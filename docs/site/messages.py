@@ -4,7 +4,7 @@ import re
 
 from manual_text import ManualError, plain, table
 
-_TOPIC = re.compile(r'Topic<msg::(\w+)> k\w+\{"(\w+)", Qos::k(\w+)(?:, (\d+))?\};')
+_TOPIC = re.compile(r'Topic<msg::(\w+)> k\w+\{"(\w+)", Qos::k(\w+)(?:,\s+(\d+))?\};')
 _CONSTANT = re.compile(r"^const (\w+) (\w+) = ([^;]+);$")
 _FIELD = re.compile(r"^([\w:]+(?:<.*>)?) (\w+)(\[\d+\])?;$")
 
