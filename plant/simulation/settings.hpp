@@ -114,7 +114,7 @@ struct SimulationSettings {
   double command_timeout_s = 0.5;    // the vehicle stops its rotors after this time without a valid command
   // At which the vehicle accepts commands; not a key of the file (`--level`).
   ControlLevels control_levels = ControlLevel::kActuators;
-  double rotor_speed_rate_hz = 100.0;  // of rotor speed samples; 0: the vehicle does not measure them
+  double rotor_speed_rate_hz = 500.0;  // of rotor speed samples; 0: the vehicle does not measure them
   ImuSettings imu;
   MocapSettings mocap;
   SupplySettings supply;

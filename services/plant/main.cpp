@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -47,6 +48,7 @@ struct Options {
   int per_row = 0;  // 0: all in one row
   std::string levels = "actuators";
   int imu_rate = 0;  // Hz; 0: as in the simulation file
+  std::optional<double> rotor_speed_rate_hz;
   runtime::Clock clock = runtime::Clock::kRealtime;
   double speed = 0.0;  // 0: real time, or in lockstep no limit
   LockstepSettings lockstep;
@@ -137,6 +139,9 @@ void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--imu-rate", options.imu_rate,
                  "IMU rate, Hz, 500 or 1000; default: as in the simulation file")
       .one_of({"500", "1000"});
+  app.add_option("--rotor-speed-rate", options.rotor_speed_rate_hz,
+                 "Rate of rotor speed samples, Hz; 0: none; default: as in the simulation file")
+      .range(0.0, 1000.0);
   runtime::add_clock_option(app, options.clock);
   app.add_option("--speed", options.speed,
                  "Simulation speed factor (1 = real time). In lockstep an upper limit; default: as fast as "
@@ -203,8 +208,11 @@ PlantSettings load(const Options& options) {
       runtime::configuration_file(runtime::kinds::kSimulation, options.simulation));
   settings.simulation.control_levels = plant::control_levels_from(options.levels).value();
   if (options.imu_rate != 0) settings.simulation.imu.rate_hz = options.imu_rate;
+  if (options.rotor_speed_rate_hz) settings.simulation.rotor_speed_rate_hz = *options.rotor_speed_rate_hz;
   for (const plant::Violation& violation : plant::validate(settings.simulation)) {
-    throw std::invalid_argument("--imu-rate: " + violation.key + " " + violation.message);
+    const char* const option =
+        violation.key == "rotor_speed_rate_hz" ? "--rotor-speed-rate: " : "--imu-rate: ";
+    throw std::invalid_argument(option + violation.key + " " + violation.message);
   }
   for (const plant::Violation& violation :
        plant::validate_faults(settings.simulation.faults, settings.vehicle)) {

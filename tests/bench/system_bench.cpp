@@ -125,7 +125,7 @@ struct FleetFigures {
 // Vehicles in one domain, served by one process of each role.
 class Fleet {
  public:
-  Fleet(int vehicles, int rate_hz, bool realtime, const fs::path& folder) {
+  Fleet(int vehicles, int rate_hz, bool realtime, const fs::path& folder, int rotor_speed_rate_hz = 500) {
     std::string list;
     for (int i = 1; i <= vehicles; ++i) {
       names_.push_back("kl" + std::to_string(i));
@@ -138,7 +138,8 @@ class Fleet {
                                      "--localhost-only"};
       if (!realtime) words.emplace_back("--no-realtime");
       if (name == kProcesses[0])  // side by side, inside the fence
-        words.insert(words.end(), {"--imu-rate", std::to_string(rate_hz), "--start", "-1", "-1", "--spacing",
+        words.insert(words.end(), {"--imu-rate", std::to_string(rate_hz), "--rotor-speed-rate",
+                                   std::to_string(rotor_speed_rate_hz), "--start", "-1", "-1", "--spacing",
                                    "0.35", "--per-row", "6"});
       const std::string full = std::string("swiftlet-") + name;
       processes_.emplace_back(ground::ProcessSettings{full, program(full), words, folder / full});
@@ -317,9 +318,9 @@ constexpr std::chrono::milliseconds kLook{100};  // period of checks on the proc
 
 // Figures of vehicles that hover side by side; counters cover the last `seconds`. witness: measure the stalls.
 FleetFigures hover(int vehicles, int rate_hz, bool realtime, double seconds, bool loaded = false,
-                   bool with_witness = false) {
+                   bool with_witness = false, int rotor_speed_rate_hz = 500) {
   const tests::TemporaryFolder folder;
-  Fleet fleet(vehicles, rate_hz, realtime, folder.path());
+  Fleet fleet(vehicles, rate_hz, realtime, folder.path(), rotor_speed_rate_hz);
   std::optional<CpuLoad> load;
   if (loaded) load.emplace();
   fleet.take_off();
@@ -471,17 +472,20 @@ void planning(Table& table) {
   }
 }
 
-constexpr double kFleetShare = 4.0;  // times longer, since the counts are small
+constexpr double kFleetShare = 4.0;          // times longer, since the counts are small
+constexpr int kFleetRotorSpeedRateHz = 100;  // five times what the observer of the controller follows
 
 double percent(std::uint64_t part, std::uint64_t whole) {
   return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 100.0;
 }
 
 void fleets(Table& table, const Options& options) {
-  table.section("(i) vehicles in one domain of this computer, 500 Hz each, one process of each role");
+  table.section(
+      "(i) vehicles in one domain of this computer, 500 Hz each, rotor speeds at 100 Hz, one process of each "
+      "role");
   for (const int vehicles : options.vehicles) {
     const double seconds = kFleetShare * options.seconds;
-    const FleetFigures fleet = hover(vehicles, 500, true, seconds, false, true);
+    const FleetFigures fleet = hover(vehicles, 500, true, seconds, false, true, kFleetRotorSpeedRateHz);
     const json bare =
         json::parse(output_of(program("fleet_bench").string() + " --json --vehicles " +
                               std::to_string(vehicles) + " --seconds " + std::to_string(seconds)));
