@@ -282,7 +282,8 @@ TEST_F(Autopilot, WrongOptionsAreRefused) {
       {{"--autopilot-device", "/dev/null", "--clock", "lockstep"}, "needs --clock realtime"},
       {{"--autopilot-device", "/dev/null", "--baud", "9600"},
        "--baud: is 9600, must be one of 57600, 115200, "},
-      {{"--autopilot-device", "/dev/null", "--autopilot-port", "4561"}, "--autopilot-port excludes --autopilot-device"},
+      {{"--autopilot-device", "/dev/null", "--autopilot-port", "4561"},
+       "--autopilot-port excludes --autopilot-device"},
       {{"--clock", "lockstep", "--paused"}, "--paused: is not possible with --autopilot"},
       {{"--level", "rates"}, "--level: an autopilot commands throttles, level actuators"},
   };
