@@ -262,9 +262,8 @@ class Doctors : public Networks {
   void expect_offset(const json& host, double least_ms, double largest_ms) const {
     const double offset_ms = host.at("clock_offset_ms");
     const double uncertainty_ms = host.at("clock_uncertainty_ms");
-    // The uncertainty is two standard deviations, which are exceeded now and then; four are not.
-    EXPECT_GE(offset_ms, least_ms - 2.0 * uncertainty_ms) << host;
-    EXPECT_LE(offset_ms, largest_ms + 2.0 * uncertainty_ms) << host;
+    EXPECT_GE(offset_ms, least_ms - uncertainty_ms) << host;
+    EXPECT_LE(offset_ms, largest_ms + uncertainty_ms) << host;
     EXPECT_GT(uncertainty_ms, 0.0);
   }
 
