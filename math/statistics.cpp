@@ -32,6 +32,8 @@ std::vector<double> ranks(const std::vector<double>& numbers) {
   return out;
 }
 
+}  // namespace
+
 double correlation(const std::vector<double>& x, const std::vector<double>& y) {
   const double count = static_cast<double>(x.size());
   const double mean_x = std::accumulate(x.begin(), x.end(), 0.0) / count;
@@ -46,8 +48,6 @@ double correlation(const std::vector<double>& x, const std::vector<double>& y) {
   }
   return xx > 0.0 && yy > 0.0 ? xy / std::sqrt(xx * yy) : kNaN;
 }
-
-}  // namespace
 
 Spread spread(std::vector<double> numbers) {
   numbers.erase(

@@ -1,4 +1,4 @@
-// Percentiles and rank correlations. Values that are not finite are ignored.
+// Percentiles and correlations. Values that are not finite are ignored.
 #pragma once
 
 #include <cstddef>
@@ -18,6 +18,9 @@ struct Spread {
 
 // Percentiles are interpolated linearly between the sorted numbers: the q-quantile is at index q (n - 1).
 Spread spread(std::vector<double> numbers);
+
+// Pearson's correlation of as many x as y, -1 .. 1. NaN if one of them does not vary or is not finite.
+double correlation(const std::vector<double>& x, const std::vector<double>& y);
 
 // Spearman's rank correlation, -1 .. 1. Equal numbers share their mean rank. NaN for fewer than three pairs
 // or if all values of x or of y are equal. x and y have the same length.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "swiftlet/math/rotation_vector.hpp"
+#include "swiftlet/math/statistics.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -12,25 +13,6 @@ constexpr std::int64_t kLongestGap_ns = 50'000'000;  // that is bridged
 constexpr std::int64_t kDelayStep_ns = 1'000'000;
 
 double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
-
-double correlation(const std::vector<double>& x, const std::vector<double>& y) {
-  const auto count = static_cast<double>(x.size());
-  double mean_x = 0.0;
-  double mean_y = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    mean_x += x[i] / count;
-    mean_y += y[i] / count;
-  }
-  double xx = 0.0;
-  double yy = 0.0;
-  double xy = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    xx += (x[i] - mean_x) * (x[i] - mean_x);
-    yy += (y[i] - mean_y) * (y[i] - mean_y);
-    xy += (x[i] - mean_x) * (y[i] - mean_y);
-  }
-  return xx > 0.0 && yy > 0.0 ? xy / std::sqrt(xx * yy) : 0.0;
-}
 
 double correlation_at(const GyroTrack& gyro, const std::vector<MocapRate>& mocap, std::int64_t delay_ns) {
   std::vector<double> by_gyro;
@@ -41,7 +23,9 @@ double correlation_at(const GyroTrack& gyro, const std::vector<MocapRate>& mocap
     by_gyro.push_back(mean->norm());
     by_mocap.push_back(rate.body_rates_frd.norm());
   }
-  return by_gyro.size() * 2 < mocap.size() ? 0.0 : correlation(by_gyro, by_mocap);
+  if (by_gyro.size() * 2 < mocap.size()) return 0.0;
+  const double value = correlation(by_gyro, by_mocap);
+  return std::isfinite(value) ? value : 0.0;
 }
 
 }  // namespace
