@@ -1,6 +1,5 @@
 #include "tests/support/serial_cable.hpp"
 
-#include <chrono>
 #include <cstdint>
 #include <poll.h>
 #include <utility>
@@ -22,7 +21,11 @@ SerialCable::SerialCable(const std::string& microcontroller, std::string host)
 }
 
 SerialCable::~SerialCable() {
-  stop_ = true;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stop_ = true;
+  }
+  plugged_.notify_one();
   up_.join();
   down_.join();
 }
@@ -33,8 +36,17 @@ void SerialCable::unplug() {
 }
 
 void SerialCable::plug() {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  port_ = services::open_pseudo_terminal(host_);
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    port_ = services::open_pseudo_terminal(host_);
+  }
+  plugged_.notify_one();
+}
+
+std::shared_ptr<services::Port> SerialCable::wait_until_plugged() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  plugged_.wait(lock, [this] { return port_ || stop_; });
+  return port_;
 }
 
 std::shared_ptr<services::Port> SerialCable::port() const {
@@ -66,12 +78,9 @@ void SerialCable::carry_down() {
   std::mt19937 random(2);
   std::uint8_t bytes[1024];
   while (!stop_) {
-    const auto host = port();
+    const auto host = wait_until_plugged();
+    if (!host) return;
     const std::int64_t until_ns = runtime::monotonic_ns() + kPatienceMs * 1'000'000;
-    if (!host) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      continue;
-    }
     if (!host->wait_until(until_ns)) continue;
     const std::size_t size = disturb(random, bytes, host->read(bytes, sizeof bytes));
     const std::lock_guard<std::mutex> lock(link_mutex_);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <memory>
 #include <mutex>
 #include <random>
@@ -36,11 +37,13 @@ class SerialCable {
   void carry_down();
   std::size_t disturb(std::mt19937& random, std::uint8_t* bytes, std::size_t size) const;
   std::shared_ptr<services::Port> port() const;
+  std::shared_ptr<services::Port> wait_until_plugged();  // nullptr: at the end
 
   services::ByteLink microcontroller_;
   const std::string host_;
   mutable std::mutex mutex_;  // guards port_
   std::shared_ptr<services::Port> port_;
+  std::condition_variable plugged_;
   std::atomic<bool> stop_{false};
   std::mutex link_mutex_;  // guards microcontroller_
   std::thread up_, down_;
