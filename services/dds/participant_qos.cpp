@@ -75,10 +75,9 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
     set_network(settings, announced_ports, qos, udp);
   }
   qos.transport().use_builtin_transports = false;
-  // Loopback loses nothing.
-  TransportDescriptor checked = guarded(udp, guard);
+  const bool loses_nothing = settings.localhost_only;
   qos.transport().user_transports.push_back(
-      settings.localhost_only ? checked : repeat_discovery(checked, settings.domain));
+      repeat_discovery(guarded(udp, guard), settings.domain, guard, loses_nothing));
 
   if (settings.transport == Transport::kSharedMemory) {
     SharedMemTransportDescriptor shared_memory;

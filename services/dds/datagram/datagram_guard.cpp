@@ -1,6 +1,14 @@
 #include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 
+#include <chrono>
+#include <mutex>
+
 namespace swiftlet::comms {
+
+Now Now::read() {
+  return {std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1),
+          std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1)};
+}
 
 DatagramGuard::DatagramGuard(const runtime::NetworkKeys& keys, const DatagramLimits& limits)
     : limits_(limits) {
@@ -13,7 +21,7 @@ CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size,
                                      std::uint32_t port, const Now& now) {
   CheckedDatagram checked;
   if (opener_) {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
     checked.fault = opener_->open(data, size, port, now.since_1970_ns);
   }
   if (checked.fault == nullptr) checked = check_datagram(data, opener_ ? size - kSealBytes : size, limits_);
@@ -24,7 +32,7 @@ CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size,
 
 const char* DatagramGuard::fault_of(const CheckedDatagram& checked, const SenderAddress& sender,
                                     const Now& now) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
   for (std::size_t i = 0; i < checked.writer_count; ++i) {
     const NumberedWriter& writer = checked.writers[i];
     if (!sequences_.admit(checked.source, writer.entity, writer.number, now.steady_ns))
@@ -32,6 +40,11 @@ const char* DatagramGuard::fault_of(const CheckedDatagram& checked, const Sender
   }
   if (!checked.about_participant) return nullptr;
   return participants_.admit(checked.source, checked.announcement_digest, sender, now.steady_ns);
+}
+
+std::size_t DatagramGuard::participants_heard(const Now& now) {
+  const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
+  return participants_.heard_lately(now.steady_ns);
 }
 
 void DatagramGuard::seal(std::vector<std::uint8_t>& datagram, const Now& now) {

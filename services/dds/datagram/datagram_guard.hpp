@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -12,12 +11,15 @@
 #include "swiftlet/services/dds/datagram/participant_admission.hpp"
 #include "swiftlet/services/dds/datagram/refusal_log.hpp"
 #include "swiftlet/services/dds/datagram/sequence_window.hpp"
+#include "swiftlet/services/runtime/priority_inheriting_mutex.hpp"
 
 namespace swiftlet::comms {
 
 struct Now {
   std::int64_t steady_ns = 0;      // of a monotonic clock
   std::int64_t since_1970_ns = 0;  // of the clock that hosts share
+
+  static Now read();
 };
 
 // Thread-safe: shared by the transports of a participant and their receiving threads. Allocates only when constructed.
@@ -31,6 +33,9 @@ class DatagramGuard {
                         std::uint32_t port, const Now& now);
   void refuse(const SenderAddress& sender, const char* rule) { refusals_.note(sender, rule); }
 
+  // Participants that have announced themselves to this one within the last seconds.
+  std::size_t participants_heard(const Now& now);
+
   bool seals() const { return sealer_.has_value(); }
   // Turns a datagram of the middleware into a sealed one. Requires seals().
   void seal(std::vector<std::uint8_t>& datagram, const Now& now);
@@ -43,7 +48,8 @@ class DatagramGuard {
   const DatagramLimits limits_;
   std::optional<DatagramSealer> sealer_;
   RefusalLog refusals_;
-  std::mutex mutex_;  // guards the rest
+  runtime::PriorityInheritingMutex
+      mutex_;  // guards the rest; all threads that receive take it, for each datagram
   std::optional<DatagramOpener> opener_;
   SequenceWindow sequences_;
   ParticipantAdmission participants_;

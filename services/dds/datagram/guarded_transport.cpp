@@ -1,7 +1,6 @@
 #include "swiftlet/services/dds/datagram/guarded_transport.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <exception>
 #include <map>
 #include <mutex>
@@ -18,11 +17,6 @@ SenderAddress address_of(const rtps::Locator_t& locator) {
   SenderAddress address{};
   if (locator.kind != LOCATOR_KIND_SHM) std::copy_n(locator.address, address.size(), address.begin());
   return address;
-}
-
-Now now() {
-  return {std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1),
-          std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1)};
 }
 
 class GuardedTransport final : public ChainedTransport {
@@ -45,7 +39,7 @@ class GuardedTransport final : public ChainedTransport {
     // Allocates when a thread sends for the first time.
     thread_local std::vector<rtps::octet> sealed(1 << 16);
     datagram.copy_to(sealed);
-    guard_->seal(sealed, now());
+    guard_->seal(sealed, Now::read());
     return comms::send(below, sealed, to);
   }
 
@@ -127,7 +121,7 @@ void GuardedTransport::receive(transport::TransportReceiverInterface* next, cons
                                std::uint32_t size, const rtps::Locator_t& local,
                                const rtps::Locator_t& remote) {
   const SenderAddress sender = address_of(remote);
-  const CheckedDatagram checked = guard_->admit(data, size, sender, local.port, now());
+  const CheckedDatagram checked = guard_->admit(data, size, sender, local.port, Now::read());
   if (checked.fault != nullptr) return;
   try {
     if (checked.hidden_count > 0) {  // only datagrams of discovery

@@ -1,5 +1,7 @@
 #include "swiftlet/services/dds/datagram/participant_admission.hpp"
 
+#include <algorithm>
+
 namespace swiftlet::comms {
 namespace {
 
@@ -8,6 +10,7 @@ constexpr double kRateOfHost = 4.0;  // 1/s
 constexpr double kBurstOfAll = 512.0;
 constexpr double kRateOfAll = 16.0;  // 1/s
 constexpr std::size_t kHosts = 64;
+constexpr std::int64_t kLately_ns = 4'000'000'000;  // twice the lease of a process
 
 // Entries that were never used have been silent longest.
 template <class T>
@@ -48,6 +51,12 @@ const char* ParticipantAdmission::admit(const GuidPrefix& participant, std::uint
     return "more new participants than a host may announce";
   longest_silent(known_) = {participant, now_ns, digest, 0, 0};
   return nullptr;
+}
+
+std::size_t ParticipantAdmission::heard_lately(std::int64_t now_ns) const {
+  return static_cast<std::size_t>(std::count_if(known_.begin(), known_.end(), [now_ns](const Known& known) {
+    return known.heard_ns > 0 && now_ns - known.heard_ns < kLately_ns;
+  }));
 }
 
 ParticipantAdmission::Host& ParticipantAdmission::host(const SenderAddress& address, std::int64_t now_ns) {

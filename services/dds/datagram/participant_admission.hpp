@@ -2,41 +2,18 @@
 // what they announced: a changed copy could end the lease of a participant.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "swiftlet/services/dds/datagram/rtps_ids.hpp"
+#include "swiftlet/services/dds/datagram/token_bucket.hpp"
 
 namespace swiftlet::comms {
 
 // Participants that a process knows at the same time, itself included.
 constexpr std::size_t kMostParticipants = 512;
-
-// Full at the start; some more tokens each second.
-class TokenBucket {
- public:
-  TokenBucket() = default;
-  TokenBucket(double size, double per_second) : tokens_(size), size_(size), per_second_(per_second) {}
-
-  // Returns false if it is empty. now_ns: of a monotonic clock.
-  bool take(std::int64_t now_ns) {
-    if (last_ns_ != 0)
-      tokens_ = std::min(size_, tokens_ + static_cast<double>(now_ns - last_ns_) * 1e-9 * per_second_);
-    last_ns_ = now_ns;
-    if (tokens_ < 1.0) return false;
-    tokens_ -= 1.0;
-    return true;
-  }
-
- private:
-  double tokens_ = 0.0;
-  double size_ = 0.0;
-  double per_second_ = 0.0;
-  std::int64_t last_ns_ = 0;
-};
 
 // Of a host: an IPv4 or IPv6 address as in a locator.
 using SenderAddress = std::array<std::uint8_t, 16>;
@@ -52,6 +29,9 @@ class ParticipantAdmission {
   // now_ns: of a monotonic clock.
   const char* admit(const GuidPrefix& participant, std::uint64_t digest, const SenderAddress& host,
                     std::int64_t now_ns);
+
+  // Participants that have announced themselves within the last seconds.
+  std::size_t heard_lately(std::int64_t now_ns) const;
 
  private:
   struct Known {

@@ -1,12 +1,14 @@
 #include "swiftlet/services/dds/discovery/repeated_discovery.hpp"
 
 #include <algorithm>
+#include <mutex>
 #include <utility>
 #include <vector>
 
 #include "swiftlet/io/byte_reader.hpp"
 #include "swiftlet/services/dds/datagram/rtps_ids.hpp"
 #include "swiftlet/services/dds/datagram/submessage.hpp"
+#include "swiftlet/services/dds/discovery/announcement_budget.hpp"
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 
 namespace swiftlet::comms {
@@ -24,6 +26,15 @@ namespace {
 
 constexpr std::size_t kBytesBeforeIds = 4;  // of DATA: flags, and the distance to its inline QoS
 
+// FNV-1a, 64 bits.
+constexpr std::uint64_t kFnvOffset = 0xcbf29ce484222325U;
+constexpr std::uint64_t kFnvPrime = 0x100000001b3U;
+
+std::uint64_t fnv(std::uint64_t digest, const std::uint8_t* bytes, std::size_t size) {
+  for (std::size_t i = 0; i < size; ++i) digest = (digest ^ bytes[i]) * kFnvPrime;
+  return digest;
+}
+
 bool is_of_participant(ByteReader data) {
   data.skip(kBytesBeforeIds);
   EntityId reader{};
@@ -38,44 +49,51 @@ bool is_of_participant(ByteReader data) {
 
 }  // namespace
 
-bool is_announcement(const std::uint8_t* message, std::size_t size) {
+std::optional<std::uint64_t> announcement_digest(const std::uint8_t* message, std::size_t size) {
   ByteReader rest(message, size, true);
   rest.skip(kHeaderBytes);
+  std::uint64_t digest = kFnvOffset;
   while (rest.ok() && rest.rest() > 0) {
     const std::uint8_t kind = rest.u8();
     const std::uint8_t flags = rest.u8();
     const std::uint8_t* const length = rest.take(2);
-    if (length == nullptr) return false;
+    if (length == nullptr) return std::nullopt;
     const std::size_t bytes = ByteReader(length, 2, (flags & kLittleEndianFlag) != 0).u16();
     // 0: the last submessage, of all bytes that follow.
-    const ByteReader body = rest.part(bytes == 0 ? rest.rest() : bytes);
+    ByteReader body = rest.part(bytes == 0 ? rest.rest() : bytes);
     if (kind == kInfoDestination || kind == kInfoTimestamp || kind == kStatistics) continue;
-    if (kind != kData || !is_of_participant(body)) return false;
+    if (kind != kData || !is_of_participant(body)) return std::nullopt;
+    const std::size_t said = body.rest();
+    digest = fnv(digest, body.take(said), said);
   }
-  return rest.ok();
+  if (!rest.ok()) return std::nullopt;
+  return digest;
 }
 
 namespace {
 
 namespace transport = eprosima::fastdds::rtps;
 
+struct Repetition {
+  int domain;
+  std::shared_ptr<DatagramGuard> guard;
+  bool loses_nothing;
+};
+
 // Sends through a channel of the transport below.
 class RepeatingChannel final : public OutputChannel {
  public:
-  RepeatingChannel(int domain, std::unique_ptr<rtps::SenderResource> below)
-      : OutputChannel(std::move(below)), domain_(domain) {}
+  RepeatingChannel(const Repetition& repetition, std::unique_ptr<rtps::SenderResource> below)
+      : OutputChannel(std::move(below)), repetition_(repetition) {}
 
  private:
   bool send_datagram(const OutgoingDatagram& datagram, const Destination& to) override {
-    if (*to.begin == *to.end || !is_discovery_port(domain_, (**to.begin).port))
+    if (*to.begin == *to.end || !is_discovery_port(repetition_.domain, (**to.begin).port))
       return comms::send(below(), datagram, to);
     std::vector<rtps::Locator_t> receivers;
     for (; *to.begin != *to.end; ++*to.begin) receivers.push_back(**to.begin);
     bool sent = true;
-    std::vector<rtps::octet> bytes;
-    datagram.copy_to(bytes);
-    const int copies = is_announcement(bytes.data(), bytes.size()) ? kAnnouncementCopies : kEndpointCopies;
-    for (int copy = 0; copy < copies; ++copy) {
+    for (int left = copies_of(datagram); left > 0; --left) {
       rtps::Locators first(receivers.begin());
       rtps::Locators last(receivers.end());
       sent = comms::send(below(), datagram, {&first, &last, to.deadline}) && sent;
@@ -83,13 +101,27 @@ class RepeatingChannel final : public OutputChannel {
     return sent;
   }
 
-  const int domain_;
+  int copies_of(const OutgoingDatagram& datagram) {
+    std::vector<rtps::octet> bytes;
+    datagram.copy_to(bytes);
+    const auto digest = announcement_digest(bytes.data(), bytes.size());
+    const Now now = Now::read();
+    const std::size_t processes = repetition_.guard->participants_heard(now);
+    const std::lock_guard<std::mutex> lock(budget_mutex_);
+    const int copies =
+        digest ? budget_.copies(*digest, processes, now.steady_ns) : endpoint_copies(processes);
+    return repetition_.loses_nothing ? std::min(copies, 1) : copies;
+  }
+
+  const Repetition repetition_;
+  std::mutex budget_mutex_;
+  AnnouncementBudget budget_;
 };
 
 class RepeatingTransport final : public ChainedTransport {
  public:
-  RepeatingTransport(const transport::ChainingTransportDescriptor& descriptor, int domain)
-      : ChainedTransport(descriptor), domain_(domain) {}
+  RepeatingTransport(const transport::ChainingTransportDescriptor& descriptor, const Repetition& repetition)
+      : ChainedTransport(descriptor), repetition_(repetition) {}
 
   bool OpenInputChannel(const rtps::Locator_t& locator, transport::TransportReceiverInterface* next,
                         std::uint32_t largest_message) override {
@@ -111,7 +143,7 @@ class RepeatingTransport final : public ChainedTransport {
     const bool opened = low_level_transport_->OpenOutputChannel(below, locator);
     channels = std::move(others);
     for (auto& channel : below)
-      channels.push_back(std::make_unique<RepeatingChannel>(domain_, std::move(channel)));
+      channels.push_back(std::make_unique<RepeatingChannel>(repetition_, std::move(channel)));
     return opened;
   }
 
@@ -122,24 +154,26 @@ class RepeatingTransport final : public ChainedTransport {
   }
 
  private:
-  const int domain_;
+  const Repetition repetition_;
 };
 
 struct RepeatingDescriptor final : transport::ChainingTransportDescriptor {
-  RepeatingDescriptor(std::shared_ptr<transport::TransportDescriptorInterface> below, int of)
-      : ChainingTransportDescriptor(std::move(below)), domain(of) {}
+  RepeatingDescriptor(std::shared_ptr<transport::TransportDescriptorInterface> below, Repetition of)
+      : ChainingTransportDescriptor(std::move(below)), repetition(std::move(of)) {}
   transport::TransportInterface* create_transport() const override {
-    return new RepeatingTransport(*this, domain);
+    return new RepeatingTransport(*this, repetition);
   }
 
-  int domain;
+  Repetition repetition;
 };
 
 }  // namespace
 
 std::shared_ptr<transport::TransportDescriptorInterface> repeat_discovery(
-    std::shared_ptr<transport::TransportDescriptorInterface> below, int domain) {
-  return std::make_shared<RepeatingDescriptor>(std::move(below), domain);
+    std::shared_ptr<transport::TransportDescriptorInterface> below, int domain,
+    std::shared_ptr<DatagramGuard> guard, bool loses_nothing) {
+  return std::make_shared<RepeatingDescriptor>(std::move(below),
+                                               Repetition{domain, std::move(guard), loses_nothing});
 }
 
 }  // namespace swiftlet::comms

@@ -6,24 +6,24 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
+#include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 
 namespace swiftlet::comms {
 
-// With half of all datagrams lost between two hosts, 98 % of those that tell of endpoints arrive, and four announcements are
-// lost once in hours.
-constexpr int kEndpointCopies = 6;
-constexpr int kAnnouncementCopies = 4;
-
 // True for the UDP ports to which the processes of this domain send discovery.
 bool is_discovery_port(int domain, std::uint32_t port);
 
-// True for a message of RTPS in which participants only announce themselves, or assert that they live.
-bool is_announcement(const std::uint8_t* message, std::size_t size);
+// Of a message of RTPS in which participants only announce themselves, or assert that they live: a digest of what it says,
+// without its time. nullopt: another message.
+std::optional<std::uint64_t> announcement_digest(const std::uint8_t* message, std::size_t size);
 
-// Descriptor of the transport below, with such copies.
+// Descriptor of the transport below, with as many copies as AnnouncementBudget has for the processes that `guard` has heard;
+// one at most if it loses nothing.
 std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> repeat_discovery(
-    std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> below, int domain);
+    std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> below, int domain,
+    std::shared_ptr<DatagramGuard> guard, bool loses_nothing);
 
 }  // namespace swiftlet::comms

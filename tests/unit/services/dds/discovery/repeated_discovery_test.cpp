@@ -11,7 +11,7 @@ using tests::ByteWriter;
 using tests::RtpsMessage;
 
 bool is_announcement_of(const RtpsMessage& message) {
-  return is_announcement(message.bytes().data(), message.bytes().size());
+  return announcement_digest(message.bytes().data(), message.bytes().size()).has_value();
 }
 
 ByteWriter sample_of(const EntityId& reader, const EntityId& writer) {
@@ -50,6 +50,18 @@ TEST(RepeatedDiscovery, KnowsWhatTellsOfEndpoints) {
   EXPECT_FALSE(is_announcement_of(RtpsMessage().add(0x07, 0, ByteWriter().zeros(28)))) << "a heartbeat";
   EXPECT_FALSE(is_announcement_of(RtpsMessage().add(0x15, 4, ByteWriter().zeros(3)))) << "too short";
   EXPECT_FALSE(is_announcement_of(RtpsMessage().add(0x15, 4, participant, 200))) << "longer than the message";
+}
+
+TEST(RepeatedDiscovery, TellsWhatIsAnnouncedFromWhen) {
+  const auto digest_of = [](std::uint8_t time, const GuidPrefix& participant) {
+    RtpsMessage message;
+    message.add(0x09, 0, ByteWriter().bytes(std::vector<std::uint8_t>(8, time)))
+        .add(0x15, 4, sample_of(tests::kSpdpReader, tests::kSpdpWriter).bytes(participant));
+    return announcement_digest(message.bytes().data(), message.bytes().size());
+  };
+  ASSERT_TRUE(digest_of(1, tests::kAlice));
+  EXPECT_EQ(digest_of(1, tests::kAlice), digest_of(2, tests::kAlice));
+  EXPECT_NE(digest_of(1, tests::kAlice), digest_of(1, tests::kBob));
 }
 
 }  // namespace
