@@ -105,9 +105,14 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
                                                take_battery(message);
                                              },
                                              Delivery::kShared, kBatterySourceSilence)});
-  sensors_.push_back(
-      {"rotor speeds", node.subscribe<msg::RotorSpeeds>(topics::kRotorSpeeds, take_rotor_speeds,
-                                                        Delivery::kShared, comms::kSourceSilence)});
+  // Rotor speeds can be as many as IMU samples. In the shared thread they would hold up the requests.
+  sensors_.push_back({"rotor speeds", node.subscribe<msg::RotorSpeeds>(
+                                          topics::kRotorSpeeds,
+                                          [this, take_rotor_speeds](const auto& message) {
+                                            rotor_speed_thread_.enter(realtime_);
+                                            take_rotor_speeds(message);
+                                          },
+                                          delivery, comms::kSourceSilence)});
   subscriptions_.push_back(node.subscribe<msg::VehicleInfo>(
       topics::kVehicleInfo, [this](const auto& message) { on_vehicle_info(message); }));
   subscriptions_.push_back(node.subscribe<msg::Setpoint>(

@@ -116,7 +116,7 @@ class ControlService {
   std::atomic<bool> rival_{false};
   std::uint32_t offered_strength_;  // used by the thread of run() only
 
-  runtime::RealtimeThread imu_thread_, pose_thread_;
+  runtime::RealtimeThread imu_thread_, pose_thread_, rotor_speed_thread_;
 
   std::mutex gate_mutex_;  // lockstep: guards the inner loop and its inputs
   LockstepGate gate_;
