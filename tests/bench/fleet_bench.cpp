@@ -42,15 +42,17 @@ constexpr int kSamplesPerPose = 5;
 struct Options {
   int vehicles = 8;
   double seconds = 5.0;
+  comms::Transport transport = comms::Transport::kUdp;
   bool json = false;
   runtime::ProcessOptions process;
 };
 
-comms::NodeSettings settings(const char* name, int domain) {
+comms::NodeSettings settings(const char* name, int domain, comms::Transport transport) {
   comms::NodeSettings settings;
   settings.name = name;
   settings.domain = domain;
   settings.localhost_only = true;
+  settings.transport = transport;
   return settings;
 }
 
@@ -67,7 +69,9 @@ struct Control {
       : node(participant, name), commands(node.publish(topics::kActuatorCommand)) {
     poses = node.subscribe<msg::MocapPose>(
         topics::kMocapPose, [](const auto&) {}, comms::Delivery::kOwnThread);
-    rotor_speeds = node.subscribe<msg::RotorSpeeds>(topics::kRotorSpeeds, [](const auto&) {});
+    rotor_speeds = node.subscribe<msg::RotorSpeeds>(
+        topics::kRotorSpeeds, [this, realtime](const auto&) { rotor_speed_thread.enter(realtime); },
+        comms::Delivery::kOwnThread);
     samples = node.subscribe<msg::Imu>(
         topics::kImu,
         [this, realtime](const msg::Imu& imu) {
@@ -80,7 +84,7 @@ struct Control {
   comms::Node node;
   comms::Publisher<msg::ActuatorCommand> commands;
   msg::ActuatorCommand command;
-  runtime::RealtimeThread thread;
+  runtime::RealtimeThread thread, rotor_speed_thread;
   comms::Subscription poses, rotor_speeds, samples;
 };
 
@@ -222,7 +226,7 @@ class ServingProcess {
     ::close(pipe_[1]);
     const runtime::RealtimeSettings realtime =
         runtime::prepare_realtime(options.process.realtime, runtime::Clock::kRealtime);
-    const comms::Participant participant(settings(name, domain), names(options.vehicles));
+    const comms::Participant participant(settings(name, domain, options.transport), names(options.vehicles));
     const auto vehicles = serve<Vehicle>(participant, options.vehicles, realtime);
     char byte = 0;
     while (::read(pipe_[0], &byte, 1) > 0) {
@@ -241,7 +245,8 @@ void run(const Options& options) {
   const ServingProcess<Mocap> mocap("mocap", lock.domain(), options);
   const runtime::RealtimeSettings realtime =
       runtime::prepare_realtime(options.process.realtime, runtime::Clock::kRealtime);
-  const comms::Participant participant(settings("plant", lock.domain()), names(options.vehicles));
+  const comms::Participant participant(settings("plant", lock.domain(), options.transport),
+                                       names(options.vehicles));
   std::vector<std::unique_ptr<Plant>> vehicles;
   for (const std::string& name : names(options.vehicles)) {
     const double phase = static_cast<double>(vehicles.size()) / options.vehicles;
@@ -295,6 +300,11 @@ int main(int argc, char** argv) {
       [&](runtime::CommandLine app) {
         app.add_option("--vehicles", options.vehicles, "number of vehicles").range(1, 50);
         app.add_option("--seconds", options.seconds, "duration, s").range(0.1, 3600.0);
+        app.add_choice("--transport", options.transport,
+                       {{"udp", comms::Transport::kUdp},
+                        {"shm", comms::Transport::kSharedMemory},
+                        {"data-sharing", comms::Transport::kDataSharing}},
+                       "of the messages; default: udp");
         app.add_flag("--json", options.json, "print JSON");
         runtime::add_process_options(app, options.process);
       },

@@ -44,6 +44,7 @@ struct Options {
   double seconds = 5.0;
   std::vector<std::string> only;  // sections; empty: all
   std::vector<int> vehicles{1, 2, 4, 8};
+  comms::Transport transport = comms::Transport::kUdp;  // of the section fleet
   bool json = false;
 };
 
@@ -104,6 +105,10 @@ class CpuLoad {
 
 // ---- hovering vehicles
 
+std::string word_of(comms::Transport transport) {
+  return transport == comms::Transport::kSharedMemory ? "shm" : "udp";
+}
+
 constexpr std::array<const char*, 3> kProcesses = {"plant", "mocap", "control"};
 
 struct VehicleFigures {
@@ -125,7 +130,8 @@ struct FleetFigures {
 // Vehicles in one domain, served by one process of each role.
 class Fleet {
  public:
-  Fleet(int vehicles, int rate_hz, bool realtime, const fs::path& folder, int rotor_speed_rate_hz = 500) {
+  Fleet(int vehicles, int rate_hz, bool realtime, const fs::path& folder, int rotor_speed_rate_hz = 500,
+        comms::Transport transport = comms::Transport::kUdp) {
     std::string list;
     for (int i = 1; i <= vehicles; ++i) {
       names_.push_back("kl" + std::to_string(i));
@@ -133,9 +139,12 @@ class Fleet {
     }
     network_.domain = lock_.domain();
     network_.localhost_only = true;
+    network_.transport = transport;
     for (const char* name : kProcesses) {
-      std::vector<std::string> words{"--domain", std::to_string(network_.domain), "--vehicle-name", list,
-                                     "--localhost-only"};
+      std::vector<std::string> words{"--domain",         std::to_string(network_.domain),
+                                     "--vehicle-name",   list,
+                                     "--localhost-only", "--transport",
+                                     word_of(transport)};
       if (!realtime) words.emplace_back("--no-realtime");
       if (name == kProcesses[0])  // side by side, inside the fence
         words.insert(words.end(), {"--imu-rate", std::to_string(rate_hz), "--rotor-speed-rate",
@@ -318,9 +327,10 @@ constexpr std::chrono::milliseconds kLook{100};  // period of checks on the proc
 
 // Figures of vehicles that hover side by side; counters cover the last `seconds`. witness: measure the stalls.
 FleetFigures hover(int vehicles, int rate_hz, bool realtime, double seconds, bool loaded = false,
-                   bool with_witness = false, int rotor_speed_rate_hz = 500) {
+                   bool with_witness = false, int rotor_speed_rate_hz = 500,
+                   comms::Transport transport = comms::Transport::kUdp) {
   const tests::TemporaryFolder folder;
-  Fleet fleet(vehicles, rate_hz, realtime, folder.path(), rotor_speed_rate_hz);
+  Fleet fleet(vehicles, rate_hz, realtime, folder.path(), rotor_speed_rate_hz, transport);
   std::optional<CpuLoad> load;
   if (loaded) load.emplace();
   fleet.take_off();
@@ -480,15 +490,15 @@ double percent(std::uint64_t part, std::uint64_t whole) {
 }
 
 void fleets(Table& table, const Options& options) {
-  table.section(
-      "(i) vehicles in one domain of this computer, 500 Hz each, rotor speeds at 100 Hz, one process of each "
-      "role");
+  table.section("(i) vehicles in one domain of this computer over " + word_of(options.transport) +
+                ", 500 Hz each, rotor speeds at 100 Hz, one process of each role");
   for (const int vehicles : options.vehicles) {
     const double seconds = kFleetShare * options.seconds;
-    const FleetFigures fleet = hover(vehicles, 500, true, seconds, false, true, kFleetRotorSpeedRateHz);
-    const json bare =
-        json::parse(output_of(program("fleet_bench").string() + " --json --vehicles " +
-                              std::to_string(vehicles) + " --seconds " + std::to_string(seconds)));
+    const FleetFigures fleet =
+        hover(vehicles, 500, true, seconds, false, true, kFleetRotorSpeedRateHz, options.transport);
+    const json bare = json::parse(
+        output_of(program("fleet_bench").string() + " --json --vehicles " + std::to_string(vehicles) +
+                  " --seconds " + std::to_string(seconds) + " --transport " + word_of(options.transport)));
     double worst_overdue = 0.0;
     double worst_late = 0.0;
     for (const VehicleFigures& one : fleet.vehicles) {
@@ -534,6 +544,9 @@ void add_options(runtime::CommandLine app, Options& options) {
                  "stop the computer for "
                  "minutes, because they have real-time priority")
       .range(1, 36);
+  app.add_choice("--transport", options.transport,
+                 {{"udp", comms::Transport::kUdp}, {"shm", comms::Transport::kSharedMemory}},
+                 "of the section fleet: udp, or shm: shared memory; default: udp");
   app.add_flag("--json", options.json, "print JSON");
 }
 
