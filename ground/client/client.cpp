@@ -333,8 +333,9 @@ Result Client::ask(comms::Publisher<T>& publisher, const T& request, std::chrono
     }
     Sending sending{now, 0, takeovers_};
     lock.unlock();
-    sending.reader_changes = publisher.changes();
-    if (publisher.matched() > 0 && !(sent && sent->reached_all(sending))) {
+    const bool has_readers = publisher.matched() > 0;
+    sending.reader_changes = publisher.changes();  // after matched(): counts every reader that it saw
+    if (has_readers && !(sent && sent->reached_all(sending))) {
       const std::lock_guard one_at_a_time(sending_);
       publisher.publish(request);
       sent = sending;
