@@ -6,8 +6,9 @@
 namespace swiftlet::comms {
 namespace {
 
-constexpr double kFirstInterval_ns = 50e3;  // of a writer that was heard once
-constexpr double kAveraging = 1.0 / 8.0;    // weight of the newest interval
+constexpr double kShortestInterval_ns = 50e3;  // also of a writer that was heard once
+constexpr double kAveraged_ns = 0.25e9;        // in which the usual rate is measured
+constexpr double kCatchUp_ns = 1e9;            // after which a writer is no longer taken to be behind
 constexpr double kRateMargin = 4.0;
 
 std::size_t hash(const GuidPrefix& participant, const EntityId& entity) {
@@ -22,19 +23,29 @@ std::size_t hash(const GuidPrefix& participant, const EntityId& entity) {
 
 }  // namespace
 
+double SequenceWindow::Writer::interval_ns() const {
+  return samples > 0.0 ? std::max(samples_span_ns / samples, kShortestInterval_ns) : kShortestInterval_ns;
+}
+
 bool SequenceWindow::Writer::admit(std::uint32_t number, std::int64_t now_ns) {
   if (number <= newest) return true;
   const std::uint32_t ahead = number - newest;
   const auto passed_ns = static_cast<double>(now_ns - heard_ns);
+  const double expected = passed_ns / interval_ns();
   const bool may_burst = is_builtin(entity) || now_ns - met_ns < kFirstContact_ns;
   const std::uint32_t burst = may_burst ? kFirstBurst : kSampleBurst;
-  if (ahead > burst + kRateMargin * passed_ns / interval_ns) {
+  if (ahead > burst + kRateMargin * expected + behind) {
     agreeing = number >= refused && number - refused <= kSampleBurst ? agreeing + 1 : 1;
     refused = number;
     if (agreeing < kAgreeingDatagrams) return false;
+    behind = 0.0;
   } else {
-    interval_ns += kAveraging * (passed_ns / ahead - interval_ns);
-    interval_ns = std::max(interval_ns, kFirstInterval_ns);
+    // Nothing is known of the rate of a writer that was heard once.
+    const double missing = samples == 0.0 ? 0.0 : std::min(expected, kCatchUp_ns / interval_ns()) - ahead;
+    behind = std::max(0.0, behind * std::max(0.0, 1.0 - passed_ns / kCatchUp_ns) + missing);
+    const double kept = kAveraged_ns / (kAveraged_ns + passed_ns);
+    samples = kept * samples + ahead;
+    samples_span_ns = kept * samples_span_ns + passed_ns;
   }
   newest = number;
   heard_ns = now_ns;
@@ -51,7 +62,7 @@ bool SequenceWindow::admit(const GuidPrefix& participant, const EntityId& entity
     if (writer.entity == entity && writer.participant == participant) return writer.admit(number, now_ns);
     if (longest_silent == nullptr || writer.heard_ns < longest_silent->heard_ns) longest_silent = &writer;
   }
-  *longest_silent = {participant, entity, number, now_ns, now_ns, kFirstInterval_ns, 0, 0};
+  *longest_silent = {participant, entity, number, now_ns, now_ns};
   return true;
 }
 

@@ -10,8 +10,9 @@
 
 namespace swiftlet::comms {
 
-// A writer may be ahead of its newest number by this many samples, and by four times as many as it sent at its usual rate
-// since then.
+// A writer may be ahead of its newest number by this many samples, by four times as many as it sends at its usual rate in
+// the time since then, and by those that it is behind: after a stall of the receiver, what the socket kept is read within
+// microseconds, and what did not fit into it is missing.
 constexpr std::uint32_t kSampleBurst = 8;
 // At first, while a reader learns what the writer has sent before; and of the middleware's own writers at all times. A
 // process of many vehicles announces hundreds of endpoints at once, and a refused announcement is repeated after seconds.
@@ -40,10 +41,13 @@ class SequenceWindow {
     std::uint32_t newest = 0;
     std::int64_t met_ns = 0;  // heard for the first time
     std::int64_t heard_ns = 0;
-    double interval_ns = 0.0;   // between samples, a moving average
+    double samples = 0.0;  // lately, and in how long
+    double samples_span_ns = 0.0;
+    double behind = 0.0;        // samples that it would have sent at its usual rate, but that were not heard
     std::uint32_t refused = 0;  // the last refused number
     int agreeing = 0;           // refused numbers in a row that agree with each other
 
+    double interval_ns() const;
     bool admit(std::uint32_t number, std::int64_t now_ns);
   };
 

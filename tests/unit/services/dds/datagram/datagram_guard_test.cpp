@@ -75,6 +75,31 @@ TEST(SequenceWindow, LetsAnnouncementsOfEndpointsComeInBursts) {
   EXPECT_FALSE(window.admit(participant, samples, 900, 6 * kSecond_ns));
 }
 
+// A receiver that was held up for 0.3 s reads what its socket kept, 100 samples of a writer at 1 kHz, and then the newest.
+TEST(SequenceWindow, AdmitsWhatFollowsABacklogThatOverflowed) {
+  SequenceWindow window;
+  const GuidPrefix participant{1};
+  const EntityId writer{0x00, 0x00, 0x03, 0x03};
+  std::uint32_t number = 0;
+  std::int64_t now_ns = 0;
+  const auto receive = [&](int samples, std::int64_t period_ns) {
+    for (int i = 0; i < samples; ++i, now_ns += period_ns) {
+      if (!window.admit(participant, writer, ++number, now_ns)) return false;
+    }
+    return true;
+  };
+  ASSERT_TRUE(receive(4000, kSecond_ns / 1000));
+  for (int stall = 0; stall < 5; ++stall) {
+    now_ns += 3 * kSecond_ns / 10;
+    ASSERT_TRUE(receive(100, 5000)) << "the backlog after stall " << stall;
+    number += 200;
+    ASSERT_TRUE(receive(1, 5000)) << "after stall " << stall;
+    EXPECT_FALSE(window.admit(participant, writer, number + 200, now_ns)) << "is ahead of its time";
+    ASSERT_TRUE(receive(3000, kSecond_ns / 1000));
+    EXPECT_FALSE(window.admit(participant, writer, number + 32, now_ns)) << "caught up, and ahead again";
+  }
+}
+
 TEST(DatagramGuard, RemembersABusyWriterAmongManyForgedOnes) {
   DatagramGuard guard;
   std::int64_t now_ns = kSecond_ns;
