@@ -1,24 +1,42 @@
-// A generated type support that drops malformed payloads.
+// A generated type support that drops malformed payloads, and can hand out payloads as they came.
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <mutex>
+#include <vector>
 
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/throttled_warning.hpp"
 
 namespace swiftlet::comms {
 
+// What a reader takes a sample into: the message, or its payload with the encapsulation header, unchecked.
+template <class T>
+struct ReceivedSample {
+  T message;
+  bool raw = false;  // set by the reader: fill `payload` instead of `message`
+  std::vector<std::uint8_t> payload;
+};
+
 // Generated code does not catch all exceptions of the decoder. A byte other than 0 or 1 in a
 // boolean is enough to throw one, and in a middleware thread it would end the process. This class drops such
-// a sample and logs a line.
+// a sample and logs a line. Readers take samples into a ReceivedSample.
 template <class PubSubType>
 class CheckedTypeSupport final : public PubSubType {
  public:
+  using Sample = ReceivedSample<typename PubSubType::type>;
+
   bool deserialize(PayloadArgument payload, void* data) override {
+    Sample& sample = *static_cast<Sample*>(data);
+    if (sample.raw) {
+      const rtps::SerializedPayload_t& bytes = content_of(payload);
+      sample.payload.assign(bytes.data, bytes.data + bytes.length);
+      return true;
+    }
     try {
-      if (PubSubType::deserialize(payload, data)) return true;
+      if (PubSubType::deserialize(payload, &sample.message)) return true;
       note("it is too short");
     } catch (const std::exception& error) {
       note(error.what());

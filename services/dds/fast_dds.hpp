@@ -64,6 +64,7 @@ namespace rtps = eprosima::fastrtps::rtps;
 #if SWIFTLET_FAST_DDS_3
 using ReturnCode = eprosima::fastdds::dds::ReturnCode_t;
 using PayloadArgument = rtps::SerializedPayload_t&;  // of TopicDataType::deserialize()
+inline const rtps::SerializedPayload_t& content_of(PayloadArgument payload) { return payload; }
 inline bool succeeded(ReturnCode code) { return code == eprosima::fastdds::dds::RETCODE_OK; }
 inline const char* type_name(const eprosima::fastdds::dds::TopicDataType& type) {
   return type.get_name().c_str();
@@ -71,6 +72,7 @@ inline const char* type_name(const eprosima::fastdds::dds::TopicDataType& type) 
 #else
 using ReturnCode = eprosima::fastrtps::types::ReturnCode_t;
 using PayloadArgument = rtps::SerializedPayload_t*;
+inline const rtps::SerializedPayload_t& content_of(PayloadArgument payload) { return *payload; }
 inline bool succeeded(ReturnCode code) { return code == ReturnCode::RETCODE_OK; }
 inline const char* type_name(const eprosima::fastdds::dds::TopicDataType& type) { return type.getName(); }
 #endif

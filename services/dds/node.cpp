@@ -91,6 +91,15 @@ struct SenderId {
   }
 };
 
+// FNV-1a.
+std::uint64_t number_of(const rtps::GUID_t& guid) {
+  std::uint64_t number = 0xcbf29ce484222325U;
+  const auto add = [&](rtps::octet octet) { number = (number ^ octet) * 0x100000001b3U; };
+  for (const rtps::octet octet : guid.guidPrefix.value) add(octet);
+  for (const rtps::octet octet : guid.entityId.value) add(octet);
+  return number;
+}
+
 template <class T>
 dds::Topic* topic_in(ParticipantSession& session, const std::string& vehicle, const char* name) {
   return session.topic("rt/" + vehicle + "/" + name,
@@ -181,8 +190,12 @@ class DdsWriter final : public detail::Writer, private Endpoint {
 template <class Impl, class T>
 class DdsReader final : public detail::Reader, private Endpoint, private dds::DataReaderListener {
  public:
-  DdsReader(std::shared_ptr<Impl> node, std::string vehicle, const Topic<T>& topic,
-            std::function<void(const T&)> callback, Delivery delivery,
+  using Callback = std::function<void(const T&)>;
+  using RawCallback = std::function<void(const RawSample&)>;
+
+  // Of the two callbacks, one is given.
+  DdsReader(std::shared_ptr<Impl> node, std::string vehicle, const Topic<T>& topic, Callback callback,
+            RawCallback raw_callback, Delivery delivery,
             std::optional<std::chrono::milliseconds> source_silence,
             std::function<void(const std::string&)> on_fault)
       : node_(std::move(node)),
@@ -191,7 +204,9 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
         delivery_(delivery),
         log_label_(runtime::LogLabel::current()),
         on_fault_(std::move(on_fault)),
-        callback_(std::move(callback)) {
+        callback_(std::move(callback)),
+        raw_callback_(std::move(raw_callback)) {
+    sample_.raw = raw_callback_ != nullptr;
     if (source_silence) source_.emplace(*source_silence);
     node_->add(this);
   }
@@ -252,18 +267,25 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
     while (open_ && !faulty_ && succeeded(reader->take_next_sample(&sample_, &info))) {
       if (!info.valid_data) continue;
       if (source_ && !is_from_source(info)) continue;
-      deliver();
+      deliver(info);
     }
   }
 
-  void deliver() {
-    if (!on_fault_) return callback_(sample_);
+  void deliver(const dds::SampleInfo& info) {
+    if (!on_fault_) return call(info);
     try {
-      callback_(sample_);
+      call(info);
     } catch (const std::exception& error) {
       faulty_ = true;
       on_fault_(error.what());
     }
+  }
+
+  void call(const dds::SampleInfo& info) {
+    if (callback_) return callback_(sample_.message);
+    raw_callback_({sample_.payload.data(), sample_.payload.size(), info.source_timestamp.to_ns(),
+                   info.sample_identity.sequence_number().to64long(),
+                   number_of(info.sample_identity.writer_guid())});
   }
 
   // Never waits: what a reader of the conflict misses, the next ignored sample reports.
@@ -286,9 +308,10 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
   mutable std::mutex conflict_mutex_;
   std::optional<Conflict> conflict_;
   std::mutex mutex_;  // guards all below; held while a callback runs
-  std::function<void(const T&)> callback_;
+  Callback callback_;
+  RawCallback raw_callback_;
   std::optional<SingleSource<SenderId>> source_;
-  T sample_;
+  ReceivedSample<T> sample_;
   bool open_ = false;
   bool faulty_ = false;  // the callback threw an exception
 };
@@ -353,14 +376,25 @@ Publisher<T> Node::publish(const Topic<T>& topic, std::uint32_t strength) {
 template <class T>
 Subscription Node::subscribe(const Topic<T>& topic, std::function<void(const T&)> callback, Delivery delivery,
                              std::optional<std::chrono::milliseconds> source_silence) {
-  return Subscription(std::make_unique<DdsReader<Participant::Impl, T>>(
-      participant_.impl_, vehicle_, topic, std::move(callback), delivery, source_silence, on_fault_));
+  return Subscription(std::make_unique<DdsReader<Participant::Impl, T>>(participant_.impl_, vehicle_, topic,
+                                                                        std::move(callback), nullptr,
+                                                                        delivery, source_silence, on_fault_));
 }
 
-#define SWIFTLET_INSTANTIATE(Name)                                                                      \
-  template Publisher<msg::Name> Node::publish(const Topic<msg::Name>&, std::uint32_t);                  \
-  template Subscription Node::subscribe(const Topic<msg::Name>&, std::function<void(const msg::Name&)>, \
-                                        Delivery, std::optional<std::chrono::milliseconds>);
+template <class T>
+Subscription Node::subscribe_raw(const Topic<T>& topic, std::function<void(const RawSample&)> callback,
+                                 Delivery delivery) {
+  return Subscription(std::make_unique<DdsReader<Participant::Impl, T>>(
+      participant_.impl_, vehicle_, Topic<T>{topic.name, topic.qos}, nullptr, std::move(callback), delivery,
+      std::nullopt, on_fault_));
+}
+
+#define SWIFTLET_INSTANTIATE(Name)                                                                          \
+  template Publisher<msg::Name> Node::publish(const Topic<msg::Name>&, std::uint32_t);                      \
+  template Subscription Node::subscribe(const Topic<msg::Name>&, std::function<void(const msg::Name&)>,     \
+                                        Delivery, std::optional<std::chrono::milliseconds>);                \
+  template Subscription Node::subscribe_raw(const Topic<msg::Name>&, std::function<void(const RawSample&)>, \
+                                            Delivery);
 SWIFTLET_FOR_EACH_MESSAGE(SWIFTLET_INSTANTIATE)
 #undef SWIFTLET_INSTANTIATE
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -87,6 +88,15 @@ enum class Delivery {
   // A separate thread with a separate socket: no other message delays a sample. With kSharedMemory the same
   // as kShared.
   kOwnThread,
+};
+
+// A sample as it came: its payload is not checked.
+struct RawSample {
+  const std::uint8_t* payload = nullptr;  // CDR with the encapsulation header; valid during the callback
+  std::size_t size = 0;
+  std::int64_t source_stamp_ns = 0;   // system clock of the writer; 0: not sent
+  std::uint64_t sequence_number = 0;  // counts the samples of the writer: a gap is a lost sample
+  std::uint64_t writer = 0;           // another number for each writer
 };
 
 namespace detail {
@@ -207,6 +217,11 @@ class Node {
   Subscription subscribe(const Topic<T>& topic, std::function<void(const T&)> callback,
                          Delivery delivery = Delivery::kShared,
                          std::optional<std::chrono::milliseconds> source_silence = std::nullopt);
+
+  // As subscribe(), for recorders. Requests no deadline of the topic.
+  template <class T>
+  Subscription subscribe_raw(const Topic<T>& topic, std::function<void(const RawSample&)> callback,
+                             Delivery delivery = Delivery::kShared);
 
   std::vector<std::string> topics_seen() const { return participant_.topics_seen(); }
 

@@ -16,9 +16,9 @@ namespace {
 template <class Type>
 bool is_accepted(const std::uint8_t* data, std::size_t size, typename Type::Plain& out) {
   static comms::CheckedTypeSupport<typename Type::PubSub> type;
-  typename Type::PubSub::type message;
-  if (!tests::deserialize(type, data, size, &message)) return false;
-  const comms::Fault fault = comms::from_message(message, out);
+  comms::ReceivedSample<typename Type::PubSub::type> sample;
+  if (!tests::deserialize(type, data, size, &sample)) return false;
+  const comms::Fault fault = comms::from_message(sample.message, out);
   if (fault) tests::demand(std::strlen(fault.text) > 8, "a refusal says what is wrong");
   return !fault;
 }

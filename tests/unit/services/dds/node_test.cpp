@@ -10,11 +10,15 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "swiftlet_msgs/msg/CommandPubSubTypes.h"
+
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/serialization.hpp"
 #include "tests/unit/services/dds/steady_sender.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
@@ -153,6 +157,54 @@ INSTANTIATE_TEST_SUITE_P(Transports, LongMission, testing::Values(Transport::kUd
                          [](const auto& run) {
                            return run.param == Transport::kUdp ? "Udp" : "SharedMemory";
                          });
+
+// A recorder and another reader share a participant.
+TEST(RawSubscription, DeliversThePayloadWithStampAndNumber) {
+  struct Kept {
+    std::vector<unsigned char> payload;
+    std::int64_t source_stamp_ns;
+    std::uint64_t sequence_number;
+    std::uint64_t writer;
+  };
+  const DomainLock lock;
+  Node here(settings(lock, "here"));
+  Node there(settings(lock, "there"));
+  Inbox<Kept> raw;
+  Inbox<msg::Command> converted;
+  const auto keep = [&](const RawSample& sample) {
+    raw.put({{sample.payload, sample.payload + sample.size},
+             sample.source_stamp_ns,
+             sample.sequence_number,
+             sample.writer});
+  };
+  const Subscription recorded = there.subscribe_raw<msg::Command>(topics::kCommand, keep);
+  const Subscription used = there.subscribe<msg::Command>(
+      topics::kCommand, [&](const msg::Command& command) { converted.put(command); });
+  Publisher<msg::Command> publisher = here.publish(topics::kCommand);
+  ASSERT_TRUE(eventually([&] { return publisher.matched() == 2; }));
+  const auto now_ns = [] {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(
+               std::chrono::system_clock::now().time_since_epoch())
+        .count();
+  };
+  const std::int64_t before_ns = now_ns();
+  std::vector<msg::Command> sent(3, example<msg::Command>());
+  for (std::size_t i = 0; i < sent.size(); ++i) {
+    sent[i].id(i + 1);
+    ASSERT_TRUE(publisher.publish(sent[i]));
+  }
+  ASSERT_TRUE(raw.wait_for_count(3) && converted.wait_for_count(3));
+  const std::int64_t after_ns = now_ns();
+  for (std::size_t i = 0; i < sent.size(); ++i) {
+    const Kept kept = raw.items()[i];
+    EXPECT_EQ(kept.payload, swiftlet::tests::serialized<msg::CommandPubSubType>(sent[i]));
+    EXPECT_EQ(kept.sequence_number, raw.items()[0].sequence_number + i);
+    EXPECT_EQ(kept.writer, raw.items()[0].writer);
+    EXPECT_GE(kept.source_stamp_ns, before_ns - 1000);  // the middleware keeps fractions of 2^-32 s
+    EXPECT_LE(kept.source_stamp_ns, after_ns);
+    EXPECT_EQ(converted.items()[i].id(), i + 1);
+  }
+}
 
 TEST(Requests, ArriveInOrder) {
   const DomainLock lock;
