@@ -15,6 +15,7 @@
 #include "swiftlet/control/estimation/disturbance_observer.hpp"
 #include "swiftlet/control/estimation/rotor_observer.hpp"
 #include "swiftlet/control/estimation/takeoff_consistency.hpp"
+#include "swiftlet/control/level_commands.hpp"
 #include "swiftlet/control/position/position_controller.hpp"
 #include "swiftlet/control/position/thrust_attitude_map.hpp"
 #include "swiftlet/control/supervision/supervisor.hpp"
@@ -44,13 +45,6 @@ ControlDesign flyable_design(const plant::Vehicle& vehicle, const ControlSetting
   throw std::invalid_argument(settings.name + ": " + unstable.front().key + " " + unstable.front().message);
 }
 
-// The output of the outer loop, for the inner one.
-struct AttitudeDemand {
-  double thrust_n = 0.0;
-  AttitudeReference attitude;
-  bool rates_only = false;  // body rates are controlled, the attitude is not
-};
-
 }  // namespace
 
 struct FlightController::Impl {
@@ -66,16 +60,12 @@ struct FlightController::Impl {
   Wrench inner_loop(const AttitudeDemand& demand) const;
   void command_vehicle(const ControlSetpoint& setpoint, const AttitudeDemand& demand);
   void idle_rotors(plant::RotorState rotor_state);
+  void send_idle();
   void report(const SupervisorInputs& inputs);
   const plant::VehicleCommand& stamp_command(const plant::ImuSample& sample);
 
-  // The command at each level.
   void allocate(const AttitudeDemand& demand, const Wrench& wrench);
-  void send_rates(const AttitudeDemand& demand);
-  void send_attitude(const AttitudeDemand& demand);
-  void send_trajectory(const ControlSetpoint& setpoint);
-  void send_idle();
-  double thrust_along_body(const AttitudeDemand& demand) const;
+  void command_level(const ControlSetpoint& setpoint, const AttitudeDemand& demand);
 
   // Changes of gains.
   void begin_gain_change(const Request& request, const Outcome& outcome);
@@ -347,93 +337,39 @@ Wrench FlightController::Impl::inner_loop(const AttitudeDemand& demand) const {
         attitude.moments_for_rates(estimate.body_rates_frd, rotors.moment_frd(), demand.attitude.body_rates);
     return wrench;
   }
-  wrench.thrust_n = thrust_along_body(demand);
+  wrench.thrust_n = thrust_along_body(demand, estimate);
   wrench.moment_frd = attitude.moments(estimate.q_ned_from_frd, estimate.body_rates_frd, rotors.moment_frd(),
                                        demand.attitude);
   return wrench;
 }
 
-double FlightController::Impl::thrust_along_body(const AttitudeDemand& demand) const {
-  const Vector3d body_z_ned = body_z(estimator.estimate().q_ned_from_frd);
-  return demand.thrust_n * std::max(demand.attitude.body_z_ned.dot(body_z_ned), 0.0);
+void FlightController::Impl::command_vehicle(const ControlSetpoint& setpoint, const AttitudeDemand& demand) {
+  command.rotor_state = plant::RotorState::kRunning;
+  if (level == plant::ControlLevel::kActuators) {
+    allocate(demand, inner_loop(demand));
+  } else {
+    command_level(setpoint, demand);
+  }
 }
 
-void FlightController::Impl::command_vehicle(const ControlSetpoint& setpoint, const AttitudeDemand& demand) {
-  if (level == plant::ControlLevel::kActuators) return allocate(demand, inner_loop(demand));
-  command.rotor_state = plant::RotorState::kRunning;
+void FlightController::Impl::command_level(const ControlSetpoint& setpoint, const AttitudeDemand& demand) {
+  const Estimate& estimate = estimator.estimate();
   command.throttle = plant::PerRotor{};
-  thrust_n = std::max(demand.rates_only ? demand.thrust_n : thrust_along_body(demand), 0.0);
+  thrust_n = std::max(demand.rates_only ? demand.thrust_n : thrust_along_body(demand, estimate), 0.0);
   attitude_setpoint = {demand.attitude.body_z_ned, demand.attitude.heading.yaw_rad, thrust_n,
                        Vector3d::Zero()};
   status.saturated = false;  // not known
-  if (level == plant::ControlLevel::kRates) return send_rates(demand);
-  if (level == plant::ControlLevel::kAttitude) return send_attitude(demand);
-  send_trajectory(setpoint);
-}
-
-void FlightController::Impl::send_rates(const AttitudeDemand& demand) {
-  plant::RatesSetpoint rates;
-  rates.body_rates_frd = demand.rates_only
-                             ? demand.attitude.body_rates
-                             : attitude.rates(estimator.estimate().q_ned_from_frd, demand.attitude);
-  const double rate = rates.body_rates_frd.norm();
-  if (rate > settings.limits.max_body_rate) rates.body_rates_frd *= settings.limits.max_body_rate / rate;
-  rates.thrust_n = thrust_n;
-  sent = rates;
-}
-
-// Body-rate setpoints of a client: the vehicle's attitude law adds nothing at the present attitude.
-void FlightController::Impl::send_attitude(const AttitudeDemand& demand) {
-  plant::AttitudeSetpoint wanted;
-  wanted.q_ned_from_frd =
-      demand.rates_only
-          ? estimator.estimate().q_ned_from_frd
-          : Eigen::Quaterniond(attitude_along(demand.attitude.body_z_ned, demand.attitude.heading));
-  wanted.body_rates_frd = demand.attitude.body_rates;
-  wanted.thrust_n = thrust_n;
-  sent = wanted;
-}
-
-// While the vehicle has no position, or its thrust is to rise at take-off, only velocity and acceleration.
-void FlightController::Impl::send_trajectory(const ControlSetpoint& setpoint) {
-  plant::TrajectorySetpoint wanted;
-  wanted.yaw_rad = reference.yaw_rad;
-  if (setpoint.control_mode == ControlMode::kSpoolUp) {
-    wanted.acceleration_ned.z() = (1.0 - setpoint.lift_fraction) * plant::kGravity;
-  } else if (setpoint.control_mode == ControlMode::kLevelDescent) {
-    wanted.velocity_ned.z() = setpoint.descent_speed;
-    wanted.yaw_rad = euler_angles(estimator.estimate().q_ned_from_frd).heading.yaw_rad;
-  } else {
-    wanted.position_used = setpoint.control_mode == ControlMode::kFly;
-    wanted.position_ned = reference.position_ned;
-    wanted.velocity_ned = reference.velocity_ned;
-    wanted.acceleration_ned = reference.acceleration_ned;
-    wanted.yaw_rate = reference.yaw_rate;
-  }
-  sent = wanted;
-}
-
-// Rotors off, or running without thrust. At level trajectory, free fall asks for no thrust.
-void FlightController::Impl::send_idle() {
-  thrust_n = 0.0;
-  const Heading now = euler_angles(estimator.estimate().q_ned_from_frd).heading;
   if (level == plant::ControlLevel::kRates) {
-    sent = plant::RatesSetpoint();
+    sent = rates_command(demand, thrust_n, estimate, attitude, settings.limits.max_body_rate);
   } else if (level == plant::ControlLevel::kAttitude) {
-    plant::AttitudeSetpoint upright;
-    upright.q_ned_from_frd = Eigen::Quaterniond(attitude_along(Vector3d::UnitZ(), now));
-    sent = upright;
+    sent = attitude_command(demand, thrust_n, estimate);
   } else {
-    plant::TrajectorySetpoint falling;
-    falling.acceleration_ned.z() = plant::kGravity;
-    falling.yaw_rad = now.yaw_rad;
-    sent = falling;
+    sent = trajectory_command(setpoint, estimate);
   }
 }
 
 void FlightController::Impl::allocate(const AttitudeDemand& demand, const Wrench& wrench) {
   const Allocation allocation = allocator.allocate(wrench, supply);
-  command.rotor_state = plant::RotorState::kRunning;
   command.throttle = allocation.throttle;
   attitude_setpoint = {demand.attitude.body_z_ned, demand.attitude.heading.yaw_rad, wrench.thrust_n,
                        wrench.moment_frd};
@@ -446,7 +382,13 @@ void FlightController::Impl::idle_rotors(plant::RotorState rotor_state) {
   command.throttle = plant::PerRotor{};
   attitude_setpoint = AttitudeSetpoint();
   status.saturated = false;
-  if (level != plant::ControlLevel::kActuators) send_idle();
+  send_idle();
+}
+
+void FlightController::Impl::send_idle() {
+  if (level == plant::ControlLevel::kActuators) return;
+  thrust_n = 0.0;
+  sent = idle_command(level, estimator.estimate());
 }
 
 void FlightController::Impl::report(const SupervisorInputs& inputs) {
@@ -529,7 +471,7 @@ void FlightController::set_levels(plant::ControlLevels accepted, std::optional<p
   if (obeyed || level == c.level) return;
   c.level = level;
   c.command.throttle = plant::PerRotor{};
-  if (level != plant::ControlLevel::kActuators) c.send_idle();
+  c.send_idle();
 }
 
 void FlightController::on_pose(const plant::PoseSample& sample) {
