@@ -234,7 +234,7 @@ PlantSettings load(const Options& options) {
 PlantSettings settings_of(const std::vector<std::string>& names, std::size_t i, const Options& options,
                           PlantSettings settings) {
   settings.seed = options.seed + i;
-  settings.phase = static_cast<double>(i) / static_cast<double>(names.size());
+  settings.phase = runtime::group_phase(i, names.size());
   const std::size_t row = options.per_row > 0 ? i / static_cast<std::size_t>(options.per_row) : 0;
   const std::size_t column = i - row * static_cast<std::size_t>(options.per_row);
   settings.initial.position_ned.head<2>() =

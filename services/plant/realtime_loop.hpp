@@ -20,7 +20,8 @@ namespace swiftlet::services {
 class RealtimeLoop {
  public:
   // speed: simulated time per real time, > 0. phase: of the IMU samples, 0 .. 1 of their period after a time that all
-  // loops of the process share: those of several vehicles are best spread over it. The vehicle must outlive the loop.
+  // loops of the process share: runtime::group_phase() spreads those of several vehicles over it. The vehicle must
+  // outlive the loop.
   RealtimeLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings, double speed,
                double phase, comms::Node& node, const runtime::RealtimeSettings& realtime);
 

@@ -46,6 +46,11 @@ class HostedVehicle {
 void host(std::vector<std::unique_ptr<HostedVehicle>> vehicles, StopSignal& stop,
           std::chrono::milliseconds period);
 
+// When the i-th of the vehicles does its periodic work: a phase, 0 .. 1 of the period. The vehicles form up to four groups
+// that are spread over it. Those of a group work one after another without a pause, since a wake-up of an idle core takes
+// longer than the work for one vehicle.
+double group_phase(std::size_t i, std::size_t vehicles);
+
 // The label of the log lines of a vehicle: its name where a process serves several, else empty.
 std::string log_label_of(const std::string& vehicle, std::size_t vehicles);
 

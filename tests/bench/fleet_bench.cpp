@@ -23,6 +23,7 @@
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/plant/answer_latencies.hpp"
+#include "swiftlet/services/runtime/hosting.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "swiftlet/services/runtime/process.hpp"
@@ -249,7 +250,7 @@ void run(const Options& options) {
                                        names(options.vehicles));
   std::vector<std::unique_ptr<Plant>> vehicles;
   for (const std::string& name : names(options.vehicles)) {
-    const double phase = static_cast<double>(vehicles.size()) / options.vehicles;
+    const double phase = runtime::group_phase(vehicles.size(), static_cast<std::size_t>(options.vehicles));
     vehicles.push_back(std::make_unique<Plant>(participant, name, realtime, phase));
   }
   for (const auto& vehicle : vehicles) {
