@@ -58,7 +58,7 @@ void ClosedLoop::answer() {
   pose_.reset();
   battery_.reset();
   rotor_speeds_.reset();
-  if (command_path.send(sent, plant.stamp_ns())) firmware.accept(sent, plant.stamp_ns());
+  if (control_connected && command_path.send(sent, plant.stamp_ns())) firmware.accept(sent, plant.stamp_ns());
 }
 
 void ClosedLoop::record_sensors() const {

@@ -53,6 +53,7 @@ class ClosedLoop {
   plant::VehicleCommand sent;      // the controller's last command
   plant::ActuatorCommand command;  // the same, as Firmware::as_actuators()
   bool mocap_connected = true;
+  bool control_connected = true;    // false: the vehicle receives no commands
   SensorRecord* sensors = nullptr;  // records the controller's inputs and commands; null: no record
 
  private:

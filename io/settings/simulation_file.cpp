@@ -179,6 +179,7 @@ plant::SimulationSettings parse_simulation_settings(std::string_view text, const
     settings.name = root.at("name").text();
     settings.step_ns = std::llround(root.at("step_s").number(between(0.0, 1.0)) * 1.0e9);
     settings.command_timeout_s = root.at("command_timeout_s").number();
+    if (const auto hold = root.find("command_hold_s")) settings.command_hold_s = hold->number();
     settings.rotor_speed_rate_hz = root.at("rotor_speed_rate_hz").number();
     settings.imu = read_imu(root.at("imu"));
     settings.mocap = read_mocap(root.at("mocap"));

@@ -36,8 +36,9 @@ const char* to_string(CommandFault fault) {
   return "";
 }
 
-CommandWatchdog::CommandWatchdog(int rotor_count, std::int64_t timeout_ns, ControlLevels levels)
-    : rotor_count_(rotor_count), timeout_ns_(timeout_ns), levels_(levels) {}
+CommandWatchdog::CommandWatchdog(int rotor_count, std::int64_t timeout_ns, ControlLevels levels,
+                                 std::int64_t hold_ns)
+    : rotor_count_(rotor_count), timeout_ns_(timeout_ns), hold_ns_(hold_ns), levels_(levels) {}
 
 CommandFault CommandWatchdog::check(const ActuatorCommand& command) const {
   if (command.rotor_count != rotor_count_) return CommandFault::kRotorCount;
@@ -78,8 +79,8 @@ CommandFault CommandWatchdog::accept(const VehicleCommand& command, std::int64_t
   if (header.term < header_of(command_).term && !expired(now_ns)) return CommandFault::kOvertaken;
   last_stamp_ns_ = header.stamp_ns;
   command_ = command;
-  motor_command_ = MotorCommand();
-  motor_command_.state = header.rotor_state;
+  idle_.state = header.rotor_state;
+  motor_command_ = idle_;
   if (const auto* actuators = std::get_if<ActuatorCommand>(&command)) {
     std::copy_n(actuators->throttle.begin(), rotor_count_, motor_command_.throttle.begin());
   }
@@ -88,11 +89,8 @@ CommandFault CommandWatchdog::accept(const VehicleCommand& command, std::int64_t
 
 const MotorCommand& CommandWatchdog::motor_command(std::int64_t now_ns) const {
   static constexpr MotorCommand kOff;
-  return expired(now_ns) ? kOff : motor_command_;
-}
-
-bool CommandWatchdog::expired(std::int64_t now_ns) const {
-  return last_stamp_ns_ && *last_stamp_ns_ < now_ns - timeout_ns_;
+  if (expired(now_ns)) return kOff;
+  return outdated(now_ns) ? idle_ : motor_command_;
 }
 
 ObeyedCommand CommandWatchdog::obeyed() const {

@@ -55,6 +55,7 @@ std::vector<Violation> validate(const SimulationSettings& settings) {
   RuleChecker check;
   check.between("step_s", step_s(settings), 1.0e-5, 1.0e-3);
   check.between("command_timeout_s", settings.command_timeout_s, 0.01, 10.0);
+  check.between("command_hold_s", settings.command_hold_s, 0.01, 10.0);
   check.between("rotor_speed_rate_hz", settings.rotor_speed_rate_hz, 0.0, 2000.0);
   check_whole_steps("rotor_speed_rate_hz", settings.rotor_speed_rate_hz, settings, check);
 

@@ -112,6 +112,7 @@ struct SimulationSettings {
   std::string name = "default";
   std::int64_t step_ns = 1'000'000;  // integration step
   double command_timeout_s = 0.5;    // the vehicle stops its rotors after this time without a valid command
+  double command_hold_s = 0.2;       // it obeys a command for this time, then levels itself and sinks
   // At which the vehicle accepts commands; not a key of the file (`--level`).
   ControlLevels control_levels = ControlLevel::kActuators;
   double rotor_speed_rate_hz = 500.0;  // of rotor speed samples; 0: the vehicle does not measure them

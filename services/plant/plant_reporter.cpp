@@ -45,7 +45,8 @@ PlantReporter::PlantReporter(comms::Node& node, const plant::Vehicle& vehicle,
                              const plant::SimulationSettings& settings, const std::string& autopilot)
     : publisher_(node.publish(comms::topics::kVehicleInfo)),
       info_(describe(vehicle, settings, autopilot)),
-      timeout_fault_(fmt::format("no actuator command for {:g} s", settings.command_timeout_s)) {}
+      timeout_fault_(fmt::format("no actuator command for {:g} s", settings.command_timeout_s)),
+      command_hold_s_(settings.command_hold_s) {}
 
 void PlantReporter::publish_due(const PlantReport& report) {
   const bool changed = report.rotors_running != last_report_.rotors_running ||
@@ -73,10 +74,15 @@ void PlantReporter::log_rotors(const PlantReport& report, const std::string& fau
   }
 }
 
-// Logs refused commands and slips since the last call. Returns true if there were any.
+// Logs commands that ceased or were refused, and slips, since the last call. Returns true if there were any.
 bool PlantReporter::log_trouble(const PlantReport& report) {
+  const bool outdated = report.outdated > logged_report_.outdated;
   const bool refused = report.refused_commands > logged_report_.refused_commands;
   const bool slipped = report.slips > logged_report_.slips;
+  if (outdated) {
+    spdlog::warn("commands ceased for more than {:g} s, {} times: obeyed none meanwhile", command_hold_s_,
+                 report.outdated - logged_report_.outdated);
+  }
   if (refused) {
     spdlog::warn("refused {} actuator commands, the last: {}",
                  report.refused_commands - logged_report_.refused_commands, report.refusal.text);
@@ -87,7 +93,7 @@ bool PlantReporter::log_trouble(const PlantReport& report) {
                  static_cast<double>(report.slipped_ns - logged_report_.slipped_ns) * 1e-6);
   }
   logged_report_ = report;
-  return refused || slipped;
+  return outdated || refused || slipped;
 }
 
 void PlantReporter::log_end(const PlantReport& last) {

@@ -29,6 +29,7 @@ class PlantReporter {
   comms::Publisher<comms::msg::VehicleInfo> publisher_;
   comms::msg::VehicleInfo info_;
   std::string timeout_fault_;
+  double command_hold_s_;
   PlantReport last_report_;
   PlantReport logged_report_;
   std::int64_t due_ns_ = 0;

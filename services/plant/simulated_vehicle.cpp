@@ -93,6 +93,9 @@ void SimulatedVehicle::step() {
   }
   if (!running && report_.rotors_running) report_.timed_out = firmware_.expired(simulation_.stamp_ns());
   report_.rotors_running = running;
+  const bool outdated = running && firmware_.outdated(simulation_.stamp_ns());
+  if (outdated && !outdated_) ++report_.outdated;
+  outdated_ = outdated;
   simulation_.step(command);
   inform_firmware();
 }

@@ -21,8 +21,9 @@ namespace swiftlet::services {
 struct PlantReport {
   std::int64_t stamp_ns = 0;
   bool rotors_running = false;
-  bool timed_out = false;  // command time-out: the vehicle stopped its rotors
-  bool paused = false;     // lockstep: waits for simulation_clock
+  bool timed_out = false;      // command time-out: the vehicle stopped its rotors
+  std::uint64_t outdated = 0;  // times that commands ceased while the rotors ran
+  bool paused = false;         // lockstep: waits for simulation_clock
   std::uint64_t answered = 0;
   std::uint64_t unanswered = 0;
   std::uint64_t late = 0;
@@ -101,6 +102,7 @@ class SimulatedVehicle {
   comms::msg::RotorSpeeds rotor_speeds_message_;
   comms::msg::GroundTruth truth_message_;
 
+  bool outdated_ = false;  // the vehicle obeys no command, and its rotors run
   PlantReport report_;
   PlantReport last_report_;
   AnswerLatencies answers_;

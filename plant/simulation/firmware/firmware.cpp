@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kFlyingThrust = 0.5;  // of the weight: below it the vehicle stands, and no integral advances
 constexpr double kNoThrust = 0.02;     // of the weight: below it the rotors idle
+// Of the weight, without a command. A vehicle that is 20 % lighter than the model does not climb with it.
+constexpr double kSinkingThrust = 0.8;
 constexpr double kLongestStep_s = 0.05;
 
 }  // namespace
@@ -21,7 +23,7 @@ Firmware::Firmware(const Vehicle& vehicle, const SimulationSettings& settings)
       needs_poses_(settings.control_levels.has(ControlLevel::kAttitude) ||
                    settings.control_levels.has(ControlLevel::kTrajectory)),
       watchdog_(vehicle.rotor_count(), std::llround(settings.command_timeout_s * 1e9),
-                settings.control_levels),
+                settings.control_levels, std::llround(settings.command_hold_s * 1e9)),
       position_loop_(firmware_gains(vehicle).position, vehicle.mass_kg),
       attitude_loop_(firmware_gains(vehicle).attitude),
       rate_loop_(firmware_gains(vehicle).rates, vehicle.inertia),
@@ -38,7 +40,7 @@ void Firmware::on_pose(const PoseSample& sample) {
 
 const MotorCommand& Firmware::motor_command(std::int64_t now_ns) {
   const MotorCommand& obeyed = watchdog_.motor_command(now_ns);
-  if (new_imu_) run_loops();
+  if (new_imu_) run_loops(now_ns);
   if (level_of(watchdog_.command()) == ControlLevel::kActuators || obeyed.state == RotorState::kOff) {
     reset_loops();
     return motor_command_ = obeyed;
@@ -48,7 +50,7 @@ const MotorCommand& Firmware::motor_command(std::int64_t now_ns) {
 }
 
 // The motor command of the loops; in force if the rotors are to run.
-void Firmware::run_loops() {
+void Firmware::run_loops(std::int64_t now_ns) {
   const ImuSample& imu = *new_imu_;
   dt_s_ = last_stamp_ns_ < 0
               ? nominal_step_s_
@@ -59,9 +61,10 @@ void Firmware::run_loops() {
   if (new_pose_) estimator_.correct(*new_pose_);
   new_pose_.reset();
   const VehicleCommand& command = watchdog_.command();
-  if (finite && header_of(command).rotor_state == RotorState::kRunning &&
-      level_of(command) != ControlLevel::kActuators) {
-    const RatesAndThrust wanted = std::visit([this](const auto& one) { return rates_for(one); }, command);
+  const ControlLevel level = level_of(command);
+  if (finite && header_of(command).rotor_state == RotorState::kRunning && level != ControlLevel::kActuators) {
+    const VehicleCommand obeyed = watchdog_.outdated(now_ns) ? without_command(level) : command;
+    const RatesAndThrust wanted = std::visit([this](const auto& one) { return rates_for(one); }, obeyed);
     carries_ = wanted.thrust_n >= kFlyingThrust * weight_n_;
     Eigen::Vector3d moment_frd = rate_loop_.step(wanted.body_rates_frd, imu.body_rates_frd, dt_s_, carries_);
     if (wanted.thrust_n < kNoThrust * weight_n_) moment_frd.setZero();
@@ -89,6 +92,28 @@ Firmware::RatesAndThrust Firmware::rates_for(const TrajectorySetpoint& setpoint)
   const Eigen::Vector3d rates_ahead = wanted.q_ned_from_frd.conjugate() * yaw_rate_ned;
   return {attitude_loop_.step(wanted.q_ned_from_frd, rates_ahead, estimator_.q_ned_from_frd()),
           wanted.thrust_n};
+}
+
+// In flight: no rates, level at the present heading, or at rest. On the ground the rotors idle.
+VehicleCommand Firmware::without_command(ControlLevel level) const {
+  const double thrust_n = carries_ ? kSinkingThrust * weight_n_ : 0.0;
+  if (level == ControlLevel::kRates) {
+    RatesSetpoint still;
+    still.thrust_n = thrust_n;
+    return still;
+  }
+  const Eigen::Vector3d forward_ned = estimator_.q_ned_from_frd() * Eigen::Vector3d::UnitX();
+  const double yaw_rad = std::atan2(forward_ned.y(), forward_ned.x());
+  if (level == ControlLevel::kAttitude) {
+    AttitudeSetpoint upright;
+    upright.q_ned_from_frd = Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ());
+    upright.thrust_n = thrust_n;
+    return upright;
+  }
+  TrajectorySetpoint at_rest;
+  at_rest.yaw_rad = yaw_rad;
+  if (!carries_) at_rest.acceleration_ned.z() = kGravity;
+  return at_rest;
 }
 
 void Firmware::reset_loops() {

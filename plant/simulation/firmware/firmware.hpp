@@ -1,6 +1,7 @@
 // The flight-control firmware of the simulated vehicle: obeys commands at the levels that the vehicle accepts. At level
 // actuators it passes the throttles on. At the others it runs its own loops once per IMU sample, a cascade as of
-// Crazyflie and PX4: position and velocity, attitude, body rates, mixer.
+// Crazyflie and PX4: position and velocity, attitude, body rates, mixer. When commands cease, it obeys the last one for
+// command_hold_s. Then it levels itself and sinks with what its loops know, and after command_timeout_s the rotors stop.
 //
 //   firmware.on_imu(sample);                                  // each sample of the vehicle's IMU
 //   firmware.accept(command, now_ns);                         // each command that arrives
@@ -43,6 +44,7 @@ class Firmware {
   CommandFault accept(const VehicleCommand& command, std::int64_t now_ns) {
     return watchdog_.accept(command, now_ns);
   }
+  bool outdated(std::int64_t now_ns) const { return watchdog_.outdated(now_ns); }
   bool expired(std::int64_t now_ns) const { return watchdog_.expired(now_ns); }
   ObeyedCommand obeyed() const { return watchdog_.obeyed(); }
 
@@ -62,11 +64,12 @@ class Firmware {
     Eigen::Vector3d body_rates_frd = Eigen::Vector3d::Zero();
     double thrust_n = 0.0;
   };
-  void run_loops();
+  void run_loops(std::int64_t now_ns);
   RatesAndThrust rates_for(const ActuatorCommand& command);
   RatesAndThrust rates_for(const RatesSetpoint& setpoint);
   RatesAndThrust rates_for(const AttitudeSetpoint& setpoint);
   RatesAndThrust rates_for(const TrajectorySetpoint& setpoint);
+  VehicleCommand without_command(ControlLevel level) const;
   void reset_loops();
 
   int rotor_count_;

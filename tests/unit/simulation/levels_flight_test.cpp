@@ -149,6 +149,63 @@ TEST_P(Levels, WithoutPosesTheVehicleDescendsAndStopsItsRotors) {
   EXPECT_LT(loop.plant.state().position_ned.head<2>().norm(), 0.5);
 }
 
+// GIVEN a vehicle that climbs and flies sideways WHEN control falls silent THEN it climbs no further than it would without
+// thrust, levels itself where it can, and its rotors stop.
+TEST_P(Levels, WithoutControlTheVehicleDoesNotClimbAway) {
+  ClosedLoop loop(vehicle_, world_, settings_, 1);
+  hover(loop);
+  control::Request up;
+  up.kind = control::RequestKind::kGoTo;
+  up.position_ned = {1.0, 0.0, -2.3};
+  up.speed = 1.5;
+  ASSERT_TRUE(loop.controller.request(up).accepted);
+  ASSERT_TRUE(loop.step_until([&] { return loop.plant.state().velocity_ned.z() < -0.5; }, 5.0));
+  const double from_m = -loop.plant.state().position_ned.z();
+  const double speed = loop.plant.state().velocity_ned.norm();
+  loop.control_connected = false;
+  double highest_m = from_m;
+  bool idled = false;
+  const std::int64_t last_ns = loop.plant.stamp_ns();
+  const auto silent_s = [&] { return 1e-9 * static_cast<double>(loop.plant.stamp_ns() - last_ns); };
+  ASSERT_TRUE(loop.step_until(
+      [&] {
+        highest_m = std::max(highest_m, -loop.plant.state().position_ned.z());
+        const plant::MotorCommand& motors = loop.firmware.motor_command(loop.plant.stamp_ns());
+        idled =
+            idled || (motors.state == plant::RotorState::kRunning && motors.throttle == plant::PerRotor{});
+        return motors.state == plant::RotorState::kOff;
+      },
+      1.0));
+  EXPECT_NEAR(silent_s(), world_.command_timeout_s, 0.01);
+  EXPECT_EQ(idled, GetParam() == ControlLevel::kActuators);
+  EXPECT_LT(highest_m, from_m + 0.35);
+  const plant::VehicleState& state = loop.plant.state();
+  if (own_position_loop()) {
+    EXPECT_LT(state.velocity_ned.norm(), 0.6 * speed);  // brakes
+  } else if (GetParam() == ControlLevel::kAttitude) {
+    EXPECT_GT((state.q_ned_from_frd * Eigen::Vector3d::UnitZ()).z(), 0.98);
+    EXPECT_LT(state.body_rates_frd.norm(), 0.5);
+  } else if (GetParam() == ControlLevel::kRates) {
+    EXPECT_LT(state.body_rates_frd.norm(), 0.5);
+  }
+}
+
+// GIVEN rotors that idle on the ground WHEN control falls silent THEN they do not lift the vehicle.
+TEST_P(Levels, WithoutControlAnArmedVehicleStaysOnTheGround) {
+  ClosedLoop loop(vehicle_, world_, settings_, 1);
+  ASSERT_TRUE(loop.step_until([&] { return loop.time_s() > 1.0; }, 2.0));
+  control::Request arm;
+  arm.kind = control::RequestKind::kArm;
+  ASSERT_TRUE(loop.controller.request(arm).accepted);
+  run(loop, 1.0);
+  loop.control_connected = false;
+  run(loop, 0.45);
+  const plant::MotorCommand& motors = loop.firmware.motor_command(loop.plant.stamp_ns());
+  EXPECT_EQ(motors.state, plant::RotorState::kRunning);
+  EXPECT_TRUE(loop.plant.on_ground());
+  EXPECT_LT(*std::max_element(motors.throttle.begin(), motors.throttle.end()), 0.2);
+}
+
 TEST_P(Levels, AStepOfControllerAndFirmwareAllocatesNoMemory) {
   ClosedLoop loop(vehicle_, world_, settings_, 1);
   hover(loop);

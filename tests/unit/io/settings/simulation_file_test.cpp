@@ -36,6 +36,7 @@ TEST(SimulationFile, DefaultFileMatchesTheStruct) {
   EXPECT_EQ(from_file.name, defaults.name);
   EXPECT_EQ(from_file.step_ns, defaults.step_ns);
   EXPECT_EQ(from_file.command_timeout_s, defaults.command_timeout_s);
+  EXPECT_EQ(from_file.command_hold_s, defaults.command_hold_s);
   EXPECT_EQ(from_file.rotor_speed_rate_hz, defaults.rotor_speed_rate_hz);
   EXPECT_EQ(from_file.imu.rate_hz, defaults.imu.rate_hz);
   EXPECT_EQ(from_file.imu.accelerometer_noise_density, defaults.imu.accelerometer_noise_density);
@@ -113,25 +114,25 @@ TEST(SimulationFile, IdealHasNoErrors) {
 
 TEST(SimulationFile, RefusesValuesOutOfRange) {
   EXPECT_EQ(refused("  friction: 0.6", "  friction: -1"),
-            "s.yaml:49: ground.friction: is -1, must be at least 0 and at most 10");
+            "s.yaml:51: ground.friction: is -1, must be at least 0 and at most 10");
   EXPECT_EQ(refused("altitude_m: 488", "altitude_m: 9999"),
-            "s.yaml:56: site.altitude_m: is 9999, must be at least -500 and at most 9000");
+            "s.yaml:58: site.altitude_m: is 9999, must be at least -500 and at most 9000");
   EXPECT_EQ(refused("position_drift_ned_m: [0.3, 0.3, 0.6]", "position_drift_ned_m: [0.3, -1, 0.6]"),
-            "s.yaml:73: gps.position_drift_ned_m[1]: is -1, must be at least 0 and at most 100");
+            "s.yaml:75: gps.position_drift_ned_m[1]: is -1, must be at least 0 and at most 100");
   EXPECT_EQ(refused("rate_hz: 500  #", "rate_hz: 400  #"),
-            "s.yaml:13: imu.rate_hz: is 400, must have a period that is a whole number of steps of 0.001 s");
+            "s.yaml:15: imu.rate_hz: is 400, must have a period that is a whole number of steps of 0.001 s");
   EXPECT_EQ(refused("wind_ned_m_s: [0, 0, 0]", "wind_ned_m_s: [0, 99, 0]"),
-            "s.yaml:41: air.wind_ned_m_s[1]: is 99, must be at least -30 and at most 30");
+            "s.yaml:43: air.wind_ned_m_s[1]: is 99, must be at least -30 and at most 30");
 }
 
 TEST(SimulationFile, RefusesUnknownKeysAndInvalidValues) {
   EXPECT_NE(refused("  drag:", "  drug:").find("air.drug: is unknown, must be one of drag"),
             std::string::npos);
-  EXPECT_NE(refused("  drag: true", "  drag: true\n  lift: 1").find("s.yaml:41: air.lift: "),
+  EXPECT_NE(refused("  drag: true", "  drag: true\n  lift: 1").find("s.yaml:43: air.lift: "),
             std::string::npos);
-  EXPECT_NE(refused("  latency_s: 0.010", "  latency_s: soon").find("s.yaml:27: mocap.latency_s: is soon"),
+  EXPECT_NE(refused("  latency_s: 0.010", "  latency_s: soon").find("s.yaml:29: mocap.latency_s: is soon"),
             std::string::npos);
-  EXPECT_NE(refused("  latency_s: 0.010", "  latency_s: .nan").find("s.yaml:27: mocap.latency_s: "),
+  EXPECT_NE(refused("  latency_s: 0.010", "  latency_s: .nan").find("s.yaml:29: mocap.latency_s: "),
             std::string::npos);
   EXPECT_NE(refused("step_s: 0.001", "step_s: 7").find("s.yaml:5: step_s: is 7"), std::string::npos);
 }
@@ -190,9 +191,9 @@ TEST(SimulationFile, ReadsFaultsOfEveryKind) {
 
 TEST(SimulationFile, RefusesInvalidFaults) {
   EXPECT_EQ(refused_faults("  - {kind: imu_stop, at_s: -1, for_s: 1}\n"),
-            "s.yaml:77: faults[0].at_s: is -1, must be at least 0 and at most 86400");
+            "s.yaml:79: faults[0].at_s: is -1, must be at least 0 and at most 86400");
   EXPECT_NE(refused_faults("  - {kind: imu_stopped, at_s: 1, for_s: 1}\n")
-                .find("s.yaml:77: faults[0].kind: is imu_stopped, must be "),
+                .find("s.yaml:79: faults[0].kind: is imu_stopped, must be "),
             std::string::npos);
   EXPECT_NE(refused_faults("  - {kind: mocap_latency, at_s: 1, for_s: 1}\n").find("faults[0].delay_s"),
             std::string::npos);
@@ -201,7 +202,7 @@ TEST(SimulationFile, RefusesInvalidFaults) {
   EXPECT_EQ(
       refused_faults("  - {kind: imu_stop, at_s: 1, for_s: 1}\n"
                      "  - {kind: imu_stop, at_s: 1.5, for_s: 1}\n"),
-      "s.yaml:78: faults[1].at_s: is 1.5, but faults[0], imu_stop too, lasts from 1 s to 2 s: faults of "
+      "s.yaml:80: faults[1].at_s: is 1.5, but faults[0], imu_stop too, lasts from 1 s to 2 s: faults of "
       "one kind must not overlap");
 }
 

@@ -59,6 +59,36 @@ TEST(CommandWatchdog, StopsRotorsWhenCommandsStop) {
   EXPECT_EQ(watchdog.motor_command(1300).state, RotorState::kRunning);
 }
 
+TEST(CommandWatchdog, ObeysNoOutdatedCommand) {
+  CommandWatchdog watchdog(4, kTimeout, ControlLevel::kActuators, 100);
+  watchdog.accept(command(1000), 1050);
+  EXPECT_FALSE(watchdog.outdated(1100));
+  EXPECT_EQ(watchdog.motor_command(1100).throttle[0], 0.5);
+  EXPECT_TRUE(watchdog.outdated(1101));  // counted from the stamp of the sample
+  EXPECT_EQ(watchdog.motor_command(1101).state, RotorState::kRunning);
+  EXPECT_EQ(watchdog.motor_command(1101).throttle, plant::PerRotor{});
+  EXPECT_EQ(watchdog.motor_command(1201).state, RotorState::kOff);
+}
+
+// GIVEN a controller that sends the same command again and again THEN it gets old all the same.
+TEST(CommandWatchdog, RepeatedCommandsGetOld) {
+  CommandWatchdog watchdog(4, kTimeout, ControlLevel::kActuators, 100);
+  for (std::int64_t now = 1000; now <= 1200; now += 10) {
+    EXPECT_EQ(watchdog.accept(command(1000), now), CommandFault::kNone);
+    EXPECT_EQ(watchdog.motor_command(now).throttle[0], now <= 1100 ? 0.5 : 0.0);
+  }
+  EXPECT_EQ(watchdog.accept(command(1000), 1210), CommandFault::kStale);
+  EXPECT_EQ(watchdog.motor_command(1210).state, RotorState::kOff);
+}
+
+TEST(CommandWatchdog, RotorsThatWereTurnedOffStayOff) {
+  CommandWatchdog watchdog(4, kTimeout, ControlLevel::kActuators, 100);
+  ActuatorCommand off = command(1000);
+  off.rotor_state = RotorState::kOff;
+  watchdog.accept(off, 1000);
+  EXPECT_EQ(watchdog.motor_command(1150).state, RotorState::kOff);
+}
+
 TEST(CommandWatchdog, RefusesLowerTermsUntilTheTermTimesOut) {
   CommandWatchdog watchdog(4, kTimeout);
   const auto with_term = [](std::uint32_t term, std::int64_t stamp_ns) {

@@ -41,6 +41,11 @@ class Flown : public testing::Test {
       step();
     }
   }
+  // Without commands.
+  void step_for(double duration_s) {
+    const std::int64_t end_ns = plant_->stamp_ns() + std::llround(1e9 * duration_s);
+    while (plant_->stamp_ns() < end_ns) step();
+  }
   void step() {
     plant_->step(firmware_->motor_command(plant_->stamp_ns()));
     inform();
@@ -126,12 +131,58 @@ TEST_F(Flown, RotorsStopAtEveryLevelWhenCommandsStop) {
     const plant::VehicleCommand commands[] = {actuators, rates, attitude, plant::TrajectorySetpoint()};
     run(0.1, commands[static_cast<std::size_t>(level)]);
     EXPECT_EQ(firmware_->motor_command(plant_->stamp_ns()).state, RotorState::kRunning);
-    const std::int64_t timed_out_ns =
-        plant_->stamp_ns() + std::llround(1e9 * settings_.command_timeout_s) + 2'000'000;
-    while (plant_->stamp_ns() < timed_out_ns) step();
+    step_for(settings_.command_timeout_s + 0.002);
     EXPECT_EQ(firmware_->motor_command(plant_->stamp_ns()).state, RotorState::kOff);
     EXPECT_TRUE(firmware_->expired(plant_->stamp_ns()));
     EXPECT_EQ(firmware_->rate_loop().integral(), Vector3d::Zero());
+  }
+}
+
+// GIVEN a vehicle that turns, tilts or climbs WHEN commands cease THEN it obeys the last one for 0.2 s, and then levels
+// itself and sinks.
+TEST_F(Flown, AnOutdatedCommandIsNotObeyed) {
+  plant::RatesSetpoint turning;
+  turning.thrust_n = 1.5 * kWeight_n;
+  turning.body_rates_frd = {0.0, 0.0, 2.0};
+  plant::AttitudeSetpoint tilted;
+  tilted.thrust_n = 1.5 * kWeight_n;
+  tilted.q_ned_from_frd = Eigen::AngleAxisd(0.3, Vector3d::UnitX());
+  plant::TrajectorySetpoint climbing;
+  climbing.velocity_ned.z() = -1.0;
+  for (const plant::VehicleCommand& command :
+       {plant::VehicleCommand(turning), plant::VehicleCommand(tilted), plant::VehicleCommand(climbing)}) {
+    SCOPED_TRACE(plant::to_string(plant::level_of(command)));
+    make(plant::level_of(command));
+    settings_.command_timeout_s = 5.0;
+    firmware_.emplace(kaylion(), settings_);
+    run(1.5, command);
+    const double turned = state().body_rates_frd.norm();
+    const double tilt = state().q_ned_from_frd.angularDistance(Eigen::Quaterniond::Identity());
+    const double climb = -state().velocity_ned.z();
+    EXPECT_TRUE(turned > 1.5 || tilt > 0.25 || climb > 0.9);
+    step_for(0.19);
+    EXPECT_FALSE(firmware_->outdated(plant_->stamp_ns()));
+    const double fastest = -state().velocity_ned.z();
+    EXPECT_GE(fastest, 0.9 * climb);
+    step_for(1.0);
+    EXPECT_TRUE(firmware_->outdated(plant_->stamp_ns()));
+    EXPECT_EQ(firmware_->motor_command(plant_->stamp_ns()).state, RotorState::kRunning);
+    EXPECT_LT(state().body_rates_frd.norm(), 0.1);
+    EXPECT_GT((state().q_ned_from_frd * Vector3d::UnitZ()).z(), 0.998);
+    EXPECT_LT(-state().velocity_ned.z(), fastest - 0.5);
+  }
+}
+
+TEST_F(Flown, WithoutCommandsRotorsThatIdleGoOnIdling) {
+  for (const plant::VehicleCommand& idle :
+       {plant::VehicleCommand(plant::RatesSetpoint()), plant::VehicleCommand(plant::AttitudeSetpoint())}) {
+    SCOPED_TRACE(plant::to_string(plant::level_of(idle)));
+    make(plant::level_of(idle));
+    run(0.1, idle);
+    step_for(0.3);
+    EXPECT_TRUE(firmware_->outdated(plant_->stamp_ns()));
+    EXPECT_EQ(firmware_->motor_command(plant_->stamp_ns()).state, RotorState::kRunning);
+    EXPECT_EQ(firmware_->motor_command(plant_->stamp_ns()).throttle, plant::PerRotor{});
   }
 }
 
