@@ -1,5 +1,6 @@
 #include "swiftlet/io/csv.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -128,7 +129,7 @@ CsvTable read_rows(Lines& lines, const std::string& file_name, const std::vector
                           "is " + format_value(fields[i]) + ", must be a finite number");
       }
     }
-    table.add_row(lines.number(), numbers);
+    table.add_row(lines.number(), numbers, fields);
   }
   if (table.row_count() < min_rows) {
     throw ConfigError(file_name, 0, "",
@@ -141,9 +142,39 @@ CsvTable read_rows(Lines& lines, const std::string& file_name, const std::vector
 
 }  // namespace
 
-void CsvTable::add_row(int line, const std::vector<double>& numbers) {
+void CsvTable::add_row(int line, const std::vector<double>& numbers,
+                       const std::vector<std::string_view>& fields) {
   lines_.push_back(line);
   numbers_.insert(numbers_.end(), numbers.begin(), numbers.end());
+  for (std::size_t i = 0; i < fields.size(); ++i) digits_[i].add(fields[i]);
+}
+
+void CsvTable::Digits::add(std::string_view number) {
+  const std::size_t exponent_at = std::min(number.find_first_of("eE"), number.size());
+  std::string_view exponent = number.substr(std::min(exponent_at + 1, number.size()));
+  int point_shift = 0;
+  if (!exponent.empty() && exponent.front() == '+') exponent.remove_prefix(1);
+  std::from_chars(exponent.data(), exponent.data() + exponent.size(), point_shift);
+  int behind_point = 0;
+  int counted = 0;
+  bool point = false;
+  for (const char c : number.substr(0, exponent_at)) {
+    if (c == '.') point = true;
+    if (c < '0' || c > '9') continue;
+    if (point) ++behind_point;
+    if (counted > 0 || c != '0') ++counted;
+  }
+  decimals = std::max(decimals, behind_point - point_shift);
+  significant = std::max(significant, counted);
+}
+
+double CsvTable::last_digit(std::size_t row, std::size_t column) const {
+  const Digits& digits = digits_[column];
+  const double value = std::abs(numbers_[row * columns_.size() + column]);
+  int decimals = digits.decimals;
+  if (value > 0.0)
+    decimals = std::min(decimals, digits.significant - 1 - static_cast<int>(std::floor(std::log10(value))));
+  return std::pow(10.0, -decimals);
 }
 
 double CsvTable::number(std::size_t row, std::size_t column, const Bounds& bounds, const char* unit) const {

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,7 +24,7 @@ namespace swiftlet::runtime {
 class CsvTable {
  public:
   CsvTable(std::string file, std::vector<std::string> columns)
-      : file_(std::move(file)), columns_(std::move(columns)) {}
+      : file_(std::move(file)), columns_(std::move(columns)), digits_(columns_.size()) {}
 
   std::size_t row_count() const { return lines_.size(); }
   std::size_t column_count() const { return columns_.size(); }
@@ -37,6 +38,11 @@ class CsvTable {
     return {begin, begin + static_cast<std::ptrdiff_t>(columns_.size())};
   }
 
+  // The value of the last digit with which the number is written: 0.001 if the numbers of the column have up to three
+  // decimals. Where they have as many significant digits instead, it depends on the number: 0.01 for 123.45 beside
+  // 1.2345.
+  double last_digit(std::size_t row, std::size_t column) const;
+
   // Throws ConfigError for this row. columns names the affected columns; message reads like "is 3, must be
   // below 2".
   [[noreturn]] void fail(std::size_t row, const std::string& columns, const std::string& message) const;
@@ -46,13 +52,23 @@ class CsvTable {
   const std::vector<std::string>& columns() const { return columns_; }
   int line(std::size_t row) const { return lines_[row]; }  // from 1, which is the header
 
-  void add_row(int line, const std::vector<double>& numbers);
+  // fields: the numbers as they are written.
+  void add_row(int line, const std::vector<double>& numbers, const std::vector<std::string_view>& fields);
 
  private:
+  // The most digits of the numbers of a column.
+  struct Digits {
+    int decimals = std::numeric_limits<int>::min();
+    int significant = 1;
+
+    void add(std::string_view number);
+  };
+
   std::string file_;
   std::vector<std::string> columns_;
   std::vector<int> lines_;
   std::vector<double> numbers_;  // row by row
+  std::vector<Digits> digits_;   // of each column
 };
 
 struct CsvForm {

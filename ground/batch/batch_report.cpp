@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/csv_writer.hpp"
 #include "swiftlet/io/format.hpp"
 
@@ -30,7 +31,9 @@ std::string shell_word(const std::string& text) {
 std::string repeat_of(const FlyOptions& options) {
   const FlyOptions usual;
   std::string command = "swiftlet sim fly " + shell_word(options.mission);
-  if (options.frame) command += *options.frame == MissionFrame::kNed ? " --frame ned" : " --frame enu";
+  const FileOptions& reading = options.reading;
+  if (reading.frame) command += *reading.frame == MissionFrame::kNed ? " --frame ned" : " --frame enu";
+  if (reading.tolerance_m) command += " --tolerance " + runtime::exact(*reading.tolerance_m);
   const auto add = [&](const char* option, const std::string& value, const std::string& usual_value) {
     if (value != usual_value) command += std::string(" ") + option + " " + shell_word(value);
   };

@@ -14,7 +14,7 @@ void add_mission_options(runtime::CommandLine app, FlyOptions& options) {
          "QGroundControl .plan file")
       .type_name(runtime::kinds::kMission.value)
       .show_default();
-  add_frame_option(app, options.frame);
+  add_file_options(app, options.reading);
   app.add_option("--vehicle", options.vehicle, "vehicle file, or the name of one in config/vehicles")
       .type_name(runtime::kinds::kVehicle.value)
       .show_default();
@@ -52,6 +52,15 @@ void add_frame_option(runtime::CommandLine app, std::optional<MissionFrame>& fra
   app.add_choice<std::optional<MissionFrame>>(
       "--frame", frame, {{"ned", MissionFrame::kNed}, {"enu", MissionFrame::kEnu}},
       "frame of a CSV file that names none: ned (north, east, down) or enu (east, north, up)");
+}
+
+void add_file_options(runtime::CommandLine app, FileOptions& options) {
+  add_frame_option(app, options.frame);
+  app.add_option(
+         "--tolerance", options.tolerance_m,
+         "by how much the path may pass the samples of a CSV file by, m on each axis, and rad in yaw; "
+         "default: half of the last digit with which they are written")
+      .range(1e-9, 1.0);
 }
 
 void add_fly_options(runtime::CommandLine app, FlyOptions& options) {

@@ -10,12 +10,14 @@ namespace swiftlet::ground {
 
 // In all functions `options` must outlive the parsing.
 
-// Adds mission, --frame, --vehicle, --control, --simulation, --seed and --imu-rate.
+// Adds mission, the options of add_file_options(), --vehicle, --control, --simulation, --seed and --imu-rate.
 void add_mission_options(runtime::CommandLine app, FlyOptions& options);
 // Adds the options of add_mission_options(), --level, --record, --replace, --sensors and --json.
 void add_fly_options(runtime::CommandLine app, FlyOptions& options);
 // Adds --level: at which the vehicle is commanded.
 void add_level_option(runtime::CommandLine app, plant::ControlLevel& level);
+// Adds --frame and --tolerance: how a CSV file is read.
+void add_file_options(runtime::CommandLine app, FileOptions& options);
 // Adds --frame: the frame of a CSV file that does not name its own.
 void add_frame_option(runtime::CommandLine app, std::optional<MissionFrame>& frame);
 // Adds --dispersion.

@@ -13,7 +13,7 @@ namespace {
 
 struct Options {
   std::string file;
-  std::optional<MissionFrame> frame;
+  FileOptions reading;
   std::string vehicle = "kaylion";
   std::string control = "motor_lag";
   std::vector<double> start = {0.0, 0.0};
@@ -27,7 +27,7 @@ int run(const Options& options) {
   const auto settings =
       runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control));
   const MissionFile file = load_mission_file(
-      runtime::configuration_file(runtime::kinds::kMission, options.file), settings.limits, options.frame);
+      runtime::configuration_file(runtime::kinds::kMission, options.file), settings.limits, options.reading);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
   const MissionDryRun flown = dry_run(file.mission, settings, {options.start[0], options.start[1]});
@@ -55,7 +55,7 @@ Command add_mission_check_command(runtime::CommandLine mission) {
                  "mission file, or the name of one in config/missions; also CSV or QGroundControl .plan")
       .type_name(runtime::kinds::kMission.value)
       .required();
-  add_frame_option(app, options->frame);
+  add_file_options(app, options->reading);
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
       .type_name(runtime::kinds::kVehicle.value)
       .show_default();

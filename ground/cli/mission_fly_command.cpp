@@ -16,7 +16,7 @@ namespace {
 
 struct Options : CommandOptions {
   std::string file;
-  std::optional<MissionFrame> frame;
+  FileOptions reading;
   std::string control = "motor_lag";
   bool no_wait = false;
   bool link = false;
@@ -26,7 +26,7 @@ int fly_mission(const Options& options) {
   const auto settings =
       runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control));
   const MissionFile mission = load_mission_file(
-      runtime::configuration_file(runtime::kinds::kMission, options.file), settings.limits, options.frame);
+      runtime::configuration_file(runtime::kinds::kMission, options.file), settings.limits, options.reading);
   for (const std::string& assumption : mission.assumptions)
     std::fprintf(stderr, "%s: %s\n", mission.name.c_str(), assumption.c_str());
   Vehicle vehicle(options.network);
@@ -74,7 +74,7 @@ Command add_mission_fly_command(runtime::CommandLine mission) {
          "or a QGroundControl .plan file")
       .type_name(runtime::kinds::kMission.value)
       .required();
-  add_frame_option(app, options->frame);
+  add_file_options(app, options->reading);
   app.add_option("--control", options->control,
                  "control settings with the limits and the fence for the mission check")
       .type_name(runtime::kinds::kControl.value)

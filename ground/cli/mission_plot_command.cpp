@@ -12,7 +12,7 @@ namespace {
 
 struct Options {
   std::string file;
-  std::optional<MissionFrame> frame;
+  FileOptions reading;
   std::string control = "motor_lag";
   std::string output = "mission.png";
   std::vector<double> start = {0.0, 0.0};
@@ -22,7 +22,7 @@ int run(const Options& options) {
   const auto settings =
       runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control));
   const MissionFile file = load_mission_file(
-      runtime::configuration_file(runtime::kinds::kMission, options.file), settings.limits, options.frame);
+      runtime::configuration_file(runtime::kinds::kMission, options.file), settings.limits, options.reading);
   const MissionDryRun flown = dry_run(file.mission, settings, {options.start[0], options.start[1]});
   if (!flown.completed)
     std::fprintf(stderr, "swiftlet: mission %s: %s\n", file.name.c_str(), flown.reason.c_str());
@@ -48,7 +48,7 @@ Command add_mission_plot_command(runtime::CommandLine mission) {
                  "mission file, or the name of one in config/missions; also CSV or QGroundControl .plan")
       .type_name(runtime::kinds::kMission.value)
       .required();
-  add_frame_option(app, options->frame);
+  add_file_options(app, options->reading);
   app.add_option("-o,--out", options->output, "output file, PNG").show_default();
   app.add_option("--control", options->control,
                  "control settings file, or the name of one in config/control: its limits and fence apply")

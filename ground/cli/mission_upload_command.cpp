@@ -15,7 +15,7 @@ namespace {
 
 struct Options : CommandOptions {
   std::string file;
-  std::optional<MissionFrame> frame;
+  FileOptions reading;
   std::string control = "motor_lag";
 };
 
@@ -23,7 +23,7 @@ int upload(const Options& options) {
   const auto settings =
       runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control));
   const MissionFile file = load_mission_file(
-      runtime::configuration_file(runtime::kinds::kMission, options.file), settings.limits, options.frame);
+      runtime::configuration_file(runtime::kinds::kMission, options.file), settings.limits, options.reading);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
   Vehicle vehicle(options.network);
@@ -54,7 +54,7 @@ Command add_mission_upload_command(runtime::CommandLine mission) {
                  "mission file, or the name of one in config/missions; also CSV or QGroundControl .plan")
       .type_name(runtime::kinds::kMission.value)
       .required();
-  add_frame_option(app, options->frame);
+  add_file_options(app, options->reading);
   app.add_option("--control", options->control,
                  "control settings with the limits and the fence for the mission check")
       .type_name(runtime::kinds::kControl.value)

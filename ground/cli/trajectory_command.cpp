@@ -13,7 +13,7 @@ namespace {
 
 struct Options : RequestOptions {
   std::string file;
-  std::optional<MissionFrame> frame;
+  FileOptions reading;
   std::string control = "motor_lag";
 };
 
@@ -21,7 +21,7 @@ int send_trajectory(const Options& options) {
   const auto settings =
       runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control));
   const std::string path = runtime::configuration_file(runtime::kinds::kMission, options.file);
-  TrajectoryFile file = load_trajectory_file(path, settings.limits, options.frame);
+  TrajectoryFile file = load_trajectory_file(path, settings.limits, options.reading);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", std::filesystem::path(path).stem().c_str(), assumption.c_str());
   const control::Trajectory trajectory{0, std::move(file.segments)};
@@ -41,7 +41,7 @@ Command add_trajectory_command(runtime::CommandLine root) {
                  "trajectory or waypoints as CSV, or the name of such in config/missions")
       .type_name(runtime::kinds::kMission.value)
       .required();
-  add_frame_option(app, options->frame);
+  add_file_options(app, options->reading);
   app.add_option("--control", options->control,
                  "control settings with the limits and the fence for the check of the file")
       .type_name(runtime::kinds::kControl.value)

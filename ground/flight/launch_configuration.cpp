@@ -108,7 +108,7 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
   plan.seed = options.seed;
 
   plan.mission_file = runtime::configuration_file(runtime::kinds::kMission, options.mission);
-  plan.mission = load_mission_file(plan.mission_file, plan.control.limits, options.frame);
+  plan.mission = load_mission_file(plan.mission_file, plan.control.limits, options.reading);
   plan.start_ned = options.start_ned;
   displace(plan.mission.mission, options.start_ned, plan.control.limits);
   if (const control::Outcome outcome = control::check(plan.mission.mission, plan.control.limits);

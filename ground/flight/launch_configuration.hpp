@@ -35,7 +35,7 @@ struct FlyOptions {
   // Simulated time per real time. Unset: real time, or in lockstep as fast as possible.
   std::optional<double> speed;
   std::string mission = "square";
-  std::optional<MissionFrame> frame;  // of a CSV file as mission, if it names none
+  FileOptions reading;  // of a mission in a format of another project
   std::string vehicle = "kaylion";
   std::string control = "motor_lag";
   std::string simulation = "default";

@@ -60,11 +60,12 @@ std::vector<std::size_t> places(const std::vector<std::string>& header, const st
 
 struct Row {
   int line = 0;
-  std::vector<double> numbers;  // in the order of kColumns
+  std::vector<double> numbers;      // in the order of kColumns
+  std::vector<std::string> fields;  // as they are written
 
+  double speed() const { return std::hypot(numbers[kVx], numbers[kVx + 1], numbers[kVx + 2]); }
   bool is_between_takeoff_and_landing() const {
-    const double speed = std::hypot(numbers[kVx], numbers[kVx + 1], numbers[kVx + 2]);
-    return -numbers[kZ] >= kLeastHeight_m && speed <= kAtRest_m_s;
+    return -numbers[kZ] >= kLeastHeight_m && speed() <= kAtRest_m_s;
   }
 };
 
@@ -82,15 +83,23 @@ std::vector<Row> rows_of(std::istream& in, const std::vector<std::string>& heade
                         fmt::format("has {} fields, must have {}", fields.size(), header.size()));
     }
     if (fields[places[1]].empty()) continue;
-    Row row{line, {}};
+    Row row{line, {}, {}};
     for (const std::size_t place : places) {
       const auto number = runtime::parse_number(fields[place]);
       if (!number) throw ConfigError(file_name, line, header[place], "is not a finite number");
       row.numbers.push_back(*number);
+      row.fields.push_back(fields[place]);
     }
     rows.push_back(std::move(row));
   }
   return rows;
+}
+
+// The calmest row from one at rest on, as long as they are at rest: that is not the last of the climb before it.
+template <class Iterator>
+Iterator calmest(Iterator row, Iterator end) {
+  const auto moves = std::find_if(row, end, [](const Row& r) { return !r.is_between_takeoff_and_landing(); });
+  return std::min_element(row, moves, [](const Row& a, const Row& b) { return a.speed() < b.speed(); });
 }
 
 // The path begins and ends at rest: what is left of its motion in the record is that of the next moment.
@@ -115,8 +124,8 @@ runtime::CsvTable reference_of_flight(const std::string& text, const std::string
   const std::vector<std::size_t> at = places(header, file_name);
   std::vector<Row> rows = rows_of(in, header, at, file_name);
   const auto flown = [](const Row& row) { return row.is_between_takeoff_and_landing(); };
-  const auto begin = std::find_if(rows.begin(), rows.end(), flown);
-  const auto end = std::find_if(rows.rbegin(), rows.rend(), flown).base();
+  const auto begin = calmest(std::find_if(rows.begin(), rows.end(), flown), rows.end());
+  const auto end = calmest(std::find_if(rows.rbegin(), rows.rend(), flown), rows.rend()).base();
   if (begin == rows.end() || end - begin < 2) {
     throw ConfigError(file_name, 0, "",
                       fmt::format("has no reference between a take-off and a landing: it is never at rest at "
@@ -128,7 +137,9 @@ runtime::CsvTable reference_of_flight(const std::string& text, const std::string
   std::vector<std::string> columns;
   for (std::size_t i = 0; i < at.size(); ++i) columns.emplace_back(kColumns[i].header);
   runtime::CsvTable table(file_name, columns);
-  std::for_each(begin, end, [&](const Row& row) { table.add_row(row.line, row.numbers); });
+  std::for_each(begin, end, [&](const Row& row) {
+    table.add_row(row.line, row.numbers, {row.fields.begin(), row.fields.end()});
+  });
   return table;
 }
 

@@ -98,6 +98,11 @@ MissionFile read_mission(const ConfigNode& root, const control::Limits& settings
   return file;
 }
 
+void require_samples(const FileOptions& options, MissionFormat format, const std::string& path) {
+  if (options.tolerance_m && format != MissionFormat::kSampledCsv)
+    throw runtime::ConfigError(path, 0, "", "is no table of samples: --tolerance is for those");
+}
+
 Eigen::Vector3d start_of(const control::Mission& mission, const MissionItem& trajectory) {
   return control::evaluate(mission.segments[trajectory.first_segment], 0.0).position_ned;
 }
@@ -113,20 +118,21 @@ bool MissionFile::lands() const {
 }
 
 MissionFile load_mission_file(const std::string& path, const control::Limits& limits,
-                              std::optional<MissionFrame> frame) {
+                              const FileOptions& options) {
   const std::string text = runtime::read_text_file(path);
   const MissionFormat format = detect_format(text, path);
-  if (frame && (format == MissionFormat::kYaml || format == MissionFormat::kQGroundControlPlan))
+  if (options.frame && (format == MissionFormat::kYaml || format == MissionFormat::kQGroundControlPlan))
     throw runtime::ConfigError(path, 0, "", "names its frame itself: --frame is for CSV files");
+  require_samples(options, format, path);
   switch (format) {
     case MissionFormat::kYaml:
       return parse_mission_file(text, path, limits);
     case MissionFormat::kPolynomialCsv:
-      return parse_polynomial_csv(text, path, limits, frame);
+      return parse_polynomial_csv(text, path, limits, options);
     case MissionFormat::kSampledCsv:
-      return parse_sampled_csv(text, path, limits, frame);
+      return parse_sampled_csv(text, path, limits, options);
     case MissionFormat::kWaypointCsv:
-      return parse_waypoint_csv(text, path, limits, frame);
+      return parse_waypoint_csv(text, path, limits, options);
     case MissionFormat::kQGroundControlPlan:
       return parse_qgroundcontrol_plan(text, path, limits);
   }
@@ -134,19 +140,21 @@ MissionFile load_mission_file(const std::string& path, const control::Limits& li
 }
 
 TrajectoryFile load_trajectory_file(const std::string& path, const control::Limits& limits,
-                                    std::optional<MissionFrame> frame) {
+                                    const FileOptions& options) {
   const std::string text = runtime::read_text_file(path);
-  switch (detect_format(text, path)) {
+  const MissionFormat format = detect_format(text, path);
+  require_samples(options, format, path);
+  switch (format) {
     case MissionFormat::kPolynomialCsv:
-      return read_polynomial_csv(text, path, limits, frame);
+      return read_polynomial_csv(text, path, limits, options);
     case MissionFormat::kSampledCsv:
-      return read_sampled_csv(text, path, limits, frame);
+      return read_sampled_csv(text, path, limits, options);
     case MissionFormat::kWaypointCsv:
-      return read_waypoint_csv(text, path, limits, frame);
+      return read_waypoint_csv(text, path, limits, options);
     default:
       break;
   }
-  MissionFile file = load_mission_file(path, limits, frame);
+  MissionFile file = load_mission_file(path, limits, options);
   const auto is_trajectory = [](const control::MissionItem& item) {
     return item.kind == control::MissionItemKind::kTrajectory;
   };

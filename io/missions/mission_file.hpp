@@ -20,13 +20,12 @@
 // too (mission_format.hpp).
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "swiftlet/control/types/mission.hpp"
 #include "swiftlet/control/types/settings.hpp"
-#include "swiftlet/io/missions/mission_frame.hpp"
+#include "swiftlet/io/missions/file_options.hpp"
 
 namespace swiftlet::ground {
 
@@ -50,17 +49,17 @@ struct MissionFile {
 
 // Both throw runtime::ConfigError with file, line, key, value and limit for a violation of the format, the
 // limits or the fence. load_mission_file() reads any supported format, parse_mission_file() YAML only.
-// Trajectory files are searched in the folder of file_name. frame: that of a CSV file which does not name its
-// own, from the option --frame; refused for other formats, which always name it.
+// Trajectory files are searched in the folder of file_name. Options that do not apply to the format of the file
+// are refused.
 MissionFile load_mission_file(const std::string& path, const control::Limits& limits,
-                              std::optional<MissionFrame> frame = std::nullopt);
+                              const FileOptions& options = {});
 MissionFile parse_mission_file(const std::string& text, const std::string& file_name,
                                const control::Limits& limits);
 
 // Reads only the path: a CSV file of any format, or the trajectory of a mission that holds exactly one. Throws
 // runtime::ConfigError as load_mission_file() does.
 TrajectoryFile load_trajectory_file(const std::string& path, const control::Limits& limits,
-                                    std::optional<MissionFrame> frame = std::nullopt);
+                                    const FileOptions& options = {});
 
 // Returns the duration of the mission, s, from the ground at the origin. Moves take the items' speeds and the
 // limits of acceleration, jerk and yaw rate.

@@ -53,18 +53,18 @@ MissionFormat detect_format(std::string_view text, const std::string& file_name)
 }
 
 MissionFile parse_polynomial_csv(const std::string& text, const std::string& file_name,
-                                 const control::Limits& limits, std::optional<MissionFrame> frame) {
-  return whole_flight(file_name, read_polynomial_csv(text, file_name, limits, frame), limits);
+                                 const control::Limits& limits, const FileOptions& options) {
+  return whole_flight(file_name, read_polynomial_csv(text, file_name, limits, options), limits);
 }
 
 MissionFile parse_sampled_csv(const std::string& text, const std::string& file_name,
-                              const control::Limits& limits, std::optional<MissionFrame> frame) {
-  return whole_flight(file_name, read_sampled_csv(text, file_name, limits, frame), limits);
+                              const control::Limits& limits, const FileOptions& options) {
+  return whole_flight(file_name, read_sampled_csv(text, file_name, limits, options), limits);
 }
 
 MissionFile parse_waypoint_csv(const std::string& text, const std::string& file_name,
-                               const control::Limits& limits, std::optional<MissionFrame> frame) {
-  return whole_flight(file_name, read_waypoint_csv(text, file_name, limits, frame), limits);
+                               const control::Limits& limits, const FileOptions& options) {
+  return whole_flight(file_name, read_waypoint_csv(text, file_name, limits, options), limits);
 }
 
 }  // namespace swiftlet::ground

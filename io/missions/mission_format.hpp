@@ -11,11 +11,11 @@
 // header name no frame: they are in ENU, m, rad and s, unless --frame names another.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 
 #include "swiftlet/control/types/polynomial.hpp"
+#include "swiftlet/io/missions/file_options.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 
 namespace swiftlet::ground {
@@ -29,25 +29,19 @@ MissionFormat detect_format(std::string_view text, const std::string& file_name)
 // All functions below throw runtime::ConfigError with file, line, column, value and limit for a violation of
 // the format, the limits or the fence.
 TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& file_name,
-                                   const control::Limits& limits,
-                                   std::optional<MissionFrame> frame = std::nullopt);
+                                   const control::Limits& limits, const FileOptions& options = {});
 TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file_name,
-                                const control::Limits& limits,
-                                std::optional<MissionFrame> frame = std::nullopt);
+                                const control::Limits& limits, const FileOptions& options = {});
 TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& file_name,
-                                 const control::Limits& limits,
-                                 std::optional<MissionFrame> frame = std::nullopt);
+                                 const control::Limits& limits, const FileOptions& options = {});
 
 // Complete flights: take-off, the path, landing.
 MissionFile parse_polynomial_csv(const std::string& text, const std::string& file_name,
-                                 const control::Limits& limits,
-                                 std::optional<MissionFrame> frame = std::nullopt);
+                                 const control::Limits& limits, const FileOptions& options = {});
 MissionFile parse_sampled_csv(const std::string& text, const std::string& file_name,
-                              const control::Limits& limits,
-                              std::optional<MissionFrame> frame = std::nullopt);
+                              const control::Limits& limits, const FileOptions& options = {});
 MissionFile parse_waypoint_csv(const std::string& text, const std::string& file_name,
-                               const control::Limits& limits,
-                               std::optional<MissionFrame> frame = std::nullopt);
+                               const control::Limits& limits, const FileOptions& options = {});
 MissionFile parse_qgroundcontrol_plan(const std::string& text, const std::string& file_name,
                                       const control::Limits& limits);
 

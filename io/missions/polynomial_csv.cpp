@@ -29,7 +29,7 @@ control::PolynomialSegment read(const runtime::CsvTable& table, std::size_t row)
 }  // namespace
 
 TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& file_name,
-                                   const control::Limits& limits, std::optional<MissionFrame> frame) {
+                                   const control::Limits& limits, const FileOptions& options) {
   const runtime::CsvTable table = runtime::parse_csv(text, file_name, columns(), 1, {true, true});
   if (table.row_count() > control::kMaxTrajectorySegments) {
     table.fail(control::kMaxTrajectorySegments, "duration",
@@ -37,7 +37,7 @@ TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& f
                    std::to_string(control::kMaxTrajectorySegments) + " fit");
   }
   std::vector<control::PolynomialSegment> segments;
-  const bool enu = frame != MissionFrame::kNed;
+  const bool enu = options.frame != MissionFrame::kNed;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     const control::PolynomialSegment segment = read(table, row);
     segments.push_back(enu ? ned_segment(segment) : segment);

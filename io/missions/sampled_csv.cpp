@@ -1,29 +1,38 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/core.h>
 
-#include "swiftlet/control/planning/spline.hpp"
+#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/control/planning/smoothing_spline.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/flight_csv.hpp"
 #include "swiftlet/io/missions/flight_table.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/missions/motion_columns.hpp"
+#include "swiftlet/io/missions/sample_times.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
-using control::PlaceDerivatives;
 using control::PositionYaw;
+using control::SplineSample;
 
-constexpr double kLeastStep_s = 1e-4;
-constexpr double kLongestStep_s = 3600.0;
+// Half of the last digit counts within these bounds: numbers such as 1 or 0.5 are meant exactly, and no vehicle
+// tells a tenth of a micrometre.
+constexpr double kLeastTolerance_m = 1e-7, kMostTolerance_m = 5e-4;
+constexpr double kLeastTolerance_rad = 1e-6, kMostTolerance_rad = 1e-2;
+// Of velocities and accelerations, which often were differenced from the positions.
+constexpr double kLeastTolerance_m_s = 1e-3, kLeastTolerance_m_s2 = 1e-2;
+// Positions at this rate determine the motion. Below, the path also follows velocities and accelerations.
+constexpr double kSlowSamples_hz = 20.0;
 
 // What a table gives besides times and positions.
 struct Given {
   bool velocity = false;
-  bool acceleration = false;  // only with velocities
+  bool acceleration = false;
   bool yaw = false;
 };
 
@@ -40,34 +49,49 @@ Given given_in(const MotionColumns& columns, const std::string& file_name) {
                    {Motion::kAx, Motion::kAy, Motion::kAz},
                    {Motion::kYaw},
                    {Motion::kYawRate}});
-  const bool velocity = columns.has(Motion::kVx);
-  return {velocity, velocity && columns.has(Motion::kAx), columns.has(Motion::kYaw)};
+  return {columns.has(Motion::kVx), columns.has(Motion::kAx), columns.has(Motion::kYaw)};
 }
 
 // In NED, one entry per row.
 struct Samples {
-  std::vector<double> time_s;
+  SampleTimes times;
   std::vector<PositionYaw> places;
-  std::vector<PlaceDerivatives> derivatives;  // velocity and acceleration, as far as they are known
+  std::vector<PositionYaw> tolerances;         // of the places
+  std::vector<Eigen::Vector3d> velocities;     // if given
+  std::vector<Eigen::Vector3d> accelerations;  // if given
+
+  std::size_t size() const { return places.size(); }
 };
 
-// The time of a row, s.
-double time_of(const runtime::CsvTable& table, std::size_t row, const MotionColumns& columns,
-               const Samples& before) {
-  const std::size_t column = *columns.index(Motion::kT);
-  const double factor = columns.factor(column);
-  if (row == 0) return factor * table.number(row, column);
-  const double last_s = before.time_s.back();
-  return factor *
-         table.number(row, column,
-                      runtime::between((last_s + kLeastStep_s) / factor, (last_s + kLongestStep_s) / factor),
-                      factor == 1.0 ? "s" : "");
+// Half of the last digit of three columns of a row, in NED and SI units.
+Eigen::Vector3d rounding_of(const runtime::CsvTable& table, std::size_t row, const MotionColumns& columns,
+                            Motion x) {
+  Eigen::Vector3d rounding;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t column = *columns.index(static_cast<Motion>(static_cast<int>(x) + axis));
+    rounding[axis] = 0.5 * columns.factor(column) * table.last_digit(row, column);
+  }
+  return ned_from(columns.frame(), rounding).cwiseAbs();
 }
 
-Samples read(const runtime::CsvTable& table, const MotionColumns& columns, const Given& given) {
+PositionYaw tolerance_of(const runtime::CsvTable& table, std::size_t row, const MotionColumns& columns,
+                         const std::optional<double>& tolerance_m) {
+  if (tolerance_m) return PositionYaw::Constant(*tolerance_m);
+  PositionYaw tolerance = PositionYaw::Constant(kLeastTolerance_rad);
+  tolerance.head<3>() =
+      rounding_of(table, row, columns, Motion::kX).cwiseMax(kLeastTolerance_m).cwiseMin(kMostTolerance_m);
+  if (const auto yaw = columns.index(Motion::kYaw))
+    tolerance[3] = std::clamp(0.5 * columns.factor(*yaw) * table.last_digit(row, *yaw), kLeastTolerance_rad,
+                              kMostTolerance_rad);
+  return tolerance;
+}
+
+Samples read(const runtime::CsvTable& table, const MotionColumns& columns, const Given& given,
+             const std::optional<double>& tolerance_m) {
   Samples samples;
+  const std::size_t t = *columns.index(Motion::kT);
+  samples.times = sample_times(table, t, columns.factor(t));
   for (std::size_t row = 0; row < table.row_count(); ++row) {
-    samples.time_s.push_back(time_of(table, row, columns, samples));
     const std::vector<double> numbers = table.row(row);
     PositionYaw place;
     place.head<3>() = columns.ned(numbers, Motion::kX);
@@ -77,110 +101,225 @@ Samples read(const runtime::CsvTable& table, const MotionColumns& columns, const
       place[3] = before + std::remainder(place[3] - before, 2.0 * M_PI);
     }
     samples.places.push_back(place);
-    PlaceDerivatives derivatives = PlaceDerivatives::Zero();
-    if (given.velocity) derivatives.col(0).head<3>() = columns.ned(numbers, Motion::kVx);
-    if (given.acceleration) derivatives.col(1).head<3>() = columns.ned(numbers, Motion::kAx);
-    samples.derivatives.push_back(derivatives);
+    samples.tolerances.push_back(tolerance_of(table, row, columns, tolerance_m));
+    if (given.velocity) samples.velocities.push_back(columns.ned(numbers, Motion::kVx));
+    if (given.acceleration) samples.accelerations.push_back(columns.ned(numbers, Motion::kAx));
   }
   return samples;
 }
 
-// Fills in derivatives that the file does not give by central differences over the neighbouring rows; they
-// stay zero at both ends.
-void difference(Samples& samples, const Given& given) {
-  const std::size_t last = samples.places.size() - 1;
-  for (std::size_t i = 1; i < last; ++i) {
-    const double span_s = samples.time_s[i + 1] - samples.time_s[i - 1];
-    PlaceDerivatives& here = samples.derivatives[i];
-    if (!given.acceleration) {
-      here.col(1).head<3>() =
-          (samples.derivatives[i + 1].col(0) - samples.derivatives[i - 1].col(0)).head<3>() / span_s;
-    }
-    here(3, 0) = (samples.places[i + 1][3] - samples.places[i - 1][3]) / span_s;
+// Stamps that are rounded and not even move each place along the path.
+void allow_for_rounded_stamps(Samples& samples) {
+  if (samples.times.rounding_s <= 0.0) return;
+  const std::vector<double>& time_s = samples.times.time_s;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const std::size_t before = i > 0 ? i - 1 : 0;
+    const std::size_t after = std::min(i + 1, samples.size() - 1);
+    const PositionYaw rate =
+        (samples.places[after] - samples.places[before]) / (time_s[after] - time_s[before]);
+    samples.tolerances[i] += samples.times.rounding_s * rate.cwiseAbs();
   }
 }
 
-// Returns the rows at which segments begin or end: all rows, or evenly spaced ones if there are too many.
-std::vector<std::size_t> knots_of(std::size_t rows) {
-  const std::size_t most = control::kMaxTrajectorySegments;
-  const std::size_t segments = std::min(rows - 1, most);
-  std::vector<std::size_t> knots;
-  for (std::size_t i = 0; i <= segments; ++i) knots.push_back(i * (rows - 1) / segments);
-  return knots;
+// Refuses places that no vehicle reaches in time, by their row.
+void require_reachable(const runtime::CsvTable& table, const Samples& samples,
+                       const control::Limits& limits) {
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const double step_s = samples.times.time_s[i] - samples.times.time_s[i - 1];
+    const double step_m = (samples.places[i] - samples.places[i - 1]).head<3>().norm();
+    const double spare_m = (samples.tolerances[i] + samples.tolerances[i - 1]).head<3>().norm();
+    if (step_m - spare_m <= limits.max_speed * step_s) continue;
+    table.fail(
+        i, "",
+        fmt::format("is {:.3f} m from the row before, {:.4g} s earlier: {:.2f} m/s, the limit is {:.2f} "
+                    "m/s",
+                    step_m, step_s, step_m / step_s, limits.max_speed));
+  }
 }
 
-std::vector<control::PolynomialSegment> through(const Samples& samples, const std::vector<std::size_t>& knots,
-                                                bool known_derivatives) {
-  std::vector<PositionYaw> places;
-  std::vector<double> durations;
-  for (std::size_t i = 0; i < knots.size(); ++i) {
-    places.push_back(samples.places[knots[i]]);
-    if (i > 0) durations.push_back(samples.time_s[knots[i]] - samples.time_s[knots[i - 1]]);
+std::vector<SplineSample> spline_samples(const runtime::CsvTable& table, const MotionColumns& columns,
+                                         const Samples& samples, bool with_derivatives, double widened) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  std::vector<SplineSample> out;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double t_s = samples.times.time_s[i];
+    const auto add = [&](int derivative, const Eigen::Vector3d& value, Motion x, double least) {
+      SplineSample sample{t_s, derivative, PositionYaw::Zero(), PositionYaw::Constant(kNone)};
+      sample.value.head<3>() = value;
+      sample.tolerance.head<3>() = rounding_of(table, i, columns, x).cwiseMax(least);
+      out.push_back(sample);
+    };
+    const bool last = i + 1 == samples.size();
+    if (with_derivatives && !samples.accelerations.empty() && last)
+      add(2, samples.accelerations[i], Motion::kAx, kLeastTolerance_m_s2);
+    if (with_derivatives && !samples.velocities.empty() && last)
+      add(1, samples.velocities[i], Motion::kVx, kLeastTolerance_m_s);
+    out.push_back({t_s, 0, samples.places[i], widened * samples.tolerances[i]});
+    if (with_derivatives && !samples.velocities.empty() && !last)
+      add(1, samples.velocities[i], Motion::kVx, kLeastTolerance_m_s);
+    if (with_derivatives && !samples.accelerations.empty() && !last)
+      add(2, samples.accelerations[i], Motion::kAx, kLeastTolerance_m_s2);
   }
-  if (!known_derivatives) return control::spline(control::Smoothness::kMinimumSnap, places, durations);
+  return out;
+}
+
+// The path, and by how much its tolerances were widened for it to have no more segments than fit.
+struct Fit {
   std::vector<control::PolynomialSegment> segments;
-  for (std::size_t i = 0; i < durations.size(); ++i) {
-    segments.push_back(control::spline(control::Smoothness::kMinimumJerk, {places[i], places[i + 1]},
-                                       {durations[i]}, samples.derivatives[knots[i]],
-                                       samples.derivatives[knots[i + 1]])
-                           .front());
+  double widened = 1.0;
+};
+
+Fit fit(const runtime::CsvTable& table, const MotionColumns& columns, const Samples& samples,
+        bool with_derivatives, bool may_widen) {
+  constexpr double kAtRest_m_s = control::kJoin_m_s;
+  const bool rests = samples.velocities.empty() || samples.velocities.back().norm() <= kAtRest_m_s;
+  double least_m = kMostTolerance_m;
+  for (const PositionYaw& tolerance : samples.tolerances)
+    least_m = std::min(least_m, tolerance.head<3>().minCoeff());
+  Fit out;
+  while (true) {
+    control::SmoothedPath path =
+        control::smoothing_spline(spline_samples(table, columns, samples, with_derivatives, out.widened),
+                                  rests, control::kMaxTrajectorySegments);
+    if (path.tolerance_use <= control::kSmoothingPrecision) {
+      out.segments = std::move(path.segments);
+      return out;
+    }
+    const double needed = out.widened * std::max(2.0, path.tolerance_use);
+    if (!may_widen || needed * least_m > kMostTolerance_m) {
+      throw runtime::ConfigError(
+          table.file(), 0, "",
+          fmt::format(
+              "no path of {} segments passes all samples within {:.2g} m: the samples are noisy, or too "
+              "many for one path; --tolerance {:.1g} lets it pass by further",
+              control::kMaxTrajectorySegments, out.widened * least_m, 2.0 * needed * least_m));
+    }
+    out.widened = needed;
   }
-  return segments;
 }
 
-double greatest_deviation(const Samples& samples, const std::vector<std::size_t>& knots,
-                          const std::vector<control::PolynomialSegment>& segments) {
-  double greatest = 0.0;
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    for (std::size_t row = knots[i]; row <= knots[i + 1]; ++row) {
-      const double t_s = samples.time_s[row] - samples.time_s[knots[i]];
-      const Eigen::Vector3d there = control::evaluate(segments[i], t_s).position_ned;
-      greatest = std::max(greatest, (there - samples.places[row].head<3>()).norm());
-    }
+// What the path makes of the samples.
+struct Comparison {
+  double place_m = 0.0;       // greatest distance
+  double velocity_m_s = 0.0;  // greatest difference from the given one
+  double acceleration_m_s2 = 0.0;
+  std::size_t velocity_row = 0, acceleration_row = 0;
+};
+
+Comparison compare(const Samples& samples, const std::vector<control::PolynomialSegment>& segments) {
+  Comparison out;
+  std::size_t segment = 0;
+  double begin_s = 0.0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double t_s = samples.times.time_s[i];
+    while (segment + 1 < segments.size() && t_s > begin_s + segments[segment].duration_s)
+      begin_s += segments[segment++].duration_s;
+    const control::Reference at = control::evaluate(segments[segment], t_s - begin_s);
+    out.place_m = std::max(out.place_m, (at.position_ned - samples.places[i].head<3>()).norm());
+    const auto note = [i](const std::vector<Eigen::Vector3d>& given, const Eigen::Vector3d& value,
+                          double& greatest, std::size_t& row) {
+      if (given.empty() || (value - given[i]).norm() <= greatest) return;
+      greatest = (value - given[i]).norm();
+      row = i;
+    };
+    note(samples.velocities, at.velocity_ned, out.velocity_m_s, out.velocity_row);
+    note(samples.accelerations, at.acceleration_ned, out.acceleration_m_s2, out.acceleration_row);
   }
-  return greatest;
+  return out;
+}
+
+std::string length_text(double length_m) {
+  return length_m < 1e-4 ? fmt::format("{:.2f} um", length_m * 1e6)
+                         : fmt::format("{:.2f} mm", length_m * 1e3);
+}
+
+// The columns that the path is made of.
+std::string columns_used(const MotionColumns& columns, bool with_derivatives) {
+  std::string text;
+  for (const Motion column : columns.all()) {
+    const bool derivative = column >= Motion::kVx && column <= Motion::kAz;
+    if (column == Motion::kYawRate || (derivative && !with_derivatives)) continue;
+    text += (text.empty() ? "" : ", ") + motion_name(header_of(column));
+  }
+  return text;
+}
+
+void say(const runtime::CsvTable& table, const MotionColumns& columns, const Samples& samples, const Fit& fit,
+         bool with_derivatives, std::vector<std::string>& assumptions) {
+  const Comparison comparison = compare(samples, fit.segments);
+  assumptions.insert(assumptions.end(), samples.times.remarks.begin(), samples.times.remarks.end());
+  assumptions.push_back(fmt::format("{} samples at {} became {} segments; largest deviation {}",
+                                    samples.size(), samples.times.rate(), fit.segments.size(),
+                                    length_text(comparison.place_m)));
+  if (fit.widened > 1.0)
+    assumptions.push_back(
+        fmt::format("half of the last digit would need more than {} segments: the deviation is up to "
+                    "{:.3g} times that",
+                    control::kMaxTrajectorySegments, fit.widened));
+  assumptions.push_back("the path is made of the columns " + columns_used(columns, with_derivatives));
+  if (samples.velocities.empty() && samples.accelerations.empty()) return;
+  std::string text;
+  if (!samples.velocities.empty())
+    text += fmt::format("its velocity differs from vx, vy, vz by up to {:.3g} m/s (line {})",
+                        comparison.velocity_m_s, table.line(comparison.velocity_row));
+  if (!samples.accelerations.empty())
+    text += fmt::format("{}its acceleration differs from ax, ay, az by up to {:.3g} m/s^2 (line {})",
+                        text.empty() ? "" : ", ", comparison.acceleration_m_s2,
+                        table.line(comparison.acceleration_row));
+  assumptions.push_back(text);
+}
+
+// The row of the last sample at or before the start of a segment.
+std::size_t row_of(const Samples& samples, const std::vector<control::PolynomialSegment>& segments,
+                   std::size_t segment) {
+  double begin_s = 0.0;
+  for (std::size_t i = 0; i < segment; ++i) begin_s += segments[i].duration_s;
+  const auto after =
+      std::upper_bound(samples.times.time_s.begin(), samples.times.time_s.end(), begin_s + 1e-9);
+  return static_cast<std::size_t>(after - samples.times.time_s.begin()) - 1;
 }
 
 }  // namespace
 
 TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file_name,
-                                const control::Limits& limits, std::optional<MissionFrame> frame) {
+                                const control::Limits& limits, const FileOptions& options) {
   std::vector<std::string> header = table_header(text, file_name);
   std::optional<runtime::CsvTable> recorded;
   if (runtime::is_flight_csv(header)) {
     recorded = reference_of_flight(text, file_name);
     header = recorded->columns();
   }
-  const MotionColumns columns(header, file_name, frame);
+  const MotionColumns columns(header, file_name, options.frame);
   const Given given = given_in(columns, file_name);
   const runtime::CsvTable table =
       recorded ? *recorded : runtime::parse_csv(text, file_name, header, 2, {true, true});
-  Samples samples = read(table, columns, given);
+  Samples samples = read(table, columns, given, options.tolerance_m);
   std::vector<std::string> assumptions;
   if (recorded) assumptions.push_back(extent_of(table));
   if (const auto assumption = columns.assumption("a sampled trajectory")) assumptions.push_back(*assumption);
   if (!given.yaw) assumptions.emplace_back("the file has no yaw: the vehicle faces north");
   if (columns.has(Motion::kYawRate))
     assumptions.emplace_back("yaw_rate is not used: the rate follows from the yaw");
-  if (columns.has(Motion::kAx) && !given.acceleration)
-    assumptions.emplace_back("accelerations are not used, because the file has no velocities");
   Heights heights;
   for (const PositionYaw& place : samples.places) heights.add(place.z());
   const double raise_m = raise_by(heights, columns.frame(), file_name, assumptions);
   for (PositionYaw& place : samples.places) place.z() -= raise_m;
 
-  if (given.velocity) difference(samples, given);
-  const std::vector<std::size_t> knots = knots_of(table.row_count());
-  std::vector<control::PolynomialSegment> segments = through(samples, knots, given.velocity);
-  assumptions.push_back(fmt::format("{} samples became {} segments {}; the largest deviation is {:.1f} mm",
-                                    table.row_count(), segments.size(),
-                                    given.acceleration ? "with their velocities and accelerations"
-                                    : given.velocity   ? "with their velocities"
-                                                       : "of minimum snap, at rest at both ends",
-                                    greatest_deviation(samples, knots, segments) * 1e3));
-  return checked(
-      {std::move(segments), std::move(assumptions)}, limits,
-      [&](std::size_t segment, const std::string& fault) { table.fail(knots[segment], "", fault); });
+  if (given.velocity && samples.velocities.front().norm() > control::kJoin_m_s)
+    table.fail(
+        0, "",
+        fmt::format("the path starts at {:.2f} m/s, must start at rest", samples.velocities.front().norm()));
+  require_reachable(table, samples, limits);
+  allow_for_rounded_stamps(samples);
+  const bool with_derivatives =
+      (given.velocity || given.acceleration) && 1.0 / samples.times.step_s < kSlowSamples_hz;
+  Fit path = fit(table, columns, samples, with_derivatives, !options.tolerance_m);
+  say(table, columns, samples, path, with_derivatives, assumptions);
+  const std::vector<control::PolynomialSegment> segments = path.segments;
+  return checked({std::move(path.segments), std::move(assumptions)}, limits,
+                 [&](std::size_t segment, const std::string& fault) {
+                   table.fail(row_of(samples, segments, segment), "", fault);
+                 });
 }
 
 }  // namespace swiftlet::ground

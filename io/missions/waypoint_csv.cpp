@@ -53,13 +53,13 @@ std::size_t row_of(const control::PlannedPath& planned, std::size_t segment) {
 }  // namespace
 
 TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& file_name,
-                                 const control::Limits& limits, std::optional<MissionFrame> frame) {
+                                 const control::Limits& limits, const FileOptions& options) {
   std::vector<std::string> first = runtime::first_csv_line(text, file_name);
   if (first.empty()) first.emplace_back();  // parse_csv() refuses the empty file
   const bool has_header = !first.front().empty() && !runtime::is_number(first.front());
   if (first.size() > 1 && first.back().empty()) first.pop_back();
   const std::vector<std::string> header = columns_of(first, has_header);
-  const MotionColumns columns(header, file_name, frame);
+  const MotionColumns columns(header, file_name, options.frame);
   require_columns(columns, file_name, "a list of waypoints", {Motion::kX, Motion::kY, Motion::kZ},
                   {{Motion::kYaw}});
   const runtime::CsvTable table = runtime::parse_csv(text, file_name, header, 2, {has_header, true});

@@ -87,6 +87,18 @@ TEST(Csv, ChecksBounds) {
             "f.csv:3: t: is 1, must be below 0.5");
 }
 
+TEST(Csv, KnowsTheLastDigitOfANumber) {
+  const CsvTable decimals = read("t,a\n0,0.5\n1.25,12.345\n");
+  EXPECT_NEAR(decimals.last_digit(0, 0), 0.01, 1e-15);
+  EXPECT_NEAR(decimals.last_digit(0, 1), 0.001, 1e-15);
+  EXPECT_NEAR(decimals.last_digit(1, 1), 0.001, 1e-15);
+  const CsvTable significant = read("t,a\n0.12345,1.2345e-3\n123.45,-1.2345e+02\n0,0\n");
+  for (const std::size_t column : {0U, 1U}) EXPECT_NEAR(significant.last_digit(1, column), 0.01, 1e-12);
+  EXPECT_NEAR(significant.last_digit(0, 0), 1e-5, 1e-15);
+  EXPECT_NEAR(significant.last_digit(0, 1), 1e-7, 1e-15);
+  EXPECT_NEAR(read("t,a\n1000,20\n3000,5\n").last_digit(0, 0), 1.0, 1e-12);
+}
+
 TEST(Csv, NamesAMissingFile) {
   EXPECT_NE(refusal([] { load_csv("/nowhere/f.csv", {"t"}); }).find("/nowhere/f.csv: "), std::string::npos);
 }

@@ -76,10 +76,12 @@ TEST(LoadTrajectoryFile, AddsNeitherTakeOffNorLanding) {
 
 TEST(CsvFrame, OfAFileThatNamesNoneIsThatOfTheOption) {
   const control::Limits limits;
-  const auto ned = MissionFrame::kNed;
-  EXPECT_EQ(
-      at_path_start(parse_sampled_csv("t,x,y,z\n0,1,2,-1\n4,1,2,-1\n", "s.csv", limits, ned)).position_ned,
-      Vector3d(1, 2, -1));
+  const FileOptions ned = {MissionFrame::kNed, {}};
+  EXPECT_LT(
+      (at_path_start(parse_sampled_csv("t,x,y,z\n0,1,2,-1\n4,1,2,-1\n", "s.csv", limits, ned)).position_ned -
+       Vector3d(1, 2, -1))
+          .norm(),
+      1e-9);
   EXPECT_EQ(at_path_start(parse_waypoint_csv("1,2,-1\n1,1,-1\n", "w.csv", limits, ned)).position_ned,
             Vector3d(1, 2, -1));
   EXPECT_EQ(at_path_start(parse_waypoint_csv("x_ned [cm],y_ned [cm],z_ned [cm]\n100,200,-100\n100,100,-100\n",
