@@ -1,0 +1,308 @@
+// The writers and readers of a Node. A source file that includes this header and instantiates Node::publish() and
+// Node::subscribe() for message types makes these types topics: node.cpp does for those of Swiftlet.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+
+#include "swiftlet/services/dds/checked_type_support.hpp"
+#include "swiftlet/services/dds/fast_dds.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/dds/participant.hpp"
+#include "swiftlet/services/dds/participant_session.hpp"
+#include "swiftlet/services/dds/qos/duration.hpp"
+#include "swiftlet/services/dds/qos/profiles.hpp"
+#include "swiftlet/services/dds/single_source.hpp"
+#include "swiftlet/services/runtime/log_label.hpp"
+
+namespace swiftlet::comms {
+
+// The generated type support of a message: specialize it for each.
+template <class T>
+struct PubSubTypeOf;
+
+namespace detail {
+
+namespace dds = eprosima::fastdds::dds;
+
+// A process as the sender of samples. Fast DDS begins the identifiers of all participants of a process, also
+// of one that rejoined the domain, with the same octets.
+struct SenderId {
+  static constexpr std::size_t kProcessOctets = 8;
+
+  rtps::GuidPrefix_t participant;
+
+  bool operator==(const SenderId& other) const {
+    return std::equal(participant.value, participant.value + kProcessOctets, other.participant.value);
+  }
+};
+
+// FNV-1a.
+inline std::uint64_t number_of(const rtps::GUID_t& guid) {
+  std::uint64_t number = 0xcbf29ce484222325U;
+  const auto add = [&](rtps::octet octet) { number = (number ^ octet) * 0x100000001b3U; };
+  for (const rtps::octet octet : guid.guidPrefix.value) add(octet);
+  for (const rtps::octet octet : guid.entityId.value) add(octet);
+  return number;
+}
+
+// As names in ROS 2: one that begins with / is absolute, any other is in the namespace of the vehicle.
+inline std::string wire_name(const std::string& vehicle, const std::string& name) {
+  return name.front() == '/' ? "rt" + name : "rt/" + vehicle + "/" + name;
+}
+
+template <class T>
+dds::Topic* topic_in(ParticipantSession& session, const std::string& vehicle, const char* name) {
+  return session.topic(wire_name(vehicle, name),
+                       dds::TypeSupport(new CheckedTypeSupport<typename PubSubTypeOf<T>::type>()));
+}
+
+// Endpoints share the participant, so that they may be destroyed in any order.
+template <class Impl, class T>
+class DdsWriter final : public Writer, private Endpoint {
+ public:
+  DdsWriter(std::shared_ptr<Impl> node, std::string vehicle, const Topic<T>& topic, std::uint32_t strength)
+      : node_(std::move(node)), vehicle_(std::move(vehicle)), topic_(topic), strength_(strength) {
+    node_->add(this);
+  }
+  ~DdsWriter() override { node_->remove(this); }
+  DdsWriter(const DdsWriter&) = delete;
+  DdsWriter& operator=(const DdsWriter&) = delete;
+
+  bool write(const void* sample) override {
+    if (is_latched(topic_.qos)) {
+      const std::lock_guard<std::mutex> lock(last_mutex_);
+      last_ = *static_cast<const T*>(sample);
+    }
+    const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
+    if (!writer) return false;
+    if (comms::write(*writer, sample)) return true;
+    // A full history of requests has room again once they are acknowledged. write() does not always wait for
+    // that.
+    return topic_.qos == Qos::kRequest && wait_until_received(kReliableWriteTimeout) &&
+           comms::write(*writer, sample);
+  }
+
+  bool wait_until_received(std::chrono::milliseconds timeout) override {
+    const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
+    return writer && succeeded(writer->wait_for_acknowledgments(duration(timeout)));
+  }
+
+  void set_strength(std::uint32_t strength) override {
+    strength_ = strength;
+    const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
+    if (!writer) return;
+    dds::DataWriterQos qos = writer->get_qos();
+    qos.ownership_strength().value = strength;
+    writer->set_qos(qos);
+  }
+
+  int matched() const override { return readers().current_count; }
+  std::uint64_t changes() const override {
+    const dds::PublicationMatchedStatus now = readers();
+    return changes_before_ + static_cast<std::uint64_t>(2 * now.total_count - now.current_count);
+  }
+
+ private:
+  void join(ParticipantSession& session) override {
+    dds::DataWriter* const writer = session.publisher->create_datawriter(
+        topic_in<T>(session, vehicle_, topic_.name),
+        writer_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), strength_, node_->settings.transport));
+    if (writer == nullptr) throw std::runtime_error(std::string("cannot publish ") + topic_.name);
+    const std::lock_guard<std::mutex> lock(last_mutex_);
+    if (last_) comms::write(*writer, &*last_);
+    writer_.give(writer);
+  }
+  void leave(ParticipantSession& session) override {
+    dds::DataWriter* const writer = writer_.take();
+    if (writer == nullptr) return;
+    dds::PublicationMatchedStatus last;
+    writer->get_publication_matched_status(last);
+    changes_before_ += 2 * static_cast<std::uint64_t>(last.total_count);  // all readers unmatched
+    session.publisher->delete_datawriter(writer);
+  }
+  dds::PublicationMatchedStatus readers() const {
+    const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
+    dds::PublicationMatchedStatus status;
+    if (writer) writer->get_publication_matched_status(status);
+    return status;
+  }
+
+  std::shared_ptr<Impl> node_;
+  const std::string vehicle_;
+  const Topic<T> topic_;
+  std::atomic<std::uint32_t> strength_;
+  GuardedPointer<dds::DataWriter> writer_;
+  std::atomic<std::uint64_t> changes_before_{0};  // in ended sessions
+  std::mutex last_mutex_;
+  std::optional<T> last_;  // of a latched topic, sent again after rejoining
+};
+
+template <class Impl, class T>
+class DdsReader final : public Reader, private Endpoint, private dds::DataReaderListener {
+ public:
+  using Callback = std::function<void(const T&)>;
+  using RawCallback = std::function<void(const RawSample&)>;
+
+  // Of the two callbacks, one is given.
+  DdsReader(std::shared_ptr<Impl> node, std::string vehicle, const Topic<T>& topic, Callback callback,
+            RawCallback raw_callback, Delivery delivery,
+            std::optional<std::chrono::milliseconds> source_silence,
+            std::function<void(const std::string&)> on_fault)
+      : node_(std::move(node)),
+        vehicle_(std::move(vehicle)),
+        topic_(topic),
+        delivery_(delivery),
+        log_label_(runtime::LogLabel::current()),
+        on_fault_(std::move(on_fault)),
+        callback_(std::move(callback)),
+        raw_callback_(std::move(raw_callback)) {
+    sample_.raw = raw_callback_ != nullptr;
+    if (source_silence) source_.emplace(*source_silence);
+    node_->add(this);
+  }
+  ~DdsReader() override { node_->remove(this); }
+  DdsReader(const DdsReader&) = delete;
+  DdsReader& operator=(const DdsReader&) = delete;
+
+  int matched() const override {
+    const typename GuardedPointer<dds::DataReader>::Use reader(reader_);
+    dds::SubscriptionMatchedStatus status;
+    if (reader) reader->get_subscription_matched_status(status);
+    return status.current_count;
+  }
+
+  std::optional<SourceConflict> source_conflict() const override {
+    std::optional<Conflict> last;
+    {
+      const std::lock_guard<std::mutex> lock(conflict_mutex_);
+      last = conflict_;
+    }
+    if (!last || std::chrono::steady_clock::now() - last->at > kConflictReportTime) return std::nullopt;
+    return SourceConflict{node_->identity_of(last->used.participant),
+                          node_->identity_of(last->ignored.participant)};
+  }
+
+ private:
+  struct Conflict {
+    SenderId used;
+    SenderId ignored;
+    std::chrono::steady_clock::time_point at;
+  };
+
+  void join(ParticipantSession& session) override {
+    open(true);
+    dds::DataReader* const reader = session.subscriber->create_datareader(
+        topic_in<T>(session, vehicle_, topic_.name),
+        reader_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), node_->settings.transport, delivery_),
+        this, dds::StatusMask::data_available());
+    if (reader == nullptr) throw std::runtime_error(std::string("cannot subscribe to ") + topic_.name);
+    reader_.give(reader);
+  }
+  void leave(ParticipantSession& session) override {
+    dds::DataReader* const reader = reader_.take();
+    if (reader == nullptr) return;
+    open(false);
+    reader->set_listener(nullptr);
+    session.subscriber->delete_datareader(reader);
+  }
+  void open(bool open) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    open_ = open;
+  }
+
+  void on_data_available(dds::DataReader* reader) override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const runtime::LogLabel label(log_label_);
+    dds::SampleInfo info;
+    while (open_ && !faulty_ && succeeded(reader->take_next_sample(&sample_, &info))) {
+      if (!info.valid_data) continue;
+      if (source_ && !is_from_source(info)) continue;
+      deliver(info);
+    }
+  }
+
+  void deliver(const dds::SampleInfo& info) {
+    if (!on_fault_) return call(info);
+    try {
+      call(info);
+    } catch (const std::exception& error) {
+      faulty_ = true;
+      on_fault_(error.what());
+    }
+  }
+
+  void call(const dds::SampleInfo& info) {
+    if (callback_) return callback_(sample_.message);
+    raw_callback_({sample_.payload.data(), sample_.payload.size(), info.source_timestamp.to_ns(),
+                   info.sample_identity.sequence_number().to64long(),
+                   number_of(info.sample_identity.writer_guid())});
+  }
+
+  // Never waits: what a reader of the conflict misses, the next ignored sample reports.
+  bool is_from_source(const dds::SampleInfo& info) {
+    const SenderId sender{info.sample_identity.writer_guid().guidPrefix};
+    const auto now = std::chrono::steady_clock::now();
+    if (source_->accepts(sender, now)) return true;
+    const std::unique_lock<std::mutex> lock(conflict_mutex_, std::try_to_lock);
+    if (lock) conflict_ = Conflict{*source_->id(), sender, now};
+    return false;
+  }
+
+  std::shared_ptr<Impl> node_;
+  const std::string vehicle_;
+  const Topic<T> topic_;
+  const Delivery delivery_;
+  const std::string log_label_;  // of the thread that subscribed
+  const std::function<void(const std::string&)> on_fault_;
+  GuardedPointer<dds::DataReader> reader_;
+  mutable std::mutex conflict_mutex_;
+  std::optional<Conflict> conflict_;
+  std::mutex mutex_;  // guards all below; held while a callback runs
+  Callback callback_;
+  RawCallback raw_callback_;
+  std::optional<SingleSource<SenderId>> source_;
+  ReceivedSample<T> sample_;
+  bool open_ = false;
+  bool faulty_ = false;  // the callback threw an exception
+};
+
+}  // namespace detail
+
+template <class T>
+Publisher<T> Node::publish(const Topic<T>& topic, std::uint32_t strength) {
+  return Publisher<T>(
+      std::make_unique<detail::DdsWriter<Participant::Impl, T>>(participant_.impl_, vehicle_, topic, strength));
+}
+
+template <class T>
+Subscription Node::subscribe(const Topic<T>& topic, std::function<void(const T&)> callback, Delivery delivery,
+                             std::optional<std::chrono::milliseconds> source_silence) {
+  return Subscription(std::make_unique<detail::DdsReader<Participant::Impl, T>>(participant_.impl_, vehicle_, topic,
+                                                                        std::move(callback), nullptr,
+                                                                        delivery, source_silence, on_fault_));
+}
+
+template <class T>
+Subscription Node::subscribe_raw(const Topic<T>& topic, std::function<void(const RawSample&)> callback,
+                                 Delivery delivery) {
+  return Subscription(std::make_unique<detail::DdsReader<Participant::Impl, T>>(
+      participant_.impl_, vehicle_, Topic<T>{topic.name, topic.qos}, nullptr, std::move(callback), delivery,
+      std::nullopt, on_fault_));
+}
+
+}  // namespace swiftlet::comms
