@@ -109,6 +109,8 @@ struct FlightController::Impl {
   std::int64_t battery_stamp_ns = 0;
   double supply_voltage_v;
   Allocator::Supply supply;
+  VehicleFault vehicle_fault{};
+  std::int64_t vehicle_fault_since_ns = 0;  // of the first step with it
   plant::ControlLevel level = plant::ControlLevel::kActuators;
   plant::ControlLevels accepted_levels = plant::ControlLevel::kActuators;
   plant::ActuatorCommand command;  // at other levels without throttles
@@ -151,6 +153,7 @@ void FlightController::Impl::restart_if_clock_went_back(const plant::ImuSample& 
   rotors = RotorObserver(vehicle, settings.estimator.rotor_speed_bandwidth);
   resets_seen = 0;
   last_stamp_ns = 0;
+  vehicle_fault_since_ns = 0;
   saturated_ns = -1;
   has_battery = false;
 }
@@ -186,6 +189,10 @@ SupervisorInputs FlightController::Impl::inputs() const {
   inputs.imu_gap_s = imu_gap_s;
   inputs.level = level;
   inputs.accepted_levels = accepted_levels;
+  if (level != plant::ControlLevel::kActuators && vehicle_fault[0] != '\0') {
+    inputs.vehicle_fault = vehicle_fault.data();
+    inputs.vehicle_fault_s = seconds(last_stamp_ns - vehicle_fault_since_ns);
+  }
   inputs.gains = &gain_change.to;
   inputs.gains_progress = gain_change.progress(last_stamp_ns);
   inputs.gains_changing_s = gain_change.remaining_s(last_stamp_ns);
@@ -461,6 +468,11 @@ const plant::VehicleCommand& FlightController::on_imu(const plant::ImuSample& sa
   if (c.status.saturated) c.saturated_ns = sample.stamp_ns;
   c.report(inputs);
   return c.stamp_command(sample);
+}
+
+void FlightController::set_vehicle_fault(const VehicleFault& fault) {
+  if (impl_->vehicle_fault[0] == '\0') impl_->vehicle_fault_since_ns = impl_->last_stamp_ns;
+  impl_->vehicle_fault = fault;
 }
 
 void FlightController::set_levels(plant::ControlLevels accepted, std::optional<plant::ControlLevel> wanted) {

@@ -56,6 +56,10 @@ class FlightController {
   // thrust, at level trajectory that of the position law.
   void set_levels(plant::ControlLevels accepted, std::optional<plant::ControlLevel> wanted);
 
+  // What the vehicle reports as fault in vehicle_info, from the next step on; empty: none. At other levels than actuators a
+  // flight is stopped after 0.5 s of one, and none begins.
+  void set_vehicle_fault(const VehicleFault& fault);
+
   void on_pose(const plant::PoseSample& sample);
   void on_battery(const plant::BatterySample& sample);
   void on_rotor_speeds(const plant::RotorSpeedSample& sample);

@@ -109,9 +109,14 @@ Outcome level_accepted(const SupervisorContext& context) {
                 plant::to_string(inputs.level), inputs.accepted_levels.names().data());
 }
 
+Outcome no_vehicle_fault(const SupervisorContext& context) {
+  if (context.inputs.vehicle_fault[0] == '\0') return accept();
+  return refuse("the vehicle reports: %s", context.inputs.vehicle_fault);
+}
+
 constexpr ArmingCheck kChecks[] = {
-    level_accepted, pose_available, pose_accepted, imu_usable, battery_available, imu_at_rest,
-    not_turning,    rotors_still,   level,         not_moving, inside_fence};
+    level_accepted, no_vehicle_fault, pose_available, pose_accepted, imu_usable, battery_available,
+    imu_at_rest,    not_turning,      rotors_still,   level,         not_moving, inside_fence};
 
 // Appends "; sentence" if it fits.
 void append(const char* sentence, Outcome& outcome) {

@@ -10,6 +10,8 @@ const char* to_string(Event event) {
       return "IMU samples were missing";
     case Event::kTippedOver:
       return "tipped over";
+    case Event::kVehicleFault:
+      return "vehicle fault";
     case Event::kImpact:
       return "impact";
     case Event::kTakeoffInconsistent:

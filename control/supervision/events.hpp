@@ -12,6 +12,7 @@ enum class Event : std::uint8_t {
   kImuUnusable = 0,
   kImuGap,
   kTippedOver,
+  kVehicleFault,
   kImpact,
   kTakeoffInconsistent,
   kPoseJumped,

@@ -30,6 +30,7 @@ const Transition kTransitions[] = {
   {kRotorsOn, E::kImuUnusable, guards::kAlways, preconditions::kNone, M::kStopped, R::kImuUnusable, actions::kNothing},
   {kRotorsOn, E::kImuGap, guards::kAlways, preconditions::kNone, M::kStopped, R::kImuGap, actions::kNothing},
   {kRotorsOn, E::kTippedOver, guards::kAlways, preconditions::kNone, M::kStopped, R::kTippedOver, actions::kNothing},
+  {kRotorsOn, E::kVehicleFault, guards::kAlways, preconditions::kNone, M::kStopped, R::kVehicleFault, actions::kNothing},
   {kWithPosition, E::kTakeoffInconsistent, guards::kAlways, preconditions::kNone, M::kStopped, R::kTakeoffInconsistent, actions::kNothing},
 
   // A hard touchdown ends a descent or landing. In any other mode an impact is a collision.

@@ -84,6 +84,8 @@ const char* to_string(Reason reason) {
       return "setpoints violated the fence";
     case Reason::kMissionPaused:
       return "mission paused";
+    case Reason::kVehicleFault:
+      return "the vehicle reports a fault";
   }
   return "unknown";
 }

@@ -1,6 +1,7 @@
 // The flight modes and the status of the controller.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "swiftlet/control/types/gains.hpp"
@@ -52,9 +53,13 @@ enum class Reason : std::uint8_t {
   kEngagedInFlight,         // the controller started while its vehicle was in the air
   kSetpointsViolatedFence,  // a stream of attitudes or body rates violated the fence
   kMissionPaused,
+  kVehicleFault,  // the vehicle reported a fault, such as that another flies it
 };
-constexpr int kReasonCount = static_cast<int>(Reason::kMissionPaused) + 1;
+constexpr int kReasonCount = static_cast<int>(Reason::kVehicleFault) + 1;
 const char* to_string(Reason reason);
+
+// What the vehicle reports as fault: a sentence with its terminating 0; empty: none.
+using VehicleFault = std::array<char, 128>;
 
 enum class MissionState : std::uint8_t {
   kNone = 0,

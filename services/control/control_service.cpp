@@ -299,6 +299,11 @@ void ControlService::run(const std::atomic<bool>& stop) {
 void ControlService::on_vehicle_info(const msg::VehicleInfo& message) {
   const std::uint8_t levels = plant::ControlLevels::from_bits(message.control_levels()).bits();
   if (reported_levels_.exchange(levels, std::memory_order_relaxed) != levels) wake_.post();
+  control::VehicleFault fault{};
+  const std::size_t length = std::min(message.fault().size(), fault.size() - 1);
+  std::copy_n(message.fault().c_str(), length, fault.begin());
+  loop_.vehicle_fault.put(fault);
+  telemetry_.set_vehicle_fault(fault.data());
 }
 
 // Opens the topic of the level before the inner loop commands at it.

@@ -21,6 +21,8 @@ plant::VehicleCommand InnerLoop::step(const plant::ImuSample& sample, std::int64
   role_ = role;
   take_samples();
   take_levels();
+  control::VehicleFault fault;
+  if (vehicle_fault.take(fault)) controller_.set_vehicle_fault(fault);
   take_heartbeats();
   if (role == Role::kStandby) follow(followed_term);
   if (detecting_airborne()) detect_airborne(sample);

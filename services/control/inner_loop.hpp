@@ -75,6 +75,7 @@ class InnerLoop {
   runtime::LatestValue<control::Setpoint> setpoint;
   runtime::LatestValue<FailoverState> failover_state;
   runtime::LatestValue<LevelChoice> levels;
+  runtime::LatestValue<control::VehicleFault> vehicle_fault;
   boost::lockfree::spsc_queue<PendingRequest*, boost::lockfree::capacity<kMaxPendingRequests>> requests;
 
   boost::lockfree::spsc_queue<control::GroundHeartbeat, boost::lockfree::capacity<32>> ground_heartbeats;

@@ -123,8 +123,8 @@ void Telemetry::take(const Snapshot& snapshot) {
   const bool mode_changed = now.mode != before.mode || now.reason != before.reason;
   const bool requests_changed = control::differ_in_state(snapshot.requests, last_.requests);
   const bool mission_changed = differ(now.mission, before.mission);
-  if (mission_changed) mission_end_ = is_over(now.mission.state) ? control::to_string(now.reason) : "";
-  if (mode_changed) spdlog::info("{}: {}", control::to_string(now.mode), control::to_string(now.reason));
+  if (mission_changed) mission_end_ = is_over(now.mission.state) ? reason_text(now.reason) : "";
+  if (mode_changed) spdlog::info("{}: {}", control::to_string(now.mode), reason_text(now.reason));
   if (now.has_pose != before.has_pose) {
     if (now.has_pose) {
       spdlog::info("mocap available");
@@ -145,6 +145,17 @@ void Telemetry::take(const Snapshot& snapshot) {
   if (role_changed) return change_role();
   if (mode_changed || requests_changed) publish_status();
   if (mission_changed) publish_mission();
+}
+
+void Telemetry::set_vehicle_fault(const std::string& fault) {
+  const std::lock_guard<std::mutex> lock(vehicle_fault_mutex_);
+  if (!fault.empty()) vehicle_fault_ = fault;
+}
+
+std::string Telemetry::reason_text(control::Reason reason) const {
+  if (reason != control::Reason::kVehicleFault) return control::to_string(reason);
+  const std::lock_guard<std::mutex> lock(vehicle_fault_mutex_);
+  return vehicle_fault_;
 }
 
 void Telemetry::log_imu_silence() {
@@ -176,7 +187,7 @@ void Telemetry::publish_status() {
   message.stamp_ns(last_.stamp_ns);
   message.sequence_number(++status_count_);
   message.mode(static_cast<std::uint8_t>(status.mode));
-  message.reason() = control::to_string(status.reason);
+  message.reason() = reason_text(status.reason);
   message.airborne(status.airborne);
   // The controller's own age of the pose stands still while no IMU sample arrives.
   const double pose_age_s = status.pose_age_s + (ages_.imu_s > kImuSilence_s ? ages_.imu_s : 0.0);

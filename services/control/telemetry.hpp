@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,8 @@ class Telemetry {
   // A stop request that is accepted and commanded, but that no IMU sample has let the inner loop evaluate:
   // control_status shows it.
   void set_unconfirmed_stop(const std::optional<control::RequestKey>& stop);
+  // What vehicle_info reports as fault, "" for none: the reason of a flight that it stopped. Call from any thread.
+  void set_vehicle_fault(const std::string& fault);
   // Warns when IMU samples stop. Call before publish_due().
   void watch_imu() { watches_imu_ = true; }
   // Call from the thread of publish_due(), or after it has ended.
@@ -44,6 +47,7 @@ class Telemetry {
   void change_role();
   void publish_plan();
   void answer_requests(const std::vector<RequestResult>& answers);
+  std::string reason_text(control::Reason reason) const;
   void log_imu_silence();
   const DelayMonitor::Report& update_delay();
   void publish_sampled(const Snapshot& snapshot);
@@ -60,12 +64,14 @@ class Telemetry {
   bool imu_silent_ = false;
   StreamAges ages_;
   std::string source_conflict_;
+  mutable std::mutex vehicle_fault_mutex_;
+  std::string vehicle_fault_;  // the last one
   std::optional<control::RequestKey> unconfirmed_stop_;
   DelayMonitor delay_monitor_;
 
   Snapshot last_;
-  bool saturated_ = false;        // since the last control_status
-  const char* mission_end_ = "";  // why the last mission ended
+  bool saturated_ = false;   // since the last control_status
+  std::string mission_end_;  // why the last mission ended
   std::int64_t status_due_ns_ = 0;
   std::int64_t mission_due_ns_ = 0;
   std::uint64_t sampled_count_ = 0;
