@@ -1,0 +1,96 @@
+// Records every message of vehicles as an MCAP file: the payloads as they came, with ROS 2 message definitions.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "swiftlet/ground/recording/gap_counter.hpp"
+#include "swiftlet/ground/recording/sample_queue.hpp"
+#include "swiftlet/io/mcap/writer.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/messages/schemas.hpp"
+
+namespace swiftlet::ground {
+
+// The times of the recorded messages.
+enum class RecordClock {
+  kWall,     // when they arrived, ns since 1970
+  kVehicle,  // their stamps; of a message without one the newest stamp of its vehicle. For simulated time
+};
+
+struct RecorderSettings {
+  mcap::WriterSettings file{};
+  RecordClock clock = RecordClock::kWall;
+  std::size_t queue_bytes = std::size_t{64} << 20;
+};
+
+// What a recorder has done so far.
+struct RecorderTotals {
+  std::uint64_t received = 0;
+  std::uint64_t dropped = 0;  // received, but the queue was full: the disk is too slow
+  std::uint64_t lost = 0;     // sent, but never received: gaps in the numbers of the samples
+  std::size_t topics = 0;     // with at least one message
+  std::uint64_t file_bytes = 0;
+};
+
+// The threads that receive only copy into a bounded queue; one thread writes. Everything older than a second is in the
+// file, however the process ends.
+class FlightRecorder {
+ public:
+  // Throws std::runtime_error if the file cannot be created.
+  FlightRecorder(const comms::Participant& participant, std::filesystem::path file,
+                 RecorderSettings settings);
+  ~FlightRecorder();  // ends the file as stop() does
+  FlightRecorder(const FlightRecorder&) = delete;
+  FlightRecorder& operator=(const FlightRecorder&) = delete;
+
+  // From one thread. add_vehicle throws std::runtime_error.
+  void add_vehicle(const std::string& name);
+  void add(const mcap::Metadata& metadata);
+  void add(const mcap::Attachment& attachment);
+
+  RecorderTotals totals() const;
+  // Why it records no more, as a sentence: the disk is full.
+  std::optional<std::string> fault() const;
+
+  // Writes what was received and a table of each topic's counts as metadata, and ends the file.
+  void stop();
+
+ private:
+  struct Vehicle;
+  struct Channel;
+
+  template <class T>
+  void subscribe(Vehicle& vehicle, const comms::Topic<T>& topic);
+  void receive(Channel& channel, const comms::RawSample& sample);
+  void write_until_stopped();
+  void write_counts();
+  template <class Work>
+  void use_file(const Work& work);
+
+  const RecorderSettings settings_;
+  const comms::Participant participant_;
+  SampleQueue queue_;
+  mutable std::mutex mutex_;  // guards file_ and fault_; held while a batch is written
+  mcap::Writer file_;
+  std::optional<std::string> fault_;
+  std::atomic<bool> failed_{false};
+  std::atomic<bool> stopping_{false};
+  std::atomic<std::uint64_t> file_bytes_{0};
+  std::vector<std::pair<const comms::MessageSchema*, std::uint16_t>> schemas_;  // in the file
+  mutable std::mutex channels_mutex_;                                           // guards channels_
+  std::vector<std::unique_ptr<Channel>> channels_;
+  std::thread writer_;
+  std::vector<std::unique_ptr<Vehicle>> vehicles_;  // last: their callbacks use all members above
+};
+
+}  // namespace swiftlet::ground

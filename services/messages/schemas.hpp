@@ -1,0 +1,15 @@
+// The message types as ROS 2 message definitions, for recorded flights. Generated from the IDL files by idl/ros2msg.py.
+#pragma once
+
+namespace swiftlet::comms {
+
+struct MessageSchema {
+  const char* name;        // "swiftlet_msgs/msg/Imu"
+  const char* definition;  // with those of the types that it uses, as a ros2msg schema of an MCAP file
+  int stamp_offset;        // of stamp_ns in the payload, with the encapsulation header; -1: it has none
+};
+
+template <class T>
+const MessageSchema& schema_of();
+
+}  // namespace swiftlet::comms

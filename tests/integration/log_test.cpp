@@ -1,0 +1,170 @@
+// Recorded messages from end to end: `swiftlet record` beside a flying vehicle, and `swiftlet log`.
+#include <csignal>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "swiftlet/io/mcap/message_decoder.hpp"
+#include "swiftlet/io/mcap/reader.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/support/hop_mission.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using nlohmann::json;
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+class Log : public testing::Test {
+ protected:
+  std::vector<std::string> on_this_domain(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.end(), {"--domain", std::to_string(lock_.domain()), "--localhost-only"});
+    return arguments;
+  }
+  std::unique_ptr<Program> start(const std::string& program, std::vector<std::string> arguments = {}) const {
+    return std::make_unique<Program>(program, on_this_domain(std::move(arguments)), folder_.path());
+  }
+  std::string path(const std::string& name) const { return folder_.path() / name; }
+  // The vehicle alone: 500 IMU samples a second.
+  void start_vehicle() { vehicle_ = start("swiftlet-plant"); }
+  bool grows_to(const std::string& file, std::uintmax_t bytes) const {
+    return eventually([&] { return fs::exists(file) && fs::file_size(file) >= bytes; });
+  }
+
+  comms::DomainLock lock_;
+  TemporaryFolder folder_;
+  std::unique_ptr<Program> vehicle_;
+};
+
+std::map<std::string, std::vector<mcap::Message>> heads_of(const mcap::Reader& file) {
+  std::map<std::string, std::vector<mcap::Message>> heads;
+  mcap::Messages messages(file, {});
+  while (messages.next()) {
+    heads[messages.channel().topic].push_back(messages.message());
+    heads[messages.channel().topic].back().payload = {};
+  }
+  return heads;
+}
+
+std::size_t gaps_in(const std::vector<mcap::Message>& messages) {
+  std::size_t gaps = 0;
+  for (std::size_t i = 1; i < messages.size(); ++i)
+    gaps += messages[i].sequence - messages[i - 1].sequence - 1;
+  return gaps;
+}
+
+TEST_F(Log, HoldsEveryMessageOfAFlight) {
+  const std::string file = path("flight.mcap");
+  const auto recorder = start("swiftlet", {"record", "--output", file, "--json"});
+  ASSERT_TRUE(eventually([&] { return recorder->errors().find("recording to") != std::string::npos; }));
+  const ProgramResult flight =
+      run_program("swiftlet",
+                  {"fly", folder_.write("hop.yaml", kHopMission), "--domain", std::to_string(lock_.domain()),
+                   "--record", path("record"), "--json"},
+                  folder_.path(), kStuck);
+  ASSERT_EQ(flight.exit_code, 0) << flight.errors;
+  recorder->signal(SIGINT);
+  ASSERT_EQ(recorder->wait(kStuck), 0) << recorder->errors();
+  const json result = json::parse(recorder->output());
+  EXPECT_EQ(result.at("dropped"), 0);
+
+  const mcap::Reader recorded(file, mcap::Access::kScanned);
+  EXPECT_TRUE(recorded.finished());
+  EXPECT_TRUE(recorded.damages().empty());
+  EXPECT_EQ(recorded.statistics().message_count, result.at("messages"));
+  const auto heads = heads_of(recorded);
+  for (const char* topic :
+       {"/kl1/imu", "/kl1/actuator_command", "/kl1/mocap_pose", "/kl1/battery", "/kl1/estimate",
+        "/kl1/reference", "/kl1/ground_truth", "/kl1/control_status", "/kl1/mission_status",
+        "/kl1/vehicle_info", "/kl1/command", "/kl1/mission", "/kl1/command_ack"})
+    ASSERT_EQ(heads.count(topic), 1U) << topic;
+  const auto& imu = heads.at("/kl1/imu");
+  EXPECT_EQ(gaps_in(imu), 0U) << recorder->output();
+  EXPECT_EQ(result.at("lost"), 0);
+  // As many samples as the time they span has periods.
+  const double time_s = static_cast<double>(imu.back().publish_time_ns - imu.front().publish_time_ns) * 1e-9;
+  EXPECT_NEAR(static_cast<double>(imu.size()), 500.0 * time_s, 50.0);
+  for (const mcap::Message& sample : imu) {
+    EXPECT_GE(sample.log_time_ns, sample.publish_time_ns);
+    EXPECT_LE(sample.log_time_ns, sample.publish_time_ns + kSecond_ns);
+  }
+}
+
+TEST_F(Log, OfAKilledRecorderIsReadableUpToTheLastSecond) {
+  start_vehicle();
+  const std::string file = path("killed.mcap");
+  const auto recorder = start("swiftlet", {"record", "--output", file});
+  ASSERT_TRUE(grows_to(file, 100'000));
+  const std::int64_t killed_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                     std::chrono::system_clock::now().time_since_epoch())
+                                     .count();
+  recorder->signal(SIGKILL);
+  recorder->wait(kStuck);
+  const mcap::Reader recorded(file);
+  EXPECT_FALSE(recorded.finished());
+  EXPECT_GT(recorded.statistics().end_ns, killed_ns - kSecond_ns);
+  EXPECT_EQ(gaps_in(heads_of(recorded).at("/kl1/imu")), 0U);
+}
+
+// The limit of a file's size stands for a full disk.
+TEST_F(Log, OnAFullDiskEndsWithAnErrorAndIsReadable) {
+  start_vehicle();
+  const std::string file = path("full.mcap");
+  const ProgramResult recorder = run_program(
+      "/usr/bin/prlimit",
+      on_this_domain({"--fsize=100000", SWIFTLET_BIN_DIR "/swiftlet", "record", "--output", file}),
+      folder_.path(), kStuck);
+  EXPECT_EQ(recorder.exit_code, 1);
+  EXPECT_NE(recorder.errors.find(file + ": cannot be written: File too large"), std::string::npos)
+      << recorder.errors;
+  const mcap::Reader recorded(file);
+  EXPECT_TRUE(recorded.damages().empty());
+  EXPECT_GT(recorded.statistics().message_count, 500U);
+  EXPECT_FALSE(vehicle_->exit_code().has_value());
+}
+
+TEST_F(Log, OfAllVehiclesHasThoseThatAppearLater) {
+  const std::string file = path("all.mcap");
+  const auto recorder = start("swiftlet", {"record", "--all", "--output", file, "--compression", "lz4"});
+  ASSERT_TRUE(eventually([&] { return fs::exists(file); }));
+  const auto first = start("swiftlet-plant", {"--vehicle-name", "a1,a2"});
+  ASSERT_TRUE(grows_to(file, 50'000));
+  const auto second = start("swiftlet-plant", {"--vehicle-name", "b1"});
+  ASSERT_TRUE(eventually([&] { return mcap::Reader(file).channels().size() > 60; }));
+  const std::uintmax_t before = fs::file_size(file);
+  ASSERT_TRUE(grows_to(file, before + 50'000));
+  recorder->signal(SIGTERM);
+  ASSERT_EQ(recorder->wait(kStuck), 0) << recorder->errors();
+  const auto heads = heads_of(mcap::Reader(file));
+  for (const char* topic : {"/a1/imu", "/a2/imu", "/b1/imu", "/b1/vehicle_info"})
+    EXPECT_EQ(heads.count(topic), 1U) << topic;
+}
+
+TEST_F(Log, IsRefusedWhereAFileWouldBeLost) {
+  const std::string file = folder_.write("kept.mcap", "dear");
+  const ProgramResult refused =
+      run_program("swiftlet", on_this_domain({"record", "--output", file}), folder_.path());
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.errors.find("exists; choose another name, or add --replace"), std::string::npos)
+      << refused.errors;
+  EXPECT_EQ(fs::file_size(file), 4U);
+  const ProgramResult nobody =
+      run_program("swiftlet", on_this_domain({"record", "--output", file, "--replace", "--duration", "0.5"}),
+                  folder_.path());
+  EXPECT_EQ(nobody.exit_code, 1);
+  EXPECT_NE(nobody.errors.find("no message was received in domain"), std::string::npos) << nobody.errors;
+}
+
+}  // namespace
+}  // namespace swiftlet::tests
