@@ -285,16 +285,16 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
 
 template <class T>
 Publisher<T> Node::publish(const Topic<T>& topic, std::uint32_t strength) {
-  return Publisher<T>(
-      std::make_unique<detail::DdsWriter<Participant::Impl, T>>(participant_.impl_, vehicle_, topic, strength));
+  return Publisher<T>(std::make_unique<detail::DdsWriter<Participant::Impl, T>>(participant_.impl_, vehicle_,
+                                                                                topic, strength));
 }
 
 template <class T>
 Subscription Node::subscribe(const Topic<T>& topic, std::function<void(const T&)> callback, Delivery delivery,
                              std::optional<std::chrono::milliseconds> source_silence) {
-  return Subscription(std::make_unique<detail::DdsReader<Participant::Impl, T>>(participant_.impl_, vehicle_, topic,
-                                                                        std::move(callback), nullptr,
-                                                                        delivery, source_silence, on_fault_));
+  return Subscription(std::make_unique<detail::DdsReader<Participant::Impl, T>>(
+      participant_.impl_, vehicle_, topic, std::move(callback), nullptr, delivery, source_silence,
+      on_fault_));
 }
 
 template <class T>

@@ -1,0 +1,131 @@
+// swiftlet-px4's vehicle: joins one PX4 to the topics of a vehicle.
+//
+//   sensor_combined, battery_status --> imu, battery --> control
+//   offboard_control_mode, setpoint <-- rates_setpoint, attitude_setpoint or trajectory_setpoint <-- control
+//   vehicle_visual_odometry         <-- mocap_pose
+//   vehicle_command, its ack, vehicle_status <--> OffboardSession --> vehicle_info
+//
+// The vehicle's clock is the monotonic clock of this host. Each setpoint of control goes on once, in the thread that received it,
+// with PX4's proof of life before it: when control falls silent, PX4 hears nothing more.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/plant/simulation/command_watchdog.hpp"
+#include "swiftlet/services/dds/clocks/clock_server.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/dds/throttled_warning.hpp"
+#include "swiftlet/services/px4/offboard_session.hpp"
+#include "swiftlet/services/px4/px4_clock.hpp"
+#include "swiftlet/services/px4/px4_topics.hpp"
+#include "swiftlet/services/px4/thrust_scale.hpp"
+#include "swiftlet/services/px4/translate.hpp"
+#include "swiftlet/services/px4/versions.hpp"
+#include "swiftlet/services/px4/vision.hpp"
+#include "swiftlet/services/runtime/hosting.hpp"
+#include "swiftlet/services/runtime/realtime.hpp"
+
+namespace swiftlet::px4 {
+
+struct BridgeSettings {
+  plant::Vehicle vehicle;
+  int instance = 0;
+  plant::ControlLevels levels;
+  double control_silence_s = 0.2;
+  std::optional<double> hover_throttle;
+  VisionSettings vision;
+  runtime::RealtimeSettings realtime;
+};
+
+class Px4Bridge final : public runtime::HostedVehicle {
+ public:
+  Px4Bridge(const comms::Participant& participant, const std::string& name, const BridgeSettings& settings);
+
+  // The session, 100 times a second.
+  void run(const std::atomic<bool>& stop) override;
+  // The main thread: looks for PX4, logs, and publishes vehicle_info.
+  void attend() override;
+  void log_end() override;
+
+ private:
+  void subscribe();
+  // Each in the thread that receives.
+  void on_sensors(const msg::SensorCombined& message);
+  void on_battery(const msg::BatteryStatus& message);
+  void on_status(const msg::VehicleStatus& message);
+  template <class Message, class Command>
+  void on_setpoint(const Message& message);
+  void on_pose(const comms::msg::MocapPose& message);
+
+  void stream(const plant::VehicleCommand& command);
+  OffboardInputs inputs(std::int64_t now_ns) const;
+  std::string arming_fault(std::int64_t now_ns) const;
+  void log_changes();
+  comms::msg::VehicleInfo info() const;
+
+  const BridgeSettings settings_;
+  const Px4Topics topics_;
+
+  mutable std::mutex mutex_;  // guards all down to the publishers; held for microseconds
+  OffboardSession session_;
+  plant::CommandWatchdog watchdog_;
+  ThrustScale scale_;
+  Px4Clock clock_;
+  Vision vision_;
+  Version version_;
+  std::optional<msg::VehicleStatus> status_;
+  std::optional<msg::FailsafeFlags> flags_;
+  std::optional<plant::PoseSample> estimate_;  // PX4's
+  bool landed_ = true;
+  bool rotors_wanted_ = false;
+  std::int64_t commanded_ns_ = 0;
+  std::int64_t streamed_since_ns_ = 0;
+  std::int64_t status_ns_ = 0;
+  std::int64_t sampled_ns_ = 0;
+  std::int64_t estimated_ns_ = 0;
+  double thrust_n_ = 0.0;
+  plant::ControlLevel level_ = plant::ControlLevel::kActuators;
+  std::uint64_t imu_samples_ = 0;
+  std::uint64_t battery_samples_ = 0;
+  std::uint64_t refused_commands_ = 0;
+  std::uint64_t setpoints_ = 0;
+  plant::CommandFault refusal_ = plant::CommandFault::kNone;
+  std::int64_t battery_ns_ = 0;  // when the last one was passed on
+
+  comms::ThrottledWarning sensor_faults_{"sensor_combined"};
+  comms::ThrottledWarning battery_faults_{"battery_status"};
+  comms::ThrottledWarning status_faults_{"vehicle_status_v1"};
+  comms::ThrottledWarning odometry_faults_{"vehicle_odometry"};
+  runtime::RealtimeThread sensor_thread_, command_thread_, pose_thread_;
+
+  // Of the main thread.
+  Phase logged_phase_ = Phase::kDisconnected;
+  std::string logged_fault_;
+  std::uint64_t logged_refused_ = 0;
+  int logged_steps_ = 0;
+  std::int64_t search_due_ns_ = 0;
+  std::int64_t info_due_ns_ = 0;
+  comms::msg::VehicleInfo info_;
+
+  comms::Participant participant_;
+  comms::Node node_;
+  comms::Publisher<comms::msg::Imu> imu_;
+  comms::Publisher<comms::msg::Battery> battery_;
+  comms::Publisher<comms::msg::VehicleInfo> vehicle_info_;
+  comms::Publisher<msg::OffboardControlMode> modes_;
+  comms::Publisher<msg::VehicleRatesSetpoint> rates_;
+  comms::Publisher<msg::VehicleAttitudeSetpoint> attitudes_;
+  comms::Publisher<msg::TrajectorySetpoint> trajectories_;
+  comms::Publisher<msg::VehicleOdometry> poses_;
+  comms::Publisher<msg::VehicleCommand> commands_;
+  comms::ClockServer clock_server_;  // these last: their callbacks use all members above
+  std::vector<comms::Subscription> subscriptions_;
+};
+
+}  // namespace swiftlet::px4

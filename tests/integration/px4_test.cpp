@@ -1,0 +1,292 @@
+// swiftlet-px4 with control and motion capture as processes, and a scripted PX4 (tests/support/scripted_px4.hpp) in the test.
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/control/types/mission.hpp"
+#include "swiftlet/control/types/mode.hpp"
+#include "swiftlet/ground/client/client.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/scripted_px4.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+using control::Mode;
+using ground::View;
+namespace msg = comms::msg;
+
+constexpr std::uint8_t kPosition = 2, kLand = 18;
+constexpr double kHeight_m = 0.6;
+
+std::string fault_of(const View& view) { return view.vehicle.message.fault().c_str(); }
+
+class Px4Flight : public testing::Test {
+ protected:
+  explicit Px4Flight(ScriptedPx4Settings settings = {})
+      : vehicle_(runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml")),
+        settings_(std::move(settings)) {}
+
+  comms::NodeSettings network(const std::string& name) const {
+    comms::NodeSettings settings;
+    settings.name = name;
+    settings.domain = lock_.domain();
+    settings.localhost_only = true;
+    return settings;
+  }
+  std::unique_ptr<Program> start(const std::string& program, std::vector<std::string> arguments = {}) const {
+    const std::vector<std::string> common{"--domain", std::to_string(lock_.domain()), "--localhost-only"};
+    arguments.insert(arguments.end(), common.begin(), common.end());
+    return std::make_unique<Program>(program, arguments, folder_.path());
+  }
+  // A busy machine must not look like a control that is dead.
+  void start_all(const std::string& level, const std::string& silence_s = "1") {
+    px4_ = std::make_unique<ScriptedPx4>(vehicle_, network("scripted"), settings_);
+    bridge_ = start("swiftlet-px4",
+                    {"--control-silence", silence_s, "--instance", std::to_string(settings_.instance)});
+    mocap_ = start("swiftlet-mocap");
+    control_ = start("swiftlet-control", {"--level", level});
+    client_ = std::make_unique<ground::Client>(network("ground"));
+  }
+  void wait_until_ready() {
+    ASSERT_TRUE(client_->wait(kStuck, [](const View& view) {
+      return view.control.message.has_pose() && fault_of(view).empty() &&
+             view.vehicle.message.control_levels() != 0;
+    })) << errors();
+  }
+  std::string errors() const {
+    return "px4: " + bridge_->errors() + "control: " + control_->errors() + "mocap: " + mocap_->errors();
+  }
+  ground::Result ask(std::uint8_t kind) {
+    msg::Command command;
+    command.kind(kind);
+    command.position_ned({0.0, 0.0, -kHeight_m});
+    command.speed(0.5);
+    return client_->command(command, kStuck);
+  }
+  bool wait_for(Mode mode) {
+    return client_->wait(kStuck, [mode](const View& view) {
+      return view.control.message.mode() == static_cast<std::uint8_t>(mode);
+    });
+  }
+  std::string reason() const { return client_->view().control.message.reason().c_str(); }
+  void hover() {
+    wait_until_ready();
+    const ground::Result armed = ask(msg::Command_Constants::ARM);
+    ASSERT_TRUE(armed.accepted()) << armed.reason;
+    ASSERT_TRUE(eventually([&] { return px4_->armed(); })) << errors();
+    const ground::Result off = ask(msg::Command_Constants::TAKEOFF);
+    ASSERT_TRUE(off.accepted()) << off.reason;
+    ASSERT_TRUE(wait_for(Mode::kHolding)) << reason() << errors();
+    EXPECT_NEAR(px4_->height_m(), kHeight_m, 0.15);
+  }
+  bool fault_is(const std::string& fault) {
+    return client_->wait(kStuck, [&](const View& view) { return fault_of(view) == fault; });
+  }
+  // control's mode with the fault of the vehicle in its reason.
+  void expect_stopped_by(const std::string& fault) {
+    EXPECT_TRUE(wait_for(Mode::kStopped)) << reason() << errors();
+    EXPECT_NE(reason().find(fault), std::string::npos) << reason();
+  }
+
+  comms::DomainLock lock_;
+  TemporaryFolder folder_;
+  const plant::Vehicle vehicle_;
+  const ScriptedPx4Settings settings_;
+  std::unique_ptr<ScriptedPx4> px4_;
+  std::unique_ptr<Program> bridge_, mocap_, control_;
+  std::unique_ptr<ground::Client> client_;
+};
+
+// GIVEN each level that PX4 offers WHEN a square is flown as a mission THEN it is flown to its end and PX4 disarmed.
+class Px4Square : public Px4Flight, public testing::WithParamInterface<const char*> {};
+
+TEST_P(Px4Square, IsFlown) {
+  start_all(GetParam());
+  wait_until_ready();
+  const ground::Result armed = ask(msg::Command_Constants::ARM);
+  ASSERT_TRUE(armed.accepted()) << armed.reason;
+  ASSERT_TRUE(eventually([&] { return px4_->armed(); })) << errors();
+  control::Mission mission;
+  mission.items.resize(6);
+  mission.items[0].kind = control::MissionItemKind::kTakeoff;
+  mission.items[0].position_ned = {0.0, 0.0, -kHeight_m};
+  for (std::size_t i = 1; i < 5; ++i) {
+    mission.items[i].position_ned = {i == 2 || i == 3 ? 0.5 : 0.0, i == 1 || i == 2 ? 0.5 : 0.0, -kHeight_m};
+    mission.items[i].speed = 0.5;
+  }
+  mission.items[5].kind = control::MissionItemKind::kLand;
+  ground::Result answer = client_->upload(mission, kStuck);
+  ASSERT_TRUE(answer.accepted()) << answer.reason;
+  answer = client_->mission_command(msg::Command_Constants::MISSION_START, client_->mission_id(), kStuck);
+  ASSERT_TRUE(answer.accepted()) << answer.reason;
+  ASSERT_TRUE(client_->wait(kStuck, [&](const View& view) {
+    const auto state = view.mission.message.state();
+    return state == msg::MissionStatus_Constants::COMPLETED || state == msg::MissionStatus_Constants::ABORTED;
+  })) << errors();
+  EXPECT_EQ(client_->view().mission.message.state(), msg::MissionStatus_Constants::COMPLETED)
+      << reason() << errors();
+  ASSERT_TRUE(eventually([&] { return !px4_->armed(); })) << errors();
+  EXPECT_TRUE(fault_is("")) << fault_of(client_->view());
+  EXPECT_NEAR(px4_->height_m(), 0.0, 0.05);
+  EXPECT_FALSE(px4_->status().failsafe());
+  EXPECT_GT(px4_->poses(), 100U);
+  const px4_msg::OffboardControlMode mode = *px4_->last_mode();
+  EXPECT_EQ(mode.body_rate(), std::string(GetParam()) == "rates");
+  EXPECT_EQ(mode.attitude(), std::string(GetParam()) == "attitude");
+  EXPECT_EQ(mode.velocity(), std::string(GetParam()) == "trajectory");
+}
+
+INSTANTIATE_TEST_SUITE_P(Levels, Px4Square, testing::Values("rates", "attitude", "trajectory"),
+                         [](const auto& level) { return std::string(level.param); });
+
+class Px4Failures : public Px4Flight {};
+
+TEST_F(Px4Failures, DeathOfControlEndsTheStreamAndLands) {
+  start_all("attitude", "0.5");
+  hover();
+  control_->signal(SIGKILL);
+  ASSERT_TRUE(eventually([&] { return px4_->status().nav_state() == kLand; })) << bridge_->errors();
+  EXPECT_FALSE(px4_->status().failsafe()) << "it was told to, before its failsafe acts";
+  const std::uint64_t modes = px4_->offboard_modes();
+  ASSERT_TRUE(eventually([&] { return !px4_->armed(); })) << bridge_->errors();
+  EXPECT_EQ(px4_->offboard_modes(), modes) << "nothing was streamed after its death";
+  EXPECT_NEAR(px4_->height_m(), 0.0, 0.05);
+}
+
+TEST_F(Px4Failures, DeathOfTheBridgeLeavesPx4ToItsFailsafe) {
+  start_all("trajectory");
+  hover();
+  bridge_->signal(SIGKILL);
+  ASSERT_TRUE(eventually([&] { return px4_->status().failsafe(); }));
+  ASSERT_TRUE(eventually([&] { return !px4_->armed(); }));
+  EXPECT_NEAR(px4_->height_m(), 0.0, 0.05);
+}
+
+TEST_F(Px4Failures, ThePilotTakesOver) {
+  start_all("rates");
+  hover();
+  px4_->pilot_selects(kPosition);
+  ASSERT_TRUE(fault_is("PX4 is in mode Position (pilot or ground station)")) << errors();
+  expect_stopped_by("PX4 is in mode Position (pilot or ground station)");
+  const std::uint64_t modes = px4_->offboard_modes();
+  const std::size_t commands = px4_->commands().size();
+  ASSERT_TRUE(
+      client_->wait(kStuck, [&, from = client_->view().vehicle.message.sequence_number()](const View& view) {
+        return view.vehicle.message.sequence_number() > from + 1;
+      }));
+  EXPECT_TRUE(px4_->armed()) << "rotors off of control do not reach the pilot's vehicle";
+  EXPECT_EQ(px4_->status().nav_state(), kPosition);
+  EXPECT_EQ(px4_->offboard_modes(), modes);
+  EXPECT_EQ(px4_->commands().size(), commands);
+}
+
+TEST_F(Px4Failures, TheKillSwitchIsNamed) {
+  start_all("trajectory");
+  wait_until_ready();
+  ASSERT_TRUE(ask(msg::Command_Constants::ARM).accepted());
+  ASSERT_TRUE(eventually([&] { return px4_->armed(); })) << errors();
+  px4_->kill();
+  ASSERT_TRUE(fault_is("PX4 disarmed: kill switch")) << errors();
+  expect_stopped_by("PX4 disarmed: kill switch");
+}
+
+TEST_F(Px4Failures, TheKillSwitchStopsTheFlight) {
+  start_all("trajectory");
+  hover();
+  px4_->kill();
+  EXPECT_TRUE(wait_for(Mode::kStopped)) << "for it, or for the impact that follows" << errors();
+  EXPECT_FALSE(px4_->armed());
+}
+
+TEST_F(Px4Failures, LossOfTheLinkToPx4IsItsFailsafe) {
+  start_all("attitude");
+  hover();
+  px4_->receives = false;
+  ASSERT_TRUE(eventually([&] { return px4_->status().failsafe(); }));
+  ASSERT_TRUE(client_->wait(kStuck, [](const View& view) {
+    return fault_of(view).find("(failsafe)") != std::string::npos;
+  })) << errors();
+  expect_stopped_by("(failsafe)");
+}
+
+TEST_F(Px4Failures, LossOfTheLinkFromPx4Lands) {
+  start_all("attitude");
+  hover();
+  px4_->sends = false;
+  ASSERT_TRUE(eventually([&] { return px4_->status().nav_state() == kLand; })) << errors();
+  EXPECT_TRUE(fault_is("the link to PX4 is lost: no samples")) << errors();
+  ASSERT_TRUE(eventually([&] { return !px4_->armed(); }));
+  EXPECT_NEAR(px4_->height_m(), 0.0, 0.05);
+}
+
+TEST_F(Px4Failures, ARefusalToArmIsToldWithPx4sReason) {
+  start_all("rates");
+  wait_until_ready();
+  px4_->refuse_to_arm(true);
+  ASSERT_TRUE(ask(msg::Command_Constants::ARM).accepted());
+  expect_stopped_by("PX4 does not arm: temporarily rejected (failure detector: an ESC did not arm)");
+  EXPECT_FALSE(px4_->armed());
+}
+
+TEST_F(Px4Failures, PosesHaveTheirFrameAndUnusedFields) {
+  start_all("rates");
+  wait_until_ready();
+  ASSERT_TRUE(eventually([&] { return px4_->poses() > 10; })) << errors();
+  const px4_msg::VehicleOdometry pose = *px4_->last_pose();
+  EXPECT_EQ(pose.pose_frame(), 1);
+  EXPECT_EQ(pose.timestamp(), 0U) << "now";
+  EXPECT_GT(pose.position_variance()[0], 0.0F);
+  EXPECT_TRUE(std::isnan(pose.velocity()[0]));
+}
+
+class Px4OfAnotherVersion : public Px4Flight {
+ protected:
+  static ScriptedPx4Settings newer() {
+    ScriptedPx4Settings settings;
+    settings.status_topic = "/out/vehicle_status_v4";
+    return settings;
+  }
+  Px4OfAnotherVersion() : Px4Flight(newer()) {}
+};
+
+TEST_F(Px4OfAnotherVersion, IsRefusedByName) {
+  start_all("rates");
+  EXPECT_TRUE(fault_is(
+      "PX4 publishes /fmu/out/vehicle_status_v4, but swiftlet-px4 knows vehicle_status_v1, that of PX4 1.16"))
+      << errors();
+  EXPECT_FALSE(ask(msg::Command_Constants::ARM).accepted());
+  EXPECT_EQ(px4_->offboard_modes(), 0U);
+}
+
+class Px4WithWeakRotors : public Px4Flight {
+ protected:
+  static ScriptedPx4Settings weak_second() {
+    ScriptedPx4Settings settings;
+    settings.instance = 2;
+    settings.thrust_factor = 0.8;
+    return settings;
+  }
+  Px4WithWeakRotors() : Px4Flight(weak_second()) {}
+};
+
+// GIVEN the second instance of PX4, whose rotors give 80 % of the thrust of the vehicle file THEN it hovers all the same.
+TEST_F(Px4WithWeakRotors, HoversAndLands) {
+  start_all("attitude");
+  hover();
+  ASSERT_TRUE(ask(msg::Command_Constants::LAND).accepted());
+  EXPECT_TRUE(wait_for(Mode::kDisarmed)) << reason() << errors();
+  ASSERT_TRUE(eventually([&] { return !px4_->armed(); }));
+}
+
+}  // namespace
+}  // namespace swiftlet::tests
