@@ -17,6 +17,8 @@ namespace swiftlet::services {
 namespace {
 
 constexpr std::int64_t kReopenPeriodNs = 500'000'000;
+constexpr std::int64_t kLogPeriodNs = 10'000'000'000;
+constexpr int kLinesPerPeriod = 6;
 
 }  // namespace
 
@@ -43,7 +45,7 @@ std::size_t AutopilotConnection::receive(std::int64_t deadline_ns, std::uint8_t*
   }
   const std::size_t received = stream_->receive(bytes, size);
   if (stream_->closed()) {
-    spdlog::warn("autopilot disconnected");
+    log_line(true, "autopilot disconnected");
     stream_.reset();
     reopen_ns_ = runtime::monotonic_ns() + kReopenPeriodNs;
   } else {
@@ -74,13 +76,28 @@ bool AutopilotConnection::connect() {
   }
   if (!stream_) return false;
   ++connections_;
-  spdlog::info("autopilot connected");
+  log_line(false, "autopilot connected");
   return true;
+}
+
+// A program that connects and ends again and again must not fill the log.
+void AutopilotConnection::log_line(bool is_warning, const char* text) {
+  const std::int64_t now_ns = runtime::monotonic_ns();
+  if (now_ns - log_period_ns_ >= kLogPeriodNs) {
+    if (unlogged_ > 0) spdlog::warn("autopilot: {} more connections and disconnections", unlogged_);
+    log_period_ns_ = now_ns;
+    logged_ = unlogged_ = 0;
+  }
+  if (++logged_ > kLinesPerPeriod) {
+    ++unlogged_;
+  } else {
+    spdlog::log(is_warning ? spdlog::level::warn : spdlog::level::info, text);
+  }
 }
 
 void AutopilotConnection::refuse_second() {
   if (listener_ && listener_->accept())
-    spdlog::warn("refused a second connection: an autopilot is connected");
+    log_line(true, "refused a second connection: an autopilot is connected");
 }
 
 }  // namespace swiftlet::services

@@ -33,11 +33,15 @@ class AutopilotConnection {
   bool wait(std::int64_t deadline_ns) const;
   bool connect();
   void refuse_second();
+  void log_line(bool is_warning, const char* text);
 
   AutopilotSettings settings_;
   std::optional<TcpListener> listener_;
   std::unique_ptr<ByteStream> stream_;
   std::uint64_t connections_ = 0;
+  std::int64_t log_period_ns_ = 0;  // begin of the present period of log lines
+  int logged_ = 0;
+  int unlogged_ = 0;
   std::int64_t reopen_ns_ = 0;
 };
 

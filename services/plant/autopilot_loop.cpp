@@ -17,6 +17,9 @@ constexpr std::int64_t kAlways = std::numeric_limits<std::int64_t>::max();
 // UTC at stamp 0 in lockstep, where nothing may depend on the computer's clock: the start of 2026.
 constexpr std::int64_t kLockstepEpochNs = 1'767'225'600'000'000'000;
 
+constexpr int kMostSamplesPerAnswer = 8;
+constexpr int kSoonerAnswers = 100;  // before time waits for more answers again
+
 std::int64_t unix_ns(runtime::Clock clock, std::int64_t stamp_ns) {
   return clock == runtime::Clock::kLockstep ? kLockstepEpochNs + stamp_ns : runtime::system_ns();
 }
@@ -25,7 +28,7 @@ std::int64_t unix_ns(runtime::Clock clock, std::int64_t stamp_ns) {
 
 AutopilotLoop::AutopilotLoop(SimulatedVehicle& vehicle, const plant::Vehicle& parameters,
                              const plant::SimulationSettings& simulation, std::uint64_t seed,
-                             const AutopilotLoopSettings& settings)
+                             const AutopilotLoopSettings& settings, comms::Node& node)
     : vehicle_(vehicle),
       settings_(settings),
       mapping_(settings.autopilot.controls, settings.autopilot.control_at_zero,
@@ -41,6 +44,11 @@ AutopilotLoop::AutopilotLoop(SimulatedVehicle& vehicle, const plant::Vehicle& pa
         "the rotors of {} do not turn as those of PX4's quadrotor in X: change the signs of CA_ROTOR*_KM",
         parameters.name);
   if (!settings.trace.empty()) trace_.emplace(settings.trace, parameters.rotor_count());
+  if (settings.autopilot.truth_only) {
+    clock_client_.emplace(node, runtime::monotonic_ns);
+  } else {
+    clock_server_.emplace(node, [this] { return simulated_ns(); });
+  }
 }
 
 void AutopilotLoop::run(const std::atomic<bool>& stop) {
@@ -62,7 +70,7 @@ void AutopilotLoop::wait_for_connection(const std::atomic<bool>& stop) {
   while (!autopilot_.introduced() && !stop.load(std::memory_order_relaxed)) {
     receive(runtime::monotonic_ns() + AutopilotConnection::kLongestWaitNs);
     vehicle_.report();
-    vehicle_.publish_again();
+    if (!settings_.autopilot.truth_only) vehicle_.publish_again();
   }
 }
 
@@ -122,13 +130,30 @@ void AutopilotLoop::receive(std::int64_t deadline_ns) {
   autopilot_.receive(deadline_ns, received_);
   for (std::size_t i = before; i < received_.size(); ++i) {
     const std::int64_t stamp_ns = stamp_answered_by(received_[i]);
-    if (stamp_ns <= vehicle_.simulation().stamp_ns())
-      answered_stamp_ns_ = std::max(answered_stamp_ns_, stamp_ns);
+    if (stamp_ns <= vehicle_.simulation().stamp_ns()) note_answer(stamp_ns);
   }
   if (silent_ && received_.size() > before && answered()) {
     silent_ = false;
     spdlog::info("autopilot: answers again");
   }
+}
+
+void AutopilotLoop::note_answer(std::int64_t stamp_ns) {
+  if (stamp_ns <= answered_stamp_ns_) return;
+  const auto samples = static_cast<int>(std::min((stamp_ns - answered_stamp_ns_) / imu_period_ns_,
+                                                 static_cast<std::int64_t>(kMostSamplesPerAnswer)));
+  const bool is_known = answered_stamp_ns_ >= 0;
+  answered_stamp_ns_ = stamp_ns;
+  sooner_answers_ = samples < samples_per_answer_ ? sooner_answers_ + 1 : 0;
+  const bool answers_less = is_known && silent_ && samples > samples_per_answer_;
+  if (!answers_less && sooner_answers_ < kSoonerAnswers) return;
+  sooner_answers_ = 0;
+  samples_per_answer_ = std::max(samples, 1);
+  if (samples > most_left_out_)
+    spdlog::warn(
+        "autopilot: answers one of {} samples; PX4 answers all if its IMU_GYRO_RATEMAX is above {:g} Hz",
+        samples, 1e9 / static_cast<double>(imu_period_ns_));
+  most_left_out_ = std::max(most_left_out_, samples);
 }
 
 // Makes the steps up to the next sample. In real time each obeys the controls that had arrived when it was due.
@@ -167,7 +192,7 @@ std::int64_t AutopilotLoop::stamp_answered_by(const ReceivedControls& received) 
 
 void AutopilotLoop::publish() {
   const plant::PlantSimulation& simulation = vehicle_.simulation();
-  vehicle_.publish_samples(truth_.due(simulation));
+  publish_samples(truth_.due(simulation));
   if (!simulation.imu_due()) return;
   HilSamples samples;
   samples.imu = simulation.imu();
@@ -175,6 +200,25 @@ void AutopilotLoop::publish() {
   samples.navigation = sensors_.sample(samples.truth);
   samples.unix_ns = unix_ns(settings_.clock, simulation.stamp_ns());
   if (simulation.stamp_ns() > 0) autopilot_.send(samples);
+}
+
+// Of another process that is the vehicle, the truth is known at the time by its clock at which the present sample was due.
+void AutopilotLoop::publish_samples(bool truth_needed) {
+  const std::int64_t pace_ns =
+      std::llround(static_cast<double>(vehicle_.simulation().stamp_ns()) / settings_.speed);
+  const bool is_paced = tick_ns_ > 0 && (!in_lockstep() || settings_.limited_in_lockstep);
+  origin_ns_.store(is_paced ? tick_ns_ - pace_ns : 0, std::memory_order_relaxed);
+  if (!clock_client_) return vehicle_.publish_samples(truth_needed);
+  clock_client_->ask_if_due();
+  if (!truth_needed || tick_ns_ == 0) return;
+  if (const auto stamp_ns = clock_client_->to_vehicle(tick_ns_)) vehicle_.publish_truth(*stamp_ns);
+}
+
+// The vehicle's clock, also between its samples; nullopt while it runs as fast as the autopilot answers.
+std::optional<std::int64_t> AutopilotLoop::simulated_ns() const {
+  const std::int64_t origin_ns = origin_ns_.load(std::memory_order_relaxed);
+  if (origin_ns == 0) return std::nullopt;
+  return std::llround(static_cast<double>(runtime::monotonic_ns() - origin_ns) * settings_.speed);
 }
 
 }  // namespace swiftlet::services

@@ -2,7 +2,8 @@
 // autopilot's answers.
 //
 // In lockstep, time waits for the controls that answer each HIL_SENSOR, as soon as the autopilot has sent controls
-// with the flag of lockstep. Without an answer for a time-out, and before the first, time goes on at the pace of real time: an
+// with the flag of lockstep. An autopilot whose loops are slower leaves samples without an answer: time waits for every second
+// one then, or third, and so on. Without an answer for a time-out, and before the first, time goes on at the pace of real time: an
 // autopilot may leave samples without an answer while it starts.
 #pragma once
 
@@ -15,6 +16,9 @@
 #include "swiftlet/plant/simulation/navigation_sensors.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
 #include "swiftlet/recording/flight_trace.hpp"
+#include "swiftlet/services/dds/clocks/clock_client.hpp"
+#include "swiftlet/services/dds/clocks/clock_server.hpp"
+#include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/plant/autopilot_settings.hpp"
 #include "swiftlet/services/plant/mavlink_autopilot.hpp"
 #include "swiftlet/services/plant/rotor_mapping.hpp"
@@ -39,7 +43,7 @@ class AutopilotLoop {
   // The vehicle must outlive the loop. Throws as MavlinkAutopilot, RotorMapping and FlightTrace do.
   AutopilotLoop(SimulatedVehicle& vehicle, const plant::Vehicle& parameters,
                 const plant::SimulationSettings& simulation, std::uint64_t seed,
-                const AutopilotLoopSettings& settings);
+                const AutopilotLoopSettings& settings, comms::Node& node);
 
   // Runs until `stop`. In lockstep, time stands until the first message of an autopilot.
   void run(const std::atomic<bool>& stop);
@@ -52,12 +56,17 @@ class AutopilotLoop {
   void wait_for_tick(const std::atomic<bool>& stop);
   void receive(std::int64_t deadline_ns);
   bool waits_for_answer() const;
-  bool answered() const { return answered_stamp_ns_ >= vehicle_.simulation().stamp_ns(); }
+  bool answered() const {
+    return vehicle_.simulation().stamp_ns() - answered_stamp_ns_ < samples_per_answer_ * imu_period_ns_;
+  }
+  void note_answer(std::int64_t stamp_ns);
   void advance();
   void obey_until(std::int64_t due_ns);
   void obey(const ReceivedControls& received);
   std::int64_t stamp_answered_by(const ReceivedControls& received) const;
   void publish();
+  void publish_samples(bool truth_needed);
+  std::optional<std::int64_t> simulated_ns() const;
 
   SimulatedVehicle& vehicle_;
   const AutopilotLoopSettings settings_;
@@ -71,9 +80,17 @@ class AutopilotLoop {
   std::int64_t tick_ns_ = 0;     // when the present sample was due, computer's clock
   std::vector<ReceivedControls> received_;
   std::int64_t answered_stamp_ns_ = -1;  // newest sample that controls have answered
-  bool silent_ = false;                  // lockstep: an answer was overdue, and none has come since
-  plant::ActuatorCommand command_;       // newest
+  int samples_per_answer_ = 1;
+  int sooner_answers_ = 0;          // in a row, after fewer samples
+  int most_left_out_ = 1;           // the most samples per answer that were logged
+  bool silent_ = false;             // lockstep: an answer was overdue, and none has come since
+  plant::ActuatorCommand command_;  // newest
   std::optional<runtime::FlightTrace> trace_;
+  std::atomic<std::int64_t> origin_ns_{
+      0};  // computer's clock at stamp 0, at the present pace; 0: time stands
+  std::optional<comms::ClockClient> clock_client_;  // truth_only
+  std::optional<comms::ClockServer>
+      clock_server_;  // otherwise. Last two: their callbacks use all members above
 };
 
 }  // namespace swiftlet::services

@@ -17,6 +17,8 @@ struct AutopilotSettings {
   std::string controls = "px4";
   double control_at_zero = 0.0;  // control at throttle 0
   double control_at_full = 1.0;  // control at throttle 1
+  // Only ground_truth is published, with stamps of the vehicle on the network: another process, such as swiftlet-px4, is that.
+  bool truth_only = false;
   // Lockstep: after this time without an answer, simulated time goes on at the pace of real time.
   double answer_timeout_s = 0.5;
 

@@ -22,13 +22,15 @@ HostedPlant::HostedPlant(const comms::Participant& participant, const std::strin
                          const PlantSettings& settings)
     : HostedVehicle(name),
       node_(participant, name, [this](const std::string& fault) { fail(fault); }),
-      reporter_(node_, settings.vehicle, settings.simulation,
-                settings.autopilot ? settings.autopilot->description() : ""),
-      simulated_(settings.vehicle, settings.simulation, settings.seed, settings.initial, node_) {
+      simulated_(settings.vehicle, settings.simulation, settings.seed, settings.initial, node_,
+                 settings.autopilot && settings.autopilot->truth_only) {
   comms::log_peers(node_);
+  if (!settings.autopilot || !settings.autopilot->truth_only)
+    reporter_.emplace(node_, settings.vehicle, settings.simulation,
+                      settings.autopilot ? settings.autopilot->description() : "");
   if (settings.autopilot) {
     autopilot_loop_.emplace(simulated_, settings.vehicle, settings.simulation, settings.seed,
-                            autopilot_loop_settings(settings));
+                            autopilot_loop_settings(settings), node_);
   } else if (settings.clock == runtime::Clock::kRealtime) {
     const double speed = settings.speed > 0.0 ? settings.speed : 1.0;
     realtime_loop_.emplace(simulated_, settings.simulation, speed, settings.phase, node_, settings.realtime);
@@ -48,7 +50,7 @@ void HostedPlant::run(const std::atomic<bool>& stop) {
 
 void HostedPlant::attend() {
   simulated_.reports().take(last_);
-  reporter_.publish_due(last_);
+  if (reporter_) reporter_->publish_due(last_);
 }
 
 }  // namespace swiftlet::services

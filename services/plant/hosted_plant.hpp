@@ -44,7 +44,7 @@ class HostedPlant final : public runtime::HostedVehicle {
 
  private:
   comms::Node node_;
-  PlantReporter reporter_;
+  std::optional<PlantReporter> reporter_;  // none with truth_only
   SimulatedVehicle simulated_;
   PlantReport last_;
   std::optional<RealtimeLoop> realtime_loop_;  // last: their subscriptions use all members above

@@ -100,6 +100,10 @@ void add_autopilot_options(runtime::CommandLine app, Options& options) {
       .range(-1.0, 1.0)
       .show_default("0 1")
       .needs(chosen);
+  app.add_flag("--truth-only", autopilot.truth_only,
+               "Publish ground_truth alone, for motion capture, with stamps of the vehicle on the network: "
+               "swiftlet-px4 or another process is that")
+      .needs(chosen);
   app.add_option(
          "--autopilot-timeout", autopilot.answer_timeout_s,
          "Lockstep: after this time without an answer, s, simulated time goes on at the pace of real time")
@@ -180,6 +184,8 @@ void check_autopilot(const Options& options, std::size_t vehicles) {
   const std::string baud_fault = runtime::fault_of_baud(autopilot.baud);
   if (!baud_fault.empty()) throw std::invalid_argument("--baud: " + baud_fault);
   if (options.lockstep.paused) throw std::invalid_argument("--paused: is not possible with --autopilot");
+  if (autopilot.truth_only && options.clock == runtime::Clock::kLockstep && options.speed != 1.0)
+    throw std::invalid_argument("--truth-only: needs real time, in lockstep --speed 1");
   if (plant::control_levels_from(options.levels) != plant::ControlLevels(plant::ControlLevel::kActuators))
     throw std::invalid_argument("--level: an autopilot commands throttles, level actuators");
   if (!autopilot.device.empty() && options.clock == runtime::Clock::kLockstep)
@@ -258,7 +264,8 @@ void run(const Options& options) {
   comms::NodeSettings network = options.node;
   network.announcement_period = comms::kFixturePeriod;
   network.deadlines = false;  // it tells the active controller by its term, and each deadline wakes a thread
-  network.source_of = comms::topics::kImu.name;
+  network.source_of =
+      options.autopilot.truth_only ? comms::topics::kGroundTruth.name : comms::topics::kImu.name;
   comms::Participant participant(network, names);
   const comms::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
   std::vector<std::unique_ptr<runtime::HostedVehicle>> vehicles;

@@ -43,16 +43,18 @@ std::vector<comms::Subscription> subscribe_commands(comms::Node& node, plant::Co
 }
 
 SimulatedVehicle::SimulatedVehicle(const plant::Vehicle& vehicle, const plant::SimulationSettings& settings,
-                                   std::uint64_t seed, const plant::VehicleState& initial, comms::Node& node)
+                                   std::uint64_t seed, const plant::VehicleState& initial, comms::Node& node,
+                                   bool truth_only)
     : simulation_(vehicle, settings, seed, initial),
       command_path_(settings),
       firmware_(vehicle, settings),
       answers_(plant::period_ns(settings.imu.rate_hz)),
-      imu_(node.publish(kImu)),
-      ground_truth_(node.publish(kGroundTruth)),
-      rotor_speeds_(node.publish(kRotorSpeeds)),
-      battery_(node.publish(kBattery)) {
+      ground_truth_(node.publish(kGroundTruth)) {
   inform_firmware();
+  if (truth_only) return;
+  imu_ = node.publish(kImu);
+  rotor_speeds_ = node.publish(kRotorSpeeds);
+  battery_ = node.publish(kBattery);
 }
 
 bool SimulatedVehicle::obey(const ReceivedCommand& received) {
@@ -145,9 +147,12 @@ void SimulatedVehicle::publish_again() {
   publish_imu_again();
 }
 
-void SimulatedVehicle::publish_truth() {
+void SimulatedVehicle::publish_truth() { publish_truth(simulation_.stamp_ns()); }
+
+void SimulatedVehicle::publish_truth(std::int64_t stamp_ns) {
   const std::uint64_t sequence = truth_message_.sequence_number() + 1;
   truth_message_ = comms::to_message(simulation_.truth());
+  truth_message_.stamp_ns(stamp_ns);
   truth_message_.sequence_number(sequence);
   ground_truth_.publish(truth_message_);
 }

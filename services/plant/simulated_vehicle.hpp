@@ -54,8 +54,10 @@ std::vector<comms::Subscription> subscribe_commands(comms::Node& node, plant::Co
 // Not thread-safe.
 class SimulatedVehicle {
  public:
+  // truth_only: publishes nothing but by publish_truth().
   SimulatedVehicle(const plant::Vehicle& vehicle, const plant::SimulationSettings& settings,
-                   std::uint64_t seed, const plant::VehicleState& initial, comms::Node& node);
+                   std::uint64_t seed, const plant::VehicleState& initial, comms::Node& node,
+                   bool truth_only = false);
 
   const plant::PlantSimulation& simulation() const { return simulation_; }
 
@@ -73,6 +75,8 @@ class SimulatedVehicle {
   void step();
   // Publishes the samples due at this stamp, the IMU's first: the controller waits for it.
   void publish_samples(bool truth_needed);
+  // Publishes the ground truth alone, with this stamp.
+  void publish_truth(std::int64_t stamp_ns);
   // The same for lockstep: publishes battery and rotor speeds before the IMU sample that belongs to them. The
   // IMU sample carries the sequence numbers that control must wait for. mocap_sequence: the newest frame that
   // motion capture makes of the ground truth up to this stamp.

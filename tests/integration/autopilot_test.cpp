@@ -17,8 +17,11 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/services/dds/clocks/clock_client.hpp"
+#include "swiftlet/services/dds/clocks/clock_server.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/scripted_autopilot.hpp"
@@ -204,6 +207,60 @@ TEST_F(Autopilot, ASilentOneStopsTheRotorsInLockstepToo) {
   ASSERT_TRUE(pilot->fly_until(2.0, kStuck));
   EXPECT_TRUE(says(*plant, "autopilot: no answer to the sample of t = 2.0"));
   EXPECT_TRUE(says(*plant, "rotors stopped: no actuator command for 0.5 s"));
+}
+
+// GIVEN an autopilot whose loops are half as fast as the IMU WHEN it flies in lockstep THEN time waits for its answers only.
+TEST_F(Autopilot, OneThatAnswersEverySecondSampleFliesInLockstepToo) {
+  const auto plant = start_plant(
+      {"--autopilot-port", std::to_string(port_), "--clock", "lockstep", "--autopilot-timeout", "0.3"});
+  ScriptedAutopilotSettings settings;
+  settings.samples_per_answer = 2;
+  const auto pilot = autopilot(settings);
+  ASSERT_TRUE(pilot->connect(port_, kStuck));
+  ASSERT_TRUE(pilot->fly_until(4.0, kStuck)) << plant->errors();
+  EXPECT_NEAR(pilot->log().height_m, 0.5, 0.4) << "its gains are those of the whole rate";
+  EXPECT_TRUE(says(*plant, "autopilot: answers one of 2 samples"));
+  const std::string log = plant->errors();
+  std::size_t overdue = 0;
+  for (std::size_t at = log.find("no answer to"); at != std::string::npos;
+       at = log.find("no answer to", at + 1))
+    ++overdue;
+  EXPECT_LE(overdue, 3U) << log;
+}
+
+// GIVEN another process that is the vehicle WHEN the plant publishes the truth alone THEN with stamps of that vehicle's clock.
+TEST_F(Autopilot, TheTruthAloneHasTheStampsOfTheVehicle) {
+  constexpr std::int64_t kAhead = 7'000'000'000;
+  comms::Node vehicle(node());
+  const comms::ClockServer clock(vehicle, [] { return runtime::monotonic_ns() + kAhead; });
+  Inbox<std::int64_t> ages;
+  const auto truth = vehicle.subscribe<comms::msg::GroundTruth>(
+      comms::topics::kGroundTruth,
+      [&](const auto& message) { ages.put(runtime::monotonic_ns() + kAhead - message.stamp_ns()); });
+  const auto plant = start_plant(
+      {"--autopilot-port", std::to_string(port_), "--clock", "lockstep", "--speed", "1", "--truth-only"});
+  const auto pilot = autopilot();
+  ASSERT_TRUE(pilot->connect(port_, kStuck));
+  ASSERT_TRUE(pilot->fly_until(1.5, kStuck)) << plant->errors();
+  ASSERT_GT(ages.size(), 20U);
+  for (const std::int64_t age_ns : ages.items()) {
+    EXPECT_GT(age_ns, -50'000'000);
+    EXPECT_LT(age_ns, 5'000'000'000) << "a busy machine may be late, but not by the origin of a clock";
+  }
+  for (const std::string& topic : vehicle.topics_seen()) {
+    EXPECT_EQ(topic.find("/imu"), std::string::npos);
+    EXPECT_EQ(topic.find("/vehicle_info"), std::string::npos);
+  }
+}
+
+TEST_F(Autopilot, AnswersRequestsForItsClock) {
+  const auto plant = start_plant({"--autopilot-port", std::to_string(port_)});
+  comms::Node watcher(node());
+  comms::ClockClient client(watcher, runtime::monotonic_ns);
+  EXPECT_TRUE(eventually([&] {
+    client.ask_if_due();
+    return client.to_vehicle(runtime::monotonic_ns()).has_value();
+  })) << plant->errors();
 }
 
 TEST_F(Autopilot, IgnoresNoiseWrongChecksumsAndOtherSystems) {

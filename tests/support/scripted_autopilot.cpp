@@ -158,7 +158,7 @@ void ScriptedAutopilot::on_sensor(const mavlink::HilSensor& sensor) {
   if (has(HilSensor::kMagnetometer)) ++log_.magnetometers;
   if (has(HilSensor::kBarometer) && log_.barometers++ == 0) log_.first_barometer = sensor;
   if (!has(HilSensor::kAccelerometer | HilSensor::kGyro)) return;
-  ++log_.imus;
+  if (log_.imus++ % settings_.samples_per_answer != 0) return;
   send_message(controls(sensor), settings_.system_id);
   log_.answer_times_us.push_back(std::chrono::duration<double, std::micro>(Clock::now() - received).count());
 }

@@ -33,6 +33,7 @@ struct ScriptedAutopilotSettings {
   double arms_at_s = 0.2;          // by its clock
   double height_m = 0.5;           // of the hover above the origin
   std::uint64_t period_us = 2000;  // of HIL_SENSOR, to check
+  int samples_per_answer = 1;      // it leaves the others without an answer
 };
 
 // What it received.
