@@ -13,6 +13,7 @@
 #include "swiftlet/control/design/control_design.hpp"
 #include "swiftlet/control/design/control_gains.hpp"
 #include "swiftlet/control/estimation/disturbance_observer.hpp"
+#include "swiftlet/control/estimation/poses_ahead.hpp"
 #include "swiftlet/control/estimation/rotor_observer.hpp"
 #include "swiftlet/control/estimation/takeoff_consistency.hpp"
 #include "swiftlet/control/level_commands.hpp"
@@ -52,6 +53,7 @@ struct FlightController::Impl {
 
   // The stages of a step, in order.
   void restart_if_clock_went_back(const plant::ImuSample& sample);
+  bool predict(const plant::ImuSample& sample);
   void count_unusable(bool usable, std::int64_t stamp_ns);
   double store_sample(const plant::ImuSample& sample);
   SupervisorInputs inputs() const;
@@ -85,6 +87,7 @@ struct FlightController::Impl {
   double rotor_lag_s;
   double max_tilt_tangent;
   Estimator estimator;
+  PosesAhead poses_ahead;
   RotorObserver rotors;
   DisturbanceObserver disturbance;
   TakeoffConsistencyMonitor takeoff_monitor;
@@ -129,6 +132,7 @@ FlightController::Impl::Impl(const plant::Vehicle& vehicle_in, const ControlSett
       rotor_lag_s(design_in.rotor_lag_s),
       max_tilt_tangent(std::tan(settings_in.limits.max_tilt_rad)),
       estimator(settings_in.estimator),
+      poses_ahead(settings_in.estimator.detectors.recovery.longest_wait_s),
       rotors(vehicle_in, settings_in.estimator.rotor_speed_bandwidth),
       disturbance(settings_in.disturbance),
       takeoff_monitor(settings_in.estimator.detectors.takeoff_consistency),
@@ -150,12 +154,21 @@ void FlightController::Impl::restart_if_clock_went_back(const plant::ImuSample& 
   const bool rotors_off = command.rotor_state == plant::RotorState::kOff;
   if (sample.stamp_ns >= last_stamp_ns || !rotors_off) return;
   estimator = Estimator(settings.estimator);
+  poses_ahead.clear();
   rotors = RotorObserver(vehicle, settings.estimator.rotor_speed_bandwidth);
   resets_seen = 0;
   last_stamp_ns = 0;
   vehicle_fault_since_ns = 0;
   saturated_ns = -1;
   has_battery = false;
+}
+
+// Propagates the estimate to the sample, and fuses the poses that waited for it. Returns false for a sample that is not
+// usable.
+bool FlightController::Impl::predict(const plant::ImuSample& sample) {
+  if (!estimator.predict(sample)) return false;
+  while (const auto pose = poses_ahead.take(sample.stamp_ns)) estimator.correct(*pose, command.rotor_state);
+  return true;
 }
 
 // For how long no sample was usable, by the stamps. The count of samples covers a clock that stands still. A
@@ -441,7 +454,7 @@ const plant::VehicleCommand& FlightController::on_imu(const plant::ImuSample& sa
   Impl& c = *impl_;
   // Estimate.
   c.restart_if_clock_went_back(sample);
-  const bool usable = c.estimator.predict(sample);
+  const bool usable = c.predict(sample);
   c.count_unusable(usable, sample.stamp_ns);
   if (!usable && c.unusable_s < c.settings.failsafe.imu_timeout_s) {
     answer(clients);
@@ -487,6 +500,8 @@ void FlightController::set_levels(plant::ControlLevels accepted, std::optional<p
 }
 
 void FlightController::on_pose(const plant::PoseSample& sample) {
+  const std::int64_t now_ns = impl_->estimator.estimate().stamp_ns;
+  if (now_ns > 0 && impl_->poses_ahead.keep(sample, now_ns)) return;
   impl_->estimator.correct(sample, impl_->command.rotor_state);
 }
 

@@ -2,6 +2,8 @@
 
 #include <optional>
 
+#include "swiftlet/plant/simulation/streams.hpp"
+
 namespace swiftlet::ground {
 
 ClosedLoop::ClosedLoop(const plant::Vehicle& vehicle, const plant::SimulationSettings& simulation,
@@ -15,7 +17,9 @@ ClosedLoop::ClosedLoop(const plant::Vehicle& plant_vehicle, const plant::Vehicle
       plant(plant_vehicle, simulation, seed),
       mocap(simulation.mocap, seed),
       mocap_path(simulation, seed),
-      command_path(simulation),
+      telemetry_path(simulation, seed),
+      command_path(simulation, seed),
+      pose_path(simulation, seed, plant::streams::kRadioPoses),
       firmware(plant_vehicle, simulation),
       controller(control_vehicle, settings) {
   controller.set_levels(simulation.control_levels, std::nullopt);
@@ -33,46 +37,50 @@ void ClosedLoop::step() {
 
 void ClosedLoop::collect() {
   if (plant.imu()) firmware.on_imu(*plant.imu());
-  if (plant.battery()) {
-    battery_ = plant.battery();
-    firmware.on_battery(*battery_);
-  }
-  if (plant.rotor_speeds()) rotor_speeds_ = plant.rotor_speeds();
+  if (plant.battery()) firmware.on_battery(*plant.battery());
+  telemetry_path.collect(plant, firmware.obeyed());
 }
 
 void ClosedLoop::answer() {
+  const std::int64_t now_ns = plant.stamp_ns();
   const plant::VehicleState& truth = plant.state();
-  const auto pose = mocap_path.pass(mocap.update(plant.stamp_ns(), truth.position_ned, truth.q_ned_from_frd),
-                                    plant.stamp_ns());
+  const auto pose = mocap_path.pass(mocap.update(now_ns, truth.position_ned, truth.q_ned_from_frd), now_ns);
   if (pose && mocap_connected) {
     pose_ = pose;
-    firmware.on_pose(*pose);
+    if (pose_path.on()) {
+      pose_path.send(*pose, now_ns);
+    } else {
+      firmware.on_pose(*pose);
+    }
   }
-  if (!plant.imu()) return;
-  if (pose_) controller.on_pose(*pose_);
-  if (battery_) controller.on_battery(*battery_);
-  if (rotor_speeds_) controller.on_rotor_speeds(*rotor_speeds_);
-  sent = controller.on_imu(*plant.imu());
+  while (const auto packet = telemetry_path.take(now_ns)) answer(*packet);
   command = firmware.as_actuators(sent);
-  if (sensors != nullptr) record_sensors();
+}
+
+void ClosedLoop::answer(const plant::TelemetryPacket& packet) {
+  if (pose_) controller.on_pose(*pose_);
+  if (packet.battery) controller.on_battery(*packet.battery);
+  if (packet.rotor_speeds) controller.on_rotor_speeds(*packet.rotor_speeds);
+  sent = controller.on_imu(packet.imu);
+  answered = packet.imu;
+  if (sensors != nullptr) record_sensors(packet);
   pose_.reset();
-  battery_.reset();
-  rotor_speeds_.reset();
   if (control_connected && command_path.send(sent, plant.stamp_ns())) firmware.accept(sent, plant.stamp_ns());
 }
 
-void ClosedLoop::record_sensors() const {
-  sensors->imu.append(*plant.imu());
-  sensors->commands.append(command);
+void ClosedLoop::record_sensors(const plant::TelemetryPacket& packet) const {
+  sensors->imu.append(packet.imu);
+  sensors->commands.append(firmware.as_actuators(sent));
   if (pose_) sensors->poses.append(*pose_);
-  if (battery_) sensors->batteries.append(*battery_);
-  if (rotor_speeds_) sensors->rotor_speeds.append(*rotor_speeds_);
+  if (packet.battery) sensors->batteries.append(*packet.battery);
+  if (packet.rotor_speeds) sensors->rotor_speeds.append(*packet.rotor_speeds);
 }
 
 const plant::MotorCommand& ClosedLoop::motor_command() {
-  if (const auto arrived = command_path.arrived(plant.stamp_ns()))
-    firmware.accept(*arrived, plant.stamp_ns());
-  return firmware.motor_command(plant.stamp_ns());
+  const std::int64_t now_ns = plant.stamp_ns();
+  while (const auto pose = pose_path.take(now_ns)) firmware.on_pose(*pose);
+  if (const auto arrived = command_path.arrived(now_ns)) firmware.accept(*arrived, now_ns);
+  return firmware.motor_command(now_ns);
 }
 
 bool ClosedLoop::step_until(const std::function<bool()>& predicate, double limit_s) {

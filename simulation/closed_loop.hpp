@@ -14,6 +14,8 @@
 #include "swiftlet/plant/simulation/firmware/firmware.hpp"
 #include "swiftlet/plant/simulation/links/command_path.hpp"
 #include "swiftlet/plant/simulation/links/mocap_path.hpp"
+#include "swiftlet/plant/simulation/links/radio.hpp"
+#include "swiftlet/plant/simulation/links/telemetry_path.hpp"
 #include "swiftlet/plant/simulation/mocap.hpp"
 #include "swiftlet/plant/simulation/plant_simulation.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
@@ -33,8 +35,8 @@ class ClosedLoop {
              const plant::SimulationSettings& simulation, const control::ControlSettings& settings,
              std::uint64_t seed);
 
-  // Advances to the next IMU stamp. The controller then processes the IMU sample, unless a fault suppresses
-  // it.
+  // Advances to the next IMU stamp. The controller then processes the IMU samples that have arrived: that of this stamp,
+  // unless a fault suppresses it, or over a radio those of before.
   void step();
   // Steps until the predicate is true. Returns false if it is not within limit_s of simulated time.
   bool step_until(const std::function<bool()>& predicate, double limit_s);
@@ -47,25 +49,27 @@ class ClosedLoop {
   plant::PlantSimulation plant;
   plant::Mocap mocap;
   plant::MocapPath mocap_path;
+  plant::TelemetryPath telemetry_path;
   plant::CommandPath command_path;
+  plant::RadioLine<plant::PoseSample> pose_path;  // to the vehicle
   plant::Firmware firmware;
   control::FlightController controller;
   plant::VehicleCommand sent;      // the controller's last command
   plant::ActuatorCommand command;  // the same, as Firmware::as_actuators()
   bool mocap_connected = true;
-  bool control_connected = true;    // false: the vehicle receives no commands
-  SensorRecord* sensors = nullptr;  // records the controller's inputs and commands; null: no record
+  bool control_connected = true;             // false: the vehicle receives no commands
+  std::optional<plant::ImuSample> answered;  // the last sample that the controller has processed
+  SensorRecord* sensors = nullptr;           // records the controller's inputs and commands; null: no record
 
  private:
   void collect();
   void answer();
-  void record_sensors() const;
+  void answer(const plant::TelemetryPacket& packet);
+  void record_sensors(const plant::TelemetryPacket& packet) const;
   const plant::MotorCommand& motor_command();
 
-  // Newest samples since the last IMU sample that the controller processed.
-  std::optional<plant::PoseSample> pose_;
-  std::optional<plant::BatterySample> battery_;
-  std::optional<plant::RotorSpeedSample> rotor_speeds_;
+  std::optional<plant::PoseSample>
+      pose_;  // the newest since the last IMU sample that the controller processed
 };
 
 }  // namespace swiftlet::ground

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "swiftlet/control/attitude/attitude_error.hpp"
 #include "swiftlet/control/types/mode.hpp"
@@ -76,11 +77,19 @@ class LoopTransport final : public MissionTransport {
   bool observe() {
     const bool sampled = runtime::is_telemetry_sample(loop_.plant.imu_count(), imu_period_ns_);
     if (observer_.trace != nullptr) observer_.trace->add(loop_.plant.truth(), loop_.command);
-    if (observer_.record != nullptr) record(*observer_.record, sampled);
+    if (observer_.record != nullptr) record(*observer_.record);
     return !sampled || !observer_.cancelled || !observer_.cancelled();
   }
 
-  void record(FlightRecord& record, bool sampled) {
+  // True if control has answered a sample at the telemetry rate since the last call.
+  bool answered_sample() {
+    if (!loop_.answered) return false;
+    const std::uint64_t before = std::exchange(answered_sequence_, loop_.answered->sequence);
+    return before != answered_sequence_ &&
+           runtime::is_telemetry_sample(answered_sequence_, before, imu_period_ns_);
+  }
+
+  void record(FlightRecord& record) {
     const std::int64_t stamp_ns = loop_.plant.stamp_ns();
     record.truth.append(row_of(loop_.plant.truth()));
     const control::MissionProgress& now = status_.mission;
@@ -89,9 +98,9 @@ class LoopTransport final : public MissionTransport {
           {stamp_ns, now.id, static_cast<int>(now.state), static_cast<std::uint32_t>(now.item_index)});
       recorded_ = now;
     }
-    if (!sampled || !loop_.plant.imu()) return;
+    if (!answered_sample()) return;
     const control::Estimate& estimate = loop_.controller.estimate();
-    record.reference.append(reference_row(stamp_ns));
+    record.reference.append(reference_row(loop_.answered->stamp_ns));
     record.estimate.append({estimate.stamp_ns, array(estimate.position_ned), array(estimate.velocity_ned)});
   }
 
@@ -117,6 +126,7 @@ class LoopTransport final : public MissionTransport {
   const FlightObserver& observer_;
   const control::Status& status_;
   std::int64_t imu_period_ns_;
+  std::uint64_t answered_sequence_ = 0;
   control::MissionProgress recorded_;
 };
 

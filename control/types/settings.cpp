@@ -115,6 +115,7 @@ void check_detectors(const DetectorSettings& detectors, RuleChecker& check) {
   at_least_0("takeoff_consistency.longest_s", climb.longest_s);
 
   const RecoverySettings& recovery = detectors.recovery;
+  check.between("estimator.detectors.recovery.longest_wait_s", recovery.longest_wait_s, 0.0, 0.2);
   check.between("estimator.detectors.recovery.max_lead_s", recovery.max_lead_s, 0.0, 1.0);
   at_least_1("recovery.glitch_poses", recovery.glitch_poses);
   above_0("recovery.step_time_s", recovery.step_time_s);

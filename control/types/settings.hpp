@@ -123,7 +123,8 @@ struct TakeoffConsistencySettings {
 
 // Poses that contradict the estimate, and when the estimate resets to them (estimator.hpp).
 struct RecoverySettings {
-  double max_lead_s = 0.02;         // s by which a pose may be ahead of the IMU
+  double longest_wait_s = 0.06;     // s that a pose waits for the IMU samples of its time (poses_ahead.hpp)
+  double max_lead_s = 0.02;         // s by which a pose may be ahead of the IMU otherwise
   int glitch_poses = 2;             // contradictions in a row that move the estimate no faster than noise
   double step_time_s = 0.05;        // s, assumed duration of a step in the poses
   double sudden = 2.0;              // times outlier_position_m: a first innovation above is a jump

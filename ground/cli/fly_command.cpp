@@ -240,7 +240,8 @@ Command add_fly_command(runtime::CommandLine root) {
   app.add_flag("--trace", options->trace,
                "lockstep only: write trace.csv, which holds every sample and command bit for bit");
   for (const char* launch_option :
-       {"--vehicle", "--simulation", "--seed", "--imu-rate", "--level", "--clock", "--speed"}) {
+       {"--vehicle", "--simulation", "--seed", "--imu-rate", "--level", "--radio-delay", "--radio-jitter",
+        "--radio-loss", "--clock", "--speed"}) {
     attach.excludes(app.option(launch_option));
   }
   // Processes that it starts are on this host.

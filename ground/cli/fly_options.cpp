@@ -48,6 +48,18 @@ void add_level_option(runtime::CommandLine app, plant::ControlLevel& level) {
       .show_default("actuators");
 }
 
+void add_radio_options(runtime::CommandLine app, FlyOptions& options) {
+  app.add_option("--radio-delay", options.radio_delay_s,
+                 "radio between vehicle and control: delay one way, s; default: that of the simulation file")
+      .range(0.0, 0.2);
+  app.add_option("--radio-jitter", options.radio_jitter_s,
+                 "radio: additional delay, uniform from 0 to this, s; default: that of the simulation file")
+      .range(0.0, 0.2);
+  app.add_option("--radio-loss", options.radio_loss,
+                 "radio: share of the packets that are lost; default: that of the simulation file")
+      .range(0.0, 0.9);
+}
+
 void add_frame_option(runtime::CommandLine app, std::optional<MissionFrame>& frame) {
   app.add_choice<std::optional<MissionFrame>>(
       "--frame", frame, {{"ned", MissionFrame::kNed}, {"enu", MissionFrame::kEnu}},
@@ -66,6 +78,7 @@ void add_file_options(runtime::CommandLine app, FileOptions& options) {
 void add_fly_options(runtime::CommandLine app, FlyOptions& options) {
   add_mission_options(app, options);
   add_level_option(app, options.level);
+  add_radio_options(app, options);
   const runtime::Option record = app.add_option(
       "--record", options.record,
       "new folder for flight.csv, report.json, flight.png and logs; default: flights/<date>-<mission>");

@@ -15,6 +15,8 @@ void add_mission_options(runtime::CommandLine app, FlyOptions& options);
 // Adds the options of add_mission_options(), --level, --record, --replace, --sensors and --json.
 void add_fly_options(runtime::CommandLine app, FlyOptions& options);
 // Adds --level: at which the vehicle is commanded.
+// Of the radio between vehicle and control.
+void add_radio_options(runtime::CommandLine app, FlyOptions& options);
 void add_level_option(runtime::CommandLine app, plant::ControlLevel& level);
 // Adds --frame and --tolerance: how a CSV file is read.
 void add_file_options(runtime::CommandLine app, FileOptions& options);

@@ -88,6 +88,10 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
   plan.imu_rate_option_hz = options.imu_rate_hz;
   if (options.imu_rate_hz > 0) plan.simulation.imu.rate_hz = options.imu_rate_hz;
   plan.simulation.control_levels = options.level;
+  plant::RadioSettings& radio = plan.simulation.radio;
+  radio.delay_s = options.radio_delay_s.value_or(radio.delay_s);
+  radio.jitter_s = options.radio_jitter_s.value_or(radio.jitter_s);
+  radio.loss = options.radio_loss.value_or(radio.loss);
   if (options.sensors && options.level != plant::ControlLevel::kActuators)
     throw InputError(
         "--sensors: needs --level actuators: at other levels the vehicle does not report its throttles");
@@ -216,6 +220,11 @@ std::vector<ProcessSettings> processes(const Fleet& fleet, const comms::NodeSett
   }
   const char* const level = plant::to_string(first.simulation.control_levels.lowest());
   plant.insert(plant.end(), {"--level", level});
+  const plant::RadioSettings& radio = first.simulation.radio;
+  if (radio.on()) {
+    plant.insert(plant.end(), {"--radio-delay", runtime::exact(radio.delay_s), "--radio-jitter",
+                               runtime::exact(radio.jitter_s), "--radio-loss", runtime::exact(radio.loss)});
+  }
   if (first.clock == runtime::Clock::kLockstep) {
     plant.emplace_back("--paused");
     const fs::path trace = several ? fleet.folder / "{}" / first.trace_file().filename() : first.trace_file();

@@ -43,8 +43,9 @@ struct FlyOptions {
   std::string record;      // empty: flights/<date-time>-<mission>
   bool replace = false;    // delete the record that is in the folder `record`
   std::uint64_t seed = 1;
-  int imu_rate_hz = 0;                                          // 0: as in the simulation file
-  plant::ControlLevel level = plant::ControlLevel::kActuators;  // at which the vehicle is commanded
+  int imu_rate_hz = 0;                                              // 0: as in the simulation file
+  plant::ControlLevel level = plant::ControlLevel::kActuators;      // at which the vehicle is commanded
+  std::optional<double> radio_delay_s, radio_jitter_s, radio_loss;  // unset: as in the simulation file
   comms::NodeSettings network;
   // m, initial position; the mission is shifted by it.
   Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();

@@ -107,6 +107,7 @@ control::DetectorSettings read_detectors(const ConfigNode& node) {
   detectors.takeoff_consistency.confirmed_climb_m = takeoff_consistency.at("confirmed_climb_m").number();
   detectors.takeoff_consistency.longest_s = takeoff_consistency.at("longest_s").number();
   const ConfigNode recovery = node.at("recovery");
+  if (const auto wait = recovery.find("longest_wait_s")) detectors.recovery.longest_wait_s = wait->number();
   detectors.recovery.max_lead_s = recovery.at("max_lead_s").number();
   detectors.recovery.glitch_poses = read_count(recovery.at("glitch_poses"));
   detectors.recovery.step_time_s = recovery.at("step_time_s").number();

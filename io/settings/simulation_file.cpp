@@ -47,6 +47,14 @@ plant::MocapSettings read_mocap(const ConfigNode& node) {
   return mocap;
 }
 
+plant::RadioSettings read_radio(const ConfigNode& node) {
+  plant::RadioSettings radio;
+  radio.delay_s = node.at("delay_s").number();
+  radio.jitter_s = node.at("jitter_s").number();
+  radio.loss = node.at("loss").number();
+  return radio;
+}
+
 plant::SupplySettings read_supply(const ConfigNode& node) {
   plant::SupplySettings supply;
   supply.ideal = node.at("ideal").boolean();
@@ -183,6 +191,7 @@ plant::SimulationSettings parse_simulation_settings(std::string_view text, const
     settings.rotor_speed_rate_hz = root.at("rotor_speed_rate_hz").number();
     settings.imu = read_imu(root.at("imu"));
     settings.mocap = read_mocap(root.at("mocap"));
+    if (const auto radio = root.find("radio")) settings.radio = read_radio(*radio);
     settings.supply = read_supply(root.at("supply"));
     settings.air = read_air(root.at("air"));
     settings.ground = read_ground(root.at("ground"));

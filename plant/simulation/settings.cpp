@@ -86,6 +86,10 @@ std::vector<Violation> validate(const SimulationSettings& settings) {
   check.between("mocap.dropout_probability", mocap.dropout_probability, 0.0, 1.0);
   check.between("mocap.dropout_length_s", mocap.dropout_length_s, 0.0, 60.0);
 
+  check.between("radio.delay_s", settings.radio.delay_s, 0.0, 0.2);
+  check.between("radio.jitter_s", settings.radio.jitter_s, 0.0, 0.2);
+  check.between("radio.loss", settings.radio.loss, 0.0, 0.9);
+
   check.between("supply.initial_state_of_charge", settings.supply.initial_state_of_charge, 0.0, 1.0);
   check.between("supply.rate_hz", settings.supply.rate_hz, 1.0, 1000.0);
   check_whole_steps("supply.rate_hz", settings.supply.rate_hz, settings, check);

@@ -54,6 +54,16 @@ struct MocapSettings {
   double dropout_length_s = 0.2;      // duration of a dropout, in which frames are untracked
 };
 
+// Between the vehicle and the computers on the ground: its samples one way, commands and poses the other. Each packet takes
+// delay_s and a uniform part of jitter_s. Without delay, jitter and loss there is no radio.
+struct RadioSettings {
+  double delay_s = 0.0;   // one way
+  double jitter_s = 0.0;  // at most, in addition
+  double loss = 0.0;      // probability that a packet is lost
+
+  bool on() const { return delay_s > 0.0 || jitter_s > 0.0 || loss > 0.0; }
+};
+
 struct SupplySettings {
   bool ideal = false;                    // constant voltage: open circuit at the initial state of charge
   double initial_state_of_charge = 1.0;  // 0 .. 1
@@ -118,6 +128,7 @@ struct SimulationSettings {
   double rotor_speed_rate_hz = 500.0;  // of rotor speed samples; 0: the vehicle does not measure them
   ImuSettings imu;
   MocapSettings mocap;
+  RadioSettings radio;
   SupplySettings supply;
   AirSettings air;
   GroundSettings ground;

@@ -22,6 +22,9 @@ constexpr std::uint64_t kBarometer = 30;
 constexpr std::uint64_t kMagnetometer = 31;
 constexpr std::uint64_t kGpsNoise = 32;
 constexpr std::uint64_t kGpsDrift = 33;
+constexpr std::uint64_t kRadioTelemetry = 40;
+constexpr std::uint64_t kRadioCommands = 41;
+constexpr std::uint64_t kRadioPoses = 42;
 
 // Stream id of a parameter that is drawn once per run: the FNV-1a hash of its name.
 constexpr std::uint64_t of_name(std::string_view name) {

@@ -92,6 +92,8 @@ MicrocontrollerSettings load(const Options& options) {
   settings.simulation = runtime::load_simulation_settings(
       runtime::configuration_file(runtime::kinds::kSimulation, options.simulation));
   if (options.imu_rate != 0) settings.simulation.imu.rate_hz = options.imu_rate;
+  if (settings.simulation.radio.on())
+    throw std::invalid_argument(options.simulation + ": radio: swiftlet-plant alone simulates one");
   for (const plant::Violation& violation : plant::validate(settings.simulation))
     throw std::invalid_argument("--imu-rate: " + violation.key + " " + violation.message);
   for (const plant::Violation& violation :

@@ -65,13 +65,12 @@ void LockstepLoop::run(const std::atomic<bool>& stop) {
 void LockstepLoop::on_command(const ReceivedCommand& received) {
   const Lock lock(mutex_);
   if (!started_ || !command_due()) return;  // a repeated answer
-  const bool answers =
-      plant::header_of(received.command).imu_sequence == vehicle_.simulation().imu()->sequence;
+  const bool answers = plant::header_of(received.command).imu_sequence == *vehicle_.awaited();
   if (!received.fault && !answers) return;
   if (!vehicle_.obey(received)) return;
   control_heard_ = true;
   command_ = received.command;
-  command_arrived_ = true;
+  vehicle_.go_on_in_order();
   advance();
 }
 
@@ -119,7 +118,6 @@ void LockstepLoop::advance() {
     vehicle_.report();
     if (!may_advance()) return;
     silence_s_ = 0.0;
-    command_arrived_ = false;
     if (trace_) trace_->add(vehicle_.simulation().truth(), vehicle_.as_actuators(command_));
     advance_to_imu_stamp();
   }
@@ -206,7 +204,7 @@ std::string LockstepLoop::silent_peer() const {
                        mocap_due_, time_s, lockstep_.patience_s);
   }
   return fmt::format("lockstep: control is silent: IMU sample {} of t = {:.3f} s has no answer for {:g} s",
-                     vehicle_.simulation().imu()->sequence, time_s, lockstep_.patience_s);
+                     *vehicle_.awaited(), time_s, lockstep_.patience_s);
 }
 
 }  // namespace swiftlet::services

@@ -46,7 +46,7 @@ class LockstepLoop {
   void on_clock(const comms::msg::SimulationClock& message);
 
   // Call all functions below with mutex_ held.
-  bool command_due() const { return vehicle_.simulation().imu().has_value() && !command_arrived_; }
+  bool command_due() const { return vehicle_.awaited().has_value(); }
   bool mocap_silent() const {
     return !mocap_heard_ || mocap_sequence_ < mocap_due_ || mocap_seen_ns_ < truth_sent_ns_;
   }
@@ -71,7 +71,6 @@ class LockstepLoop {
   std::mutex mutex_;
   bool started_ = false;  // the first samples have been published
   plant::VehicleCommand command_;
-  bool command_arrived_ = false;
   bool control_heard_ = false;
   bool mocap_heard_ = false;
   std::uint64_t mocap_sequence_ = 0;

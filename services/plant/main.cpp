@@ -49,6 +49,7 @@ struct Options {
   std::string levels = "actuators";
   int imu_rate = 0;  // Hz; 0: as in the simulation file
   std::optional<double> rotor_speed_rate_hz;
+  std::optional<double> radio_delay_s, radio_jitter_s, radio_loss;
   runtime::Clock clock = runtime::Clock::kRealtime;
   double speed = 0.0;  // 0: real time, or in lockstep no limit
   LockstepSettings lockstep;
@@ -146,6 +147,15 @@ void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--rotor-speed-rate", options.rotor_speed_rate_hz,
                  "Rate of rotor speed samples, Hz; 0: none; default: as in the simulation file")
       .range(0.0, 1000.0);
+  app.add_option("--radio-delay", options.radio_delay_s,
+                 "Radio between vehicle and control: delay one way, s; default: as in the simulation file")
+      .range(0.0, 0.2);
+  app.add_option("--radio-jitter", options.radio_jitter_s,
+                 "Radio: additional delay, uniform from 0 to this, s; default: as in the simulation file")
+      .range(0.0, 0.2);
+  app.add_option("--radio-loss", options.radio_loss,
+                 "Radio: share of the packets that are lost; default: as in the simulation file")
+      .range(0.0, 0.9);
   runtime::add_clock_option(app, options.clock);
   app.add_option("--speed", options.speed,
                  "Simulation speed factor (1 = real time). In lockstep an upper limit; default: as fast as "
@@ -215,6 +225,12 @@ PlantSettings load(const Options& options) {
   settings.simulation.control_levels = plant::control_levels_from(options.levels).value();
   if (options.imu_rate != 0) settings.simulation.imu.rate_hz = options.imu_rate;
   if (options.rotor_speed_rate_hz) settings.simulation.rotor_speed_rate_hz = *options.rotor_speed_rate_hz;
+  plant::RadioSettings& radio = settings.simulation.radio;
+  radio.delay_s = options.radio_delay_s.value_or(radio.delay_s);
+  radio.jitter_s = options.radio_jitter_s.value_or(radio.jitter_s);
+  radio.loss = options.radio_loss.value_or(radio.loss);
+  if (radio.on() && !options.autopilot_protocol.empty())
+    throw std::invalid_argument("--autopilot: the simulated radio is between a vehicle and control");
   for (const plant::Violation& violation : plant::validate(settings.simulation)) {
     const char* const option =
         violation.key == "rotor_speed_rate_hz" ? "--rotor-speed-rate: " : "--imu-rate: ";

@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "swiftlet/plant/simulation/streams.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
@@ -46,7 +47,9 @@ SimulatedVehicle::SimulatedVehicle(const plant::Vehicle& vehicle, const plant::S
                                    std::uint64_t seed, const plant::VehicleState& initial, comms::Node& node,
                                    bool truth_only)
     : simulation_(vehicle, settings, seed, initial),
-      command_path_(settings),
+      telemetry_path_(settings, seed),
+      command_path_(settings, seed),
+      pose_path_(settings, seed, plant::streams::kRadioPoses),
       firmware_(vehicle, settings),
       answers_(plant::period_ns(settings.imu.rate_hz)),
       ground_truth_(node.publish(kGroundTruth)) {
@@ -62,10 +65,16 @@ bool SimulatedVehicle::obey(const ReceivedCommand& received) {
     refuse(received.fault);
     return false;
   }
-  if (!command_path_.send(received.command, simulation_.stamp_ns())) return true;
-  if (!accept(received.command)) return false;
-  answers_.answered(plant::header_of(received.command).imu_sequence, received.received_ns);
+  const bool arrives = command_path_.send(received.command, simulation_.stamp_ns());
+  if (arrives && !accept(received.command)) return false;
+  if (arrives || telemetry_path_.has_radio())
+    answers_.answered(plant::header_of(received.command).imu_sequence, received.received_ns);
   return true;
+}
+
+void SimulatedVehicle::on_pose(const plant::PoseSample& pose) {
+  if (!pose_path_.on()) return firmware_.on_pose(pose);
+  pose_path_.send(pose, simulation_.stamp_ns());
 }
 
 bool SimulatedVehicle::accept(const plant::VehicleCommand& command) {
@@ -86,6 +95,7 @@ void SimulatedVehicle::refuse(const comms::Fault& fault) {
 }
 
 void SimulatedVehicle::step() {
+  while (const auto pose = pose_path_.take(simulation_.stamp_ns())) firmware_.on_pose(*pose);
   if (const auto arrived = command_path_.arrived(simulation_.stamp_ns())) accept(*arrived);
   const plant::MotorCommand command = firmware_.motor_command(simulation_.stamp_ns());
   const bool running = command.state == plant::RotorState::kRunning;
@@ -105,37 +115,65 @@ void SimulatedVehicle::step() {
 void SimulatedVehicle::inform_firmware() {
   if (simulation_.imu()) firmware_.on_imu(*simulation_.imu());
   if (simulation_.battery()) firmware_.on_battery(*simulation_.battery());
+  if (telemetry_path_.has_radio()) telemetry_path_.collect(simulation_, firmware_.obeyed());
+}
+
+void SimulatedVehicle::prepare_imu(const plant::ImuSample& sample, const plant::ObeyedCommand& obeyed) {
+  imu_message_ = comms::to_message(sample);
+  comms::set_obeyed_command(obeyed, imu_message_);
+  if (report_.rotors_running) answers_.written(sample.sequence, runtime::monotonic_ns());
 }
 
 void SimulatedVehicle::publish_samples(bool truth_needed) {
-  if (simulation_.imu()) {
-    imu_message_ = comms::to_message(*simulation_.imu());
-    comms::set_obeyed_command(firmware_.obeyed(), imu_message_);
-    if (report_.rotors_running) answers_.written(simulation_.imu()->sequence, runtime::monotonic_ns());
-    imu_.publish(imu_message_);
-  }
-  if (truth_needed) publish_truth();
-  publish_slow_samples();
-}
-
-void SimulatedVehicle::publish_samples_in_order(std::uint64_t mocap_sequence, bool truth_needed) {
-  publish_slow_samples();
-  if (!simulation_.imu()) {
+  if (telemetry_path_.has_radio()) {
+    while (const auto packet = telemetry_path_.take(simulation_.stamp_ns())) {
+      prepare_imu(packet->imu, packet->obeyed);
+      imu_.publish(imu_message_);
+      publish_slow_samples(packet->battery, packet->rotor_speeds);
+    }
     if (truth_needed) publish_truth();
     return;
   }
-  // Publishes the longest path first: the controller waits for the frame that motion capture makes of the
-  // truth.
-  const bool frame_due = mocap_sequence > imu_message_.mocap_sequence_number();
-  imu_message_ = comms::to_message(*simulation_.imu());
-  comms::set_obeyed_command(firmware_.obeyed(), imu_message_);
-  imu_message_.mocap_sequence_number(mocap_sequence);
+  if (simulation_.imu()) {
+    prepare_imu(*simulation_.imu(), firmware_.obeyed());
+    imu_.publish(imu_message_);
+  }
+  if (truth_needed) publish_truth();
+  publish_slow_samples(simulation_.battery(), simulation_.rotor_speeds());
+}
+
+// Publishes the longest path first: the controller waits for the frame that motion capture makes of the truth.
+void SimulatedVehicle::publish_samples_in_order(std::uint64_t mocap_sequence, bool truth_needed) {
+  const bool frame_due = mocap_sequence > mocap_sequence_;
+  mocap_sequence_ = mocap_sequence;
+  if (truth_needed && frame_due) publish_truth();
+  awaited_.reset();
+  if (telemetry_path_.has_radio()) {
+    if (simulation_.imu_due()) go_on_in_order();  // time waits for answers at these stamps only
+  } else {
+    publish_slow_samples(simulation_.battery(), simulation_.rotor_speeds());
+    if (simulation_.imu()) publish_imu_in_order(*simulation_.imu(), firmware_.obeyed());
+  }
+  if (truth_needed && !frame_due) publish_truth();
+}
+
+void SimulatedVehicle::go_on_in_order() {
+  awaited_.reset();
+  if (!telemetry_path_.has_radio()) return;
+  const auto packet = telemetry_path_.take(simulation_.stamp_ns());
+  if (!packet) return;
+  publish_slow_samples(packet->battery, packet->rotor_speeds);
+  publish_imu_in_order(packet->imu, packet->obeyed);
+}
+
+void SimulatedVehicle::publish_imu_in_order(const plant::ImuSample& sample,
+                                            const plant::ObeyedCommand& obeyed) {
+  prepare_imu(sample, obeyed);
+  imu_message_.mocap_sequence_number(mocap_sequence_);
   imu_message_.battery_sequence_number(battery_message_.sequence_number());
   imu_message_.rotor_speeds_sequence_number(rotor_speeds_message_.sequence_number());
-  if (truth_needed && frame_due) publish_truth();
-  if (report_.rotors_running) answers_.written(simulation_.imu()->sequence, runtime::monotonic_ns());
+  awaited_ = sample.sequence;
   imu_.publish(imu_message_);
-  if (truth_needed && !frame_due) publish_truth();
 }
 
 void SimulatedVehicle::publish_imu_again() { imu_.publish(imu_message_); }
@@ -157,13 +195,14 @@ void SimulatedVehicle::publish_truth(std::int64_t stamp_ns) {
   ground_truth_.publish(truth_message_);
 }
 
-void SimulatedVehicle::publish_slow_samples() {
-  if (simulation_.rotor_speeds()) {
-    rotor_speeds_message_ = comms::to_message(*simulation_.rotor_speeds());
+void SimulatedVehicle::publish_slow_samples(const std::optional<plant::BatterySample>& battery,
+                                            const std::optional<plant::RotorSpeedSample>& rotor_speeds) {
+  if (rotor_speeds) {
+    rotor_speeds_message_ = comms::to_message(*rotor_speeds);
     rotor_speeds_.publish(rotor_speeds_message_);
   }
-  if (simulation_.battery()) {
-    battery_message_ = comms::to_message(*simulation_.battery());
+  if (battery) {
+    battery_message_ = comms::to_message(*battery);
     battery_.publish(battery_message_);
   }
 }

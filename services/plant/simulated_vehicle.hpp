@@ -9,6 +9,8 @@
 
 #include "swiftlet/plant/simulation/firmware/firmware.hpp"
 #include "swiftlet/plant/simulation/links/command_path.hpp"
+#include "swiftlet/plant/simulation/links/radio.hpp"
+#include "swiftlet/plant/simulation/links/telemetry_path.hpp"
 #include "swiftlet/plant/simulation/plant_simulation.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/messages/convert.hpp"
@@ -61,11 +63,11 @@ class SimulatedVehicle {
 
   const plant::PlantSimulation& simulation() const { return simulation_; }
 
-  // Returns false if the command is refused, that is ignored. A command that a simulated fault delays or
+  // Returns false if the command is refused, that is ignored. A command that the radio or a simulated fault delays or
   // drops is not refused.
   bool obey(const ReceivedCommand& received);
   // A pose of motion capture, for the loops of levels attitude and trajectory.
-  void on_pose(const plant::PoseSample& pose) { firmware_.on_pose(pose); }
+  void on_pose(const plant::PoseSample& pose);
   bool needs_poses() const { return firmware_.needs_poses(); }
   // The command with the throttles that carry it out, for a trace.
   plant::ActuatorCommand as_actuators(const plant::VehicleCommand& command) const {
@@ -73,7 +75,8 @@ class SimulatedVehicle {
   }
   // Advances one integration step.
   void step();
-  // Publishes the samples due at this stamp, the IMU's first: the controller waits for it.
+  // Publishes the samples due at this stamp, the IMU's first: the controller waits for it. Over a radio those that have
+  // arrived.
   void publish_samples(bool truth_needed);
   // Publishes the ground truth alone, with this stamp.
   void publish_truth(std::int64_t stamp_ns);
@@ -81,6 +84,10 @@ class SimulatedVehicle {
   // IMU sample carries the sequence numbers that control must wait for. mocap_sequence: the newest frame that
   // motion capture makes of the ground truth up to this stamp.
   void publish_samples_in_order(std::uint64_t mocap_sequence, bool truth_needed);
+  // Lockstep: the IMU sample that was published at this stamp and waits for its answer.
+  const std::optional<std::uint64_t>& awaited() const { return awaited_; }
+  // It is answered. Over a radio, publishes the next one that has arrived at this stamp.
+  void go_on_in_order();
   void publish_imu_again();
   void publish_again();  // the newest sample of each topic
 
@@ -92,19 +99,26 @@ class SimulatedVehicle {
 
  private:
   bool accept(const plant::VehicleCommand& command);
+  void prepare_imu(const plant::ImuSample& sample, const plant::ObeyedCommand& obeyed);
+  void publish_imu_in_order(const plant::ImuSample& sample, const plant::ObeyedCommand& obeyed);
   void inform_firmware();
   void refuse(const comms::Fault& fault);
   void publish_truth();
-  void publish_slow_samples();
+  void publish_slow_samples(const std::optional<plant::BatterySample>& battery,
+                            const std::optional<plant::RotorSpeedSample>& rotor_speeds);
 
   plant::PlantSimulation simulation_;
+  plant::TelemetryPath telemetry_path_;
   plant::CommandPath command_path_;
+  plant::RadioLine<plant::PoseSample> pose_path_;
   plant::Firmware firmware_;
   // The newest samples; sequence number 0 before the first.
   comms::msg::Imu imu_message_;
   comms::msg::Battery battery_message_;
   comms::msg::RotorSpeeds rotor_speeds_message_;
   comms::msg::GroundTruth truth_message_;
+  std::uint64_t mocap_sequence_ = 0;  // lockstep: newest frame that control must have
+  std::optional<std::uint64_t> awaited_;
 
   bool outdated_ = false;  // the vehicle obeys no command, and its rotors run
   PlantReport report_;

@@ -64,6 +64,29 @@ TEST_P(LevelsInLockstep, EqualsTheFlightInOneProcess) {
   EXPECT_LT(over_dds.report.at("rms_3d_m").get<double>(), 0.05);
 }
 
+using RadioInLockstep = LevelsInLockstep;
+
+// GIVEN a radio that delays, reorders and loses packets WHEN the processes fly in lockstep THEN the flight is that in one
+// process, to the last bit.
+TEST_P(RadioInLockstep, EqualsTheFlightInOneProcess) {
+  const std::vector<std::string> radio{"--vehicle",      "crazyflie2", "--radio-delay", "0.02",
+                                       "--radio-jitter", "0.006",      "--radio-loss",  "0.02"};
+  const auto over_radio = [&](std::vector<std::string> words) {
+    words.insert(words.end(), radio.begin(), radio.end());
+    return words;
+  };
+  const Flight over_dds = fly(over_radio({"fly", "--clock", "lockstep"}), "dds");
+  const Flight in_process = fly(over_radio({"sim", "fly"}), "process");
+  EXPECT_GT(in_process.trace.size(), 1'000'000U);
+  EXPECT_TRUE(over_dds.trace == in_process.trace);
+  EXPECT_LT(over_dds.report.at("rms_3d_m").get<double>(), 0.05);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, RadioInLockstep,
+                         testing::Values(ControlLevel::kRates, ControlLevel::kAttitude,
+                                         ControlLevel::kTrajectory),
+                         [](const auto& level) { return std::string(plant::to_string(level.param)); });
+
 INSTANTIATE_TEST_SUITE_P(All, LevelsInLockstep, testing::ValuesIn(plant::kControlLevels),
                          [](const auto& level) { return std::string(plant::to_string(level.param)); });
 

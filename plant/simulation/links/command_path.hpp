@@ -1,4 +1,5 @@
-// Link of the commands from the controller to the vehicle, with the injected faults (loss, delay).
+// Link of the commands from the controller to the vehicle: the radio, if there is one, and the injected faults (loss,
+// delay).
 #pragma once
 
 #include <cstdint>
@@ -7,17 +8,18 @@
 #include "swiftlet/plant/model/vehicle_command.hpp"
 #include "swiftlet/plant/simulation/links/delay_line.hpp"
 #include "swiftlet/plant/simulation/links/faults.hpp"
+#include "swiftlet/plant/simulation/links/radio.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
 
 namespace swiftlet::plant {
 
 class CommandPath {
  public:
-  explicit CommandPath(const SimulationSettings& settings);
+  CommandPath(const SimulationSettings& settings, std::uint64_t seed);
 
   // Sends a command at now_ns. Returns true if it arrives immediately.
   bool send(const VehicleCommand& command, std::int64_t now_ns) {
-    return faultless_ || send_with_faults(command, now_ns);
+    return direct_ || send_late(command, now_ns);
   }
 
   // The newest delayed command that has arrived by now_ns, if any.
@@ -27,10 +29,11 @@ class CommandPath {
   }
 
  private:
-  bool send_with_faults(const VehicleCommand& command, std::int64_t now_ns);
+  bool send_late(const VehicleCommand& command, std::int64_t now_ns);
 
   FaultSchedule faults_;
-  bool faultless_;
+  RadioLink radio_;
+  bool direct_;
   DelayLine<VehicleCommand> delayed_;
 };
 

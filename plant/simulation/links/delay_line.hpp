@@ -31,6 +31,14 @@ class DelayLine {
     return newest;
   }
 
+  // Returns the oldest item, if it is due at now_ns.
+  std::optional<Item> take_oldest(std::int64_t now_ns) {
+    if (count_ == 0 || at(0).due_ns > now_ns) return std::nullopt;
+    const Item oldest = at(0).item;
+    drop_oldest();
+    return oldest;
+  }
+
   void clear() { count_ = 0; }
   bool empty() const { return count_ == 0; }
 

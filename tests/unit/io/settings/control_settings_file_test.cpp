@@ -80,7 +80,8 @@ TEST(ControlSettingsFile, ReadsEveryKeyIntoItsMember) {
       "    takeoff_consistency: {memory_s: 20, inertial_climb_m: 21, min_pose_fraction: 0.22, "
       "confirmed_climb_m: 23, longest_s: "
       "24}\n"
-      "    recovery: {max_lead_s: 0.25, glitch_poses: 26, step_time_s: 27, sudden: 28, swap_rad: 29, poses: "
+      "    recovery: {longest_wait_s: 0.15, max_lead_s: 0.25, glitch_poses: 26, step_time_s: 27, sudden: 28, "
+      "swap_rad: 29, poses: "
       "30,\n"
       "      speed_m_s: 31, gyro_bias_rad_s: 32, accelerometer_bias_m_s2: 33}\n"
       "arming:\n"
@@ -177,6 +178,7 @@ TEST(ControlSettingsFile, ReadsEveryKeyIntoItsMember) {
   EXPECT_EQ(d.takeoff_consistency.min_pose_fraction, 0.22);
   EXPECT_EQ(d.takeoff_consistency.confirmed_climb_m, 23);
   EXPECT_EQ(d.takeoff_consistency.longest_s, 24);
+  EXPECT_EQ(d.recovery.longest_wait_s, 0.15);
   EXPECT_EQ(d.recovery.max_lead_s, 0.25);
   EXPECT_EQ(d.recovery.glitch_poses, 26);
   EXPECT_EQ(d.recovery.step_time_s, 27);
@@ -338,6 +340,7 @@ const Fault kFaults[] = {
     {"estimator.detectors.takeoff_consistency.min_pose_fraction", "2", "at most 1"},
     {"estimator.detectors.takeoff_consistency.confirmed_climb_m", "0", "above 0"},
     {"estimator.detectors.takeoff_consistency.longest_s", "-1", "at least 0"},
+    {"estimator.detectors.recovery.longest_wait_s", "-1", "at least 0"},
     {"estimator.detectors.recovery.max_lead_s", "-1", "at least 0"},
     {"estimator.detectors.recovery.step_time_s", "0", "above 0"},
     {"estimator.detectors.recovery.sudden", "0.5", "at least 1"},

@@ -214,6 +214,20 @@ TEST(SimulationFile, FaultsExampleExtendsTheDefault) {
   EXPECT_NE(example.find(settings), std::string::npos);
 }
 
+TEST(SimulationFile, ReadsARadio) {
+  EXPECT_FALSE(parse_simulation_settings(file("default"), "s.yaml").radio.on());
+  const std::string radio = "\nradio: {delay_s: 0.02, jitter_s: 0.004, loss: 0.03}\n";
+  const SimulationSettings settings = parse_simulation_settings(file("default") + radio, "s.yaml");
+  EXPECT_EQ(settings.radio.delay_s, 0.02);
+  EXPECT_EQ(settings.radio.jitter_s, 0.004);
+  EXPECT_EQ(settings.radio.loss, 0.03);
+  EXPECT_NE(refusal([] {
+              parse_simulation_settings(file("default") + "\nradio: {delay_s: 1, jitter_s: 0, loss: 0}\n",
+                                        "s.yaml");
+            }).find("radio.delay_s: is 1, must be at least 0 and at most 0.2"),
+            std::string::npos);
+}
+
 TEST(SimulationFile, NamesAMissingFile) {
   EXPECT_NE(refusal([] { load_simulation_settings("/nowhere/s.yaml"); }).find("/nowhere/s.yaml: "),
             std::string::npos);

@@ -236,7 +236,7 @@ TEST(CommandFaults, StopDropsCommandsAndDelayPostponesThem) {
   settings.faults = {fault(FaultKind::kCommandsStop, 0.01, 0.01),
                      fault(FaultKind::kCommandsDelay, 0.03, 0.01)};
   settings.faults[1].delay_s = 0.005;
-  CommandPath path(settings);
+  CommandPath path(settings, 1);
   for (std::int64_t ms = 0; ms < 60; ++ms) {
     const std::int64_t now = ms * kMillisecond;
     ActuatorCommand command;

@@ -25,6 +25,9 @@ const std::vector<Rule>& rules() {
   using S = SimulationSettings;
   static const std::vector<Rule> all = {
       {"command_timeout_s", [](S& s, double v) { s.command_timeout_s = v; }, 0.01, 10.0},
+      {"radio.delay_s", [](S& s, double v) { s.radio.delay_s = v; }, 0.0, 0.2},
+      {"radio.jitter_s", [](S& s, double v) { s.radio.jitter_s = v; }, 0.0, 0.2},
+      {"radio.loss", [](S& s, double v) { s.radio.loss = v; }, 0.0, 0.9},
       {"command_hold_s", [](S& s, double v) { s.command_hold_s = v; }, 0.01, 10.0},
       {"rotor_speed_rate_hz", [](S& s, double v) { s.rotor_speed_rate_hz = v; }, 0.0, 2000.0},
       {"imu.rate_hz", [](S& s, double v) { s.imu.rate_hz = v; }, 50.0, 8000.0},

@@ -1,0 +1,50 @@
+// Link of the samples from the vehicle to control: over a radio, each IMU sample travels in a packet with the newest other
+// samples.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/plant/simulation/links/radio.hpp"
+#include "swiftlet/plant/simulation/plant_simulation.hpp"
+#include "swiftlet/plant/simulation/settings.hpp"
+#include "swiftlet/plant/simulation/streams.hpp"
+
+namespace swiftlet::plant {
+
+struct TelemetryPacket {
+  ImuSample imu;
+  ObeyedCommand obeyed;  // when the sample was taken
+  std::optional<BatterySample> battery;
+  std::optional<RotorSpeedSample> rotor_speeds;
+};
+
+class TelemetryPath {
+ public:
+  TelemetryPath(const SimulationSettings& settings, std::uint64_t seed)
+      : packets_(settings, seed, streams::kRadioTelemetry) {}
+
+  bool has_radio() const { return packets_.on(); }
+
+  // Call after each integration step, and once before the first: collects the samples, and sends them with one of the
+  // IMU. obeyed: by the vehicle so far.
+  void collect(const PlantSimulation& plant, const ObeyedCommand& obeyed) {
+    if (plant.battery()) next_.battery = plant.battery();
+    if (plant.rotor_speeds()) next_.rotor_speeds = plant.rotor_speeds();
+    if (!plant.imu()) return;
+    next_.imu = *plant.imu();
+    next_.obeyed = obeyed;
+    packets_.send(next_, plant.stamp_ns());
+    next_ = {};
+  }
+
+  // The next packet that has arrived and was not taken, if any.
+  std::optional<TelemetryPacket> take(std::int64_t now_ns) { return packets_.take(now_ns); }
+
+ private:
+  TelemetryPacket next_;
+  RadioLine<TelemetryPacket> packets_;
+};
+
+}  // namespace swiftlet::plant
