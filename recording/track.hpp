@@ -4,6 +4,8 @@
 #include <atomic>
 #include <cstddef>
 #include <memory>
+#include <new>
+#include <type_traits>
 
 namespace swiftlet::ground {
 
@@ -12,7 +14,9 @@ namespace swiftlet::ground {
 template <class Row>
 class Track {
  public:
-  explicit Track(std::size_t capacity) : rows_(std::make_unique<Row[]>(capacity)), capacity_(capacity) {}
+  // Reserves the memory. The system provides a page of it when its first row is written.
+  explicit Track(std::size_t capacity)
+      : rows_(std::allocator<Row>().allocate(capacity), Free{capacity}), capacity_(capacity) {}
 
   void append(const Row& row) noexcept {
     const std::size_t at = size_.load(std::memory_order_relaxed);
@@ -20,7 +24,7 @@ class Track {
       dropped_.fetch_add(1, std::memory_order_relaxed);
       return;
     }
-    rows_[at] = row;
+    ::new (rows_.get() + at) Row(row);
     size_.store(at + 1, std::memory_order_release);
   }
 
@@ -32,13 +36,19 @@ class Track {
   std::size_t size() const { return size_.load(std::memory_order_acquire); }
   std::size_t dropped() const { return dropped_.load(std::memory_order_relaxed); }  // rows, since clear()
   bool empty() const { return size() == 0; }
-  const Row& operator[](std::size_t i) const { return rows_[i]; }
-  const Row& back() const { return rows_[size() - 1]; }
+  const Row& operator[](std::size_t i) const { return rows_.get()[i]; }
+  const Row& back() const { return rows_.get()[size() - 1]; }
   const Row* begin() const { return rows_.get(); }
   const Row* end() const { return rows_.get() + size(); }
 
  private:
-  std::unique_ptr<Row[]> rows_;
+  static_assert(std::is_trivially_destructible_v<Row>);
+  struct Free {
+    std::size_t capacity = 0;
+    void operator()(Row* rows) const { std::allocator<Row>().deallocate(rows, capacity); }
+  };
+
+  std::unique_ptr<Row, Free> rows_;
   std::size_t capacity_;
   std::atomic<std::size_t> size_{0};
   std::atomic<std::size_t> dropped_{0};

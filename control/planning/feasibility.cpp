@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "swiftlet/control/planning/bernstein.hpp"
+#include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/position/thrust_attitude_map.hpp"
 #include "swiftlet/plant/model/airframe.hpp"
 #include "swiftlet/plant/model/propulsion.hpp"
@@ -219,6 +220,17 @@ std::vector<WorstDemand> worst_demands(const plant::Vehicle& vehicle, const Limi
   Survey survey(vehicle, limits, supply_voltage_v, duration_s);
   for (const PolynomialSegment& segment : segments) survey.add(segment);
   return survey.take();
+}
+
+Outcome check_rotors(const char* what, const plant::Vehicle& vehicle, const Limits& limits,
+                     double supply_voltage_v, const std::vector<PolynomialSegment>& segments) {
+  if (segments.empty()) return accept();
+  for (const WorstDemand& worst : worst_demands(vehicle, limits, supply_voltage_v, segments)) {
+    const bool of_rotors =
+        worst.demand == Demand::kThrust || is_least(worst.demand) || worst.demand == Demand::kRotorMost;
+    if (of_rotors && worst.exceeded()) return refuse("%s: %s", what, worst.sentence().c_str());
+  }
+  return accept();
 }
 
 }  // namespace swiftlet::control

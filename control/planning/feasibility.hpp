@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "swiftlet/control/types/polynomial.hpp"
+#include "swiftlet/control/types/request.hpp"
 #include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
@@ -50,5 +51,10 @@ std::vector<WorstDemand> worst_demands(const plant::Vehicle& vehicle, const Limi
                                        double supply_voltage_v,
                                        const std::vector<PolynomialSegment>& segments);
 constexpr double kRotorStep_s = 0.005;
+
+// Refuses a path on which a rotor would have to give more or less thrust than it can at the supply voltage: which, when and
+// where. `what` names the path in the reason: "the mission". segments: as above, also none.
+Outcome check_rotors(const char* what, const plant::Vehicle& vehicle, const Limits& limits,
+                     double supply_voltage_v, const std::vector<PolynomialSegment>& segments);
 
 }  // namespace swiftlet::control

@@ -179,16 +179,7 @@ void balance(Knots& knots, Smoothness smoothness, const MotionLimits& limits) {
 
 // Stretches time by the factor.
 void stretch(std::vector<PolynomialSegment>& segments, double factor) {
-  for (PolynomialSegment& segment : segments) {
-    segment.duration_s *= factor;
-    for (Polynomial* const axis : {&segment.x, &segment.y, &segment.z, &segment.yaw}) {
-      double divisor = 1.0;
-      for (double& c : *axis) {
-        c /= divisor;
-        divisor *= factor;
-      }
-    }
-  }
+  for (PolynomialSegment& segment : segments) segment = stretched(segment, factor);
 }
 
 // Greatest distance of a segment from the straight line between its leg's points, including beyond its ends.

@@ -11,6 +11,12 @@ void tighten(double& limit, double bound) {
 
 }  // namespace
 
+Mission stretched(Mission mission, double factor) {
+  for (MissionItem& item : mission.items) item.speed /= factor;
+  for (PolynomialSegment& segment : mission.segments) segment = stretched(segment, factor);
+  return mission;
+}
+
 Limits tightened(const Limits& limits, const MissionBounds& bounds) {
   Limits tight = limits;
   tighten(tight.max_speed, bounds.max_speed);

@@ -54,6 +54,9 @@ struct Mission {
 
 constexpr int kMaxMissionItems = 2048;
 
+// The same mission, `factor` times as slow, > 0: paths take longer, moves are flown at lower speeds. Holds and waits stay.
+Mission stretched(Mission mission, double factor);
+
 // The limits in force while a mission with these bounds is flown: the tighter value of each limit.
 Limits tightened(const Limits& limits, const MissionBounds& bounds);
 

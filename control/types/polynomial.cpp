@@ -79,6 +79,19 @@ Reference evaluate(const PolynomialSegment& segment, double t_s) {
   return reference;
 }
 
+PolynomialSegment stretched(const PolynomialSegment& segment, double factor) {
+  PolynomialSegment out = segment;
+  out.duration_s *= factor;
+  for (Polynomial* const axis : {&out.x, &out.y, &out.z, &out.yaw}) {
+    double divisor = 1.0;
+    for (double& c : *axis) {
+      c /= divisor;
+      divisor *= factor;
+    }
+  }
+  return out;
+}
+
 PolynomialSegment minimum_jerk(const Eigen::Vector3d& from_ned, double from_yaw,
                                const Eigen::Vector3d& to_ned, double to_yaw, double duration_s) {
   PolynomialSegment segment;

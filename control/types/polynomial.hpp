@@ -29,6 +29,9 @@ constexpr int kMaxTrajectorySegments = 1024;
 // The reference at time t_s of the segment; t_s is clamped to 0 .. duration_s.
 Reference evaluate(const PolynomialSegment& segment, double t_s);
 
+// The same path, `factor` times as slow, > 0.
+PolynomialSegment stretched(const PolynomialSegment& segment, double factor);
+
 // Rest to rest along a straight line, minimum jerk (Flash and Hogan 1985): 10 s^3 - 15 s^4 + 6 s^5.
 // duration_s > 0.
 PolynomialSegment minimum_jerk(const Eigen::Vector3d& from_ned, double from_yaw,

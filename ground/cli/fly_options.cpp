@@ -73,6 +73,12 @@ void add_file_options(runtime::CommandLine app, FileOptions& options) {
          "by how much the path may pass the samples of a CSV file by, m on each axis, and rad in yaw; "
          "default: half of the last digit with which they are written")
       .range(1e-9, 1.0);
+  app.add_option(
+         "--time-scale", options.time_scale,
+         "fly the file so many times as slow: paths take longer, moves are flown at lower speeds; below 1 "
+         "faster; holds and waits stay")
+      .range(0.01, 100.0)
+      .show_default();
 }
 
 void add_fly_options(runtime::CommandLine app, FlyOptions& options) {

@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <optional>
 #include <vector>
 
 #include "swiftlet/ground/cli/commands.hpp"
@@ -17,7 +18,7 @@ struct Options {
   std::string vehicle = "kaylion";
   std::string control = "motor_lag";
   std::vector<double> start = {0.0, 0.0};
-  double supply_voltage_v = 0.0;  // 0: low_battery_voltage_v
+  std::optional<double> supply_voltage_v;
   bool json = false;
 };
 
@@ -26,18 +27,19 @@ int run(const Options& options) {
       runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
   const auto settings =
       runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control));
-  const MissionFile file = load_mission_file(
-      runtime::configuration_file(runtime::kinds::kMission, options.file), settings.limits, options.reading);
+  const std::string path = runtime::configuration_file(runtime::kinds::kMission, options.file);
+  const MissionFile file = load_mission_file(path, settings.limits, options.reading);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
-  const MissionDryRun flown = dry_run(file.mission, settings, {options.start[0], options.start[1]});
-  const double supply_voltage_v =
-      options.supply_voltage_v > 0.0 ? options.supply_voltage_v : settings.failsafe.low_battery_voltage;
-  const MissionCheck check = check_mission(file, flown, vehicle, settings, supply_voltage_v);
+  const CheckConditions conditions{{options.start[0], options.start[1]}, options.supply_voltage_v};
+  const MissionCheck check = check_mission(file, vehicle, settings, conditions);
+  const std::string help =
+      check.feasible() ? "" : advice(file, path, options.reading, vehicle, settings, conditions);
   if (options.json) {
-    std::printf("%s\n", check_json(check, file, vehicle.name, settings.name).c_str());
+    std::printf("%s\n", check_json(check, file, vehicle.name, settings.name, help).c_str());
   } else {
     std::printf("%s", check_table(check, file, vehicle.name).c_str());
+    if (!help.empty()) std::printf("it could be flown %s\n", help.c_str());
   }
   return check.feasible() ? kDone : kFailed;
 }

@@ -10,6 +10,7 @@
 #include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/ground/command_line/installation.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/ground/mission/mission_check.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
@@ -42,17 +43,25 @@ fs::path default_folder(const std::string& mission) {
   return fs::path("flights") / (std::string(stamp) + "-" + mission);
 }
 
-void require_takeoff_and_land(const MissionFile& mission, const fs::path& file, double duration_s) {
+void require_takeoff_and_land(const MissionFile& mission, const fs::path& file) {
   if (!mission.takes_off())
     throw InputError(file.string() +
                      ": items: the first item is not a takeoff: a flight starts on the ground");
   if (!mission.lands())
     throw InputError(file.string() + ": items: the last item is not a land: a flight ends on the ground");
-  if (duration_s > kLongestMissionS) {
-    throw InputError(file.string() + ": items: the mission takes " +
-                     std::to_string(static_cast<int>(duration_s)) + " s, must be at most " +
-                     std::to_string(static_cast<int>(kLongestMissionS)) + " s");
-  }
+}
+
+// Returns the duration of the mission, s.
+double require_flyable(const LaunchConfiguration& plan, const FileOptions& reading) {
+  const CheckConditions conditions{plan.start_ned, {}};
+  const MissionCheck check = check_mission(plan.mission, plan.vehicle, plan.control, conditions);
+  const bool known_vehicle = plan.launch_mode != LaunchMode::kAttached;
+  if (known_vehicle ? check.feasible() : check.reason.empty()) return check.duration_s;
+  const std::string help = known_vehicle ? advice(plan.mission, plan.mission_file.string(), reading,
+                                                  plan.vehicle, plan.control, conditions)
+                                         : "";
+  throw InputError(fmt::format("{}: {} cannot fly it: {}{}", plan.mission_file.c_str(), plan.vehicle.name,
+                               check.refusal(), help.empty() ? "" : "; " + help));
 }
 
 // Shifts the mission and its fence. The shifted fence is clamped to the fence of the limits.
@@ -120,8 +129,8 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
     throw InputError(fmt::format("{}: started at {:g} m north and {:g} m east of the origin: {}",
                                  plan.mission_file.c_str(), plan.start_ned.x(), plan.start_ned.y(),
                                  outcome.reason));
-  plan.planned_duration_s = planned_duration_s(plan.mission.mission, plan.control.limits);
-  require_takeoff_and_land(plan.mission, plan.mission_file, plan.planned_duration_s);
+  require_takeoff_and_land(plan.mission, plan.mission_file);
+  plan.planned_duration_s = require_flyable(plan, options.reading);
 
   if (plan.launch_mode == LaunchMode::kStarted) {
     plan.plant_program = program_beside("swiftlet-plant");

@@ -64,7 +64,7 @@ struct LaunchConfiguration {
   runtime::Clock clock = runtime::Clock::kRealtime;
   std::optional<double> speed;
   MissionFile mission;
-  double planned_duration_s = 0.0;
+  double planned_duration_s = 0.0;  // by the dry run
   std::filesystem::path vehicle_file, control_file, simulation_file, mission_file;
   plant::Vehicle vehicle;
   control::ControlSettings control;
@@ -84,11 +84,9 @@ struct LaunchConfiguration {
   std::vector<std::filesystem::path> input_files() const;
 };
 
-// Longer missions are refused: the record is kept in memory.
-constexpr double kLongestMissionS = 600.0;
-
-// Throws runtime::ConfigError or InputError if the input is invalid or cannot be flown. Starts no process and
-// writes no file.
+// Throws runtime::ConfigError or InputError if the input is invalid or if the vehicle cannot fly the mission, by a dry run
+// (mission_check.hpp), with what would make it possible. The vehicle of kAttached is not known: it is not checked, but
+// the dry run is. Starts no process and writes no file.
 LaunchConfiguration plan_flight(const FlyOptions& options);
 
 ExistingRecord existing_record(const FlyOptions& options);

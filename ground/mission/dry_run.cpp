@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kStep_s = 0.002;         // at most half the shortest segment, so that none is missed, ...
 constexpr double kLeastStep_s = 0.0001;   // ... but at least this
+constexpr double kPatience = 100.0;       // planned durations until it is taken to be endless
 constexpr double kFullBattery_v = 100.0;  // above all thresholds: the dry run does not check the battery
 
 // Supervision and guidance alone, with a vehicle that is exactly where its reference is.
@@ -113,7 +114,7 @@ MissionDryRun dry_run(const control::Mission& mission, const control::ControlSet
   DryRunTransport transport(mission, settings, start_ned);
   std::string reason;
   try {
-    fly_mission(transport, planned_duration_s(mission, settings.limits));
+    fly_mission(transport, kPatience * planned_duration_s(mission, settings.limits));
   } catch (const FlightFailure& failure) {
     reason = failure.what();
   }

@@ -134,9 +134,25 @@ bool MissionCheck::feasible() const {
          });
 }
 
-MissionCheck check_mission(const MissionFile& file, const MissionDryRun& dry_run,
-                           const plant::Vehicle& vehicle, const control::ControlSettings& settings,
-                           double supply_voltage_v) {
+std::string MissionCheck::refusal() const {
+  if (!reason.empty()) return "the control service would not complete it: " + reason;
+  const WorstDemand* furthest = nullptr;
+  std::string where;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    for (const WorstDemand& worst : items[i].demands) {
+      if (!worst.exceeded() || (furthest != nullptr && use_of(worst) <= use_of(*furthest))) continue;
+      furthest = &worst;
+      where = name_of(items[i], i);
+    }
+  }
+  if (furthest == nullptr) return "";
+  return where + ": " + value_of(*furthest) + ": " + place_of(*furthest);
+}
+
+MissionCheck check_mission(const MissionFile& file, const plant::Vehicle& vehicle,
+                           const control::ControlSettings& settings, const CheckConditions& conditions) {
+  const MissionDryRun dry_run = ground::dry_run(file.mission, settings, conditions.start_ned);
+  const double supply_voltage_v = conditions.supply_voltage_v.value_or(settings.failsafe.low_battery_voltage);
   const control::Limits limits = control::tightened(settings.limits, file.mission.bounds);
   MissionCheck check;
   check.reason = dry_run.completed ? "" : dry_run.reason;
@@ -174,12 +190,13 @@ std::string check_table(const MissionCheck& check, const MissionFile& file, cons
 }
 
 std::string check_json(const MissionCheck& check, const MissionFile& file, const std::string& vehicle,
-                       const std::string& control) {
+                       const std::string& control, const std::string& advice) {
   nlohmann::ordered_json json = {{"mission", file.name},
                                  {"vehicle", vehicle},
                                  {"control", control},
                                  {"feasible", check.feasible()},
                                  {"reason", check.reason},
+                                 {"advice", advice},
                                  {"duration_s", check.duration_s},
                                  {"supply_voltage_v", check.supply_voltage_v}};
   json["items"] = nlohmann::ordered_json::array();

@@ -1,6 +1,8 @@
-// Checks by the vehicle's model whether it can fly a mission, everywhere on the path.
+// Checks by the vehicle's model whether it can fly a mission, everywhere on the path, and how long it takes. All
+// commands that check or fly a mission decide by this.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,20 +30,34 @@ struct MissionCheck {
   double supply_voltage_v = 0.0;  // at which the rotors are checked
 
   bool feasible() const;
+  // Why it is not feasible: the reason, or the demand that is furthest beyond its limit, with item, time and place. Empty
+  // if it is.
+  std::string refusal() const;
 };
 
-// supply_voltage_v: > 0, usually the low-battery threshold. Limits and fence: those of the settings, as
-// tightened by the mission.
-MissionCheck check_mission(const MissionFile& file, const MissionDryRun& dry_run,
-                           const plant::Vehicle& vehicle, const control::ControlSettings& settings,
-                           double supply_voltage_v);
+struct CheckConditions {
+  Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();  // m, where the vehicle stands
+  std::optional<double>
+      supply_voltage_v;  // > 0, at which the rotors are checked; else the low-battery threshold
+};
+
+// A dry run of the mission, and the demands on its path. Limits and fence: those of the settings, as tightened by the
+// mission.
+MissionCheck check_mission(const MissionFile& file, const plant::Vehicle& vehicle,
+                           const control::ControlSettings& settings, const CheckConditions& conditions = {});
+
+// What would make a mission feasible that is not, as sentences with the options of a command: the least time scale, and for
+// samples that are noisy the least tolerance. Empty if neither does. path, options: of the file.
+std::string advice(const MissionFile& file, const std::string& path, const FileOptions& options,
+                   const plant::Vehicle& vehicle, const control::ControlSettings& settings,
+                   const CheckConditions& conditions = {});
 
 // check_table(): text for people, ends in a newline. check_json(): JSON, without a newline, of
-//   mission, vehicle, control, feasible, reason, duration_s, supply_voltage_v
+//   mission, vehicle, control, feasible, reason, advice, duration_s, supply_voltage_v
 //   items: kind, line, start_s, duration_s,
 //     demands: demand, unit, value, limit, exceeded, time_s, position_ned
 std::string check_table(const MissionCheck& check, const MissionFile& file, const std::string& vehicle);
 std::string check_json(const MissionCheck& check, const MissionFile& file, const std::string& vehicle,
-                       const std::string& control);
+                       const std::string& control, const std::string& advice);
 
 }  // namespace swiftlet::ground

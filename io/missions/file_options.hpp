@@ -12,6 +12,7 @@ struct FileOptions {
   // m, > 0: by how much a path may pass samples by, along each axis, and by how many rad in yaw. Without it, by half
   // of the last digit with which they are written.
   std::optional<double> tolerance_m;
+  double time_scale = 1.0;  // > 0: the file is flown so many times as slow
 };
 
 }  // namespace swiftlet::ground

@@ -103,6 +103,18 @@ void require_samples(const FileOptions& options, MissionFormat format, const std
     throw runtime::ConfigError(path, 0, "", "is no table of samples: --tolerance is for those");
 }
 
+// The time scale may be below 1, so that limits are exceeded.
+MissionFile stretched(MissionFile file, const control::Limits& limits, const FileOptions& options,
+                      const std::string& path) {
+  if (options.time_scale == 1.0) return file;
+  file.mission = control::stretched(std::move(file.mission), options.time_scale);
+  const control::Outcome outcome = control::check(file.mission, limits);
+  if (!outcome.accepted)
+    throw runtime::ConfigError(path, 0, "",
+                               fmt::format("with --time-scale {:g}: {}", options.time_scale, outcome.reason));
+  return file;
+}
+
 Eigen::Vector3d start_of(const control::Mission& mission, const MissionItem& trajectory) {
   return control::evaluate(mission.segments[trajectory.first_segment], 0.0).position_ned;
 }
@@ -126,7 +138,7 @@ MissionFile load_mission_file(const std::string& path, const control::Limits& li
   require_samples(options, format, path);
   switch (format) {
     case MissionFormat::kYaml:
-      return parse_mission_file(text, path, limits);
+      return stretched(parse_mission_file(text, path, limits), limits, options, path);
     case MissionFormat::kPolynomialCsv:
       return parse_polynomial_csv(text, path, limits, options);
     case MissionFormat::kSampledCsv:
@@ -134,7 +146,7 @@ MissionFile load_mission_file(const std::string& path, const control::Limits& li
     case MissionFormat::kWaypointCsv:
       return parse_waypoint_csv(text, path, limits, options);
     case MissionFormat::kQGroundControlPlan:
-      return parse_qgroundcontrol_plan(text, path, limits);
+      return stretched(parse_qgroundcontrol_plan(text, path, limits), limits, options, path);
   }
   throw std::logic_error("a format that is not read");
 }

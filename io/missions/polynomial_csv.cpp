@@ -40,7 +40,7 @@ TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& f
   const bool enu = options.frame != MissionFrame::kNed;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     const control::PolynomialSegment segment = read(table, row);
-    segments.push_back(enu ? ned_segment(segment) : segment);
+    segments.push_back(control::stretched(enu ? ned_segment(segment) : segment, options.time_scale));
   }
   std::vector<std::string> assumptions = {std::string("taken as a polynomial trajectory in ") +
                                           (enu ? "ENU" : "NED") +
@@ -48,7 +48,7 @@ TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& f
   const double raise_m =
       raise_by(heights_of(segments), enu ? MissionFrame::kEnu : MissionFrame::kNed, file_name, assumptions);
   for (control::PolynomialSegment& segment : segments) segment.z[0] -= raise_m;
-  return checked({std::move(segments), std::move(assumptions)}, limits,
+  return checked({std::move(segments), std::move(assumptions)}, limits, options,
                  [&](std::size_t segment, const std::string& fault) { table.fail(segment, "", fault); });
 }
 

@@ -28,6 +28,7 @@ constexpr double kLeastTolerance_rad = 1e-6, kMostTolerance_rad = 1e-2;
 constexpr double kLeastTolerance_m_s = 1e-3, kLeastTolerance_m_s2 = 1e-2;
 // Positions at this rate determine the motion. Below, the path also follows velocities and accelerations.
 constexpr double kSlowSamples_hz = 20.0;
+constexpr double kStep = 3.0;  // of the greatest speed: above, a row is no motion but a step
 
 // What a table gives besides times and positions.
 struct Given {
@@ -121,14 +122,22 @@ void allow_for_rounded_stamps(Samples& samples) {
   }
 }
 
-// Refuses places that no vehicle reaches in time, by their row.
+// Flies the samples so many times as slow. step_s stays that of the file.
+void scale_time(Samples& samples, double factor) {
+  for (double& t_s : samples.times.time_s) t_s *= factor;
+  samples.times.rounding_s *= factor;
+  for (Eigen::Vector3d& velocity : samples.velocities) velocity /= factor;
+  for (Eigen::Vector3d& acceleration : samples.accelerations) acceleration /= factor * factor;
+}
+
+// Refuses places that no vehicle reaches in time, by their row: steps in the file.
 void require_reachable(const runtime::CsvTable& table, const Samples& samples,
                        const control::Limits& limits) {
   for (std::size_t i = 1; i < samples.size(); ++i) {
     const double step_s = samples.times.time_s[i] - samples.times.time_s[i - 1];
     const double step_m = (samples.places[i] - samples.places[i - 1]).head<3>().norm();
     const double spare_m = (samples.tolerances[i] + samples.tolerances[i - 1]).head<3>().norm();
-    if (step_m - spare_m <= limits.max_speed * step_s) continue;
+    if (step_m - spare_m <= kStep * limits.max_speed * step_s) continue;
     table.fail(
         i, "",
         fmt::format("is {:.3f} m from the row before, {:.4g} s earlier: {:.2f} m/s, the limit is {:.2f} "
@@ -309,6 +318,7 @@ TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file
     table.fail(
         0, "",
         fmt::format("the path starts at {:.2f} m/s, must start at rest", samples.velocities.front().norm()));
+  scale_time(samples, options.time_scale);
   require_reachable(table, samples, limits);
   allow_for_rounded_stamps(samples);
   const bool with_derivatives =
@@ -316,7 +326,7 @@ TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file
   Fit path = fit(table, columns, samples, with_derivatives, !options.tolerance_m);
   say(table, columns, samples, path, with_derivatives, assumptions);
   const std::vector<control::PolynomialSegment> segments = path.segments;
-  return checked({std::move(path.segments), std::move(assumptions)}, limits,
+  return checked({std::move(path.segments), std::move(assumptions)}, limits, options,
                  [&](std::size_t segment, const std::string& fault) {
                    table.fail(row_of(samples, segments, segment), "", fault);
                  });

@@ -87,7 +87,9 @@ TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& fil
   } catch (const std::invalid_argument& fault) {
     throw runtime::ConfigError(file_name, 0, "", fault.what());
   }
-  return checked({std::move(planned.segments), std::move(assumptions)}, limits,
+  for (control::PolynomialSegment& segment : planned.segments)
+    segment = control::stretched(segment, options.time_scale);
+  return checked({std::move(planned.segments), std::move(assumptions)}, limits, options,
                  [&](std::size_t segment, const std::string& fault) {
                    table.fail(row_of(planned, segment), "", "the path from here: " + fault);
                  });

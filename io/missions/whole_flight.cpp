@@ -75,7 +75,28 @@ control::MotionLimits reference_limits(const control::Limits& limits) {
           limits.max_yaw_rate};
 }
 
-TrajectoryFile checked(TrajectoryFile path, const control::Limits& limits,
+std::optional<double> slower_within(const std::vector<control::PolynomialSegment>& segments,
+                                    const control::Limits& limits) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const control::MotionLimits motion = {limits.max_speed, limits.max_acceleration, kNone, kNone};
+  double factor = 1.0;
+  for (const control::PolynomialSegment& segment : segments)
+    factor = std::max(factor, control::limit_use(segment, motion).stretch());
+  factor = std::ceil(factor * 100.0) / 100.0;
+  if (factor > kLargestTimeScale) return std::nullopt;
+  for (const control::PolynomialSegment& segment : segments) {
+    if (!control::check_segment("", control::stretched(segment, factor), limits).accepted)
+      return std::nullopt;
+  }
+  return factor;
+}
+
+std::string advice_of(double slower, const FileOptions& options) {
+  return fmt::format("slower by {:.3g}: --time-scale {:.4g}", slower,
+                     std::ceil(slower * options.time_scale * 100.0 - 1e-6) / 100.0);
+}
+
+TrajectoryFile checked(TrajectoryFile path, const control::Limits& limits, const FileOptions& options,
                        const std::function<void(std::size_t, const std::string&)>& where) {
   const std::vector<control::PolynomialSegment>& segments = path.segments;
   for (std::size_t i = 0; i < segments.size(); ++i) {
@@ -85,7 +106,10 @@ TrajectoryFile checked(TrajectoryFile path, const control::Limits& limits,
       outcome = i == 0 ? control::check_start(what.c_str(), segments[i])
                        : control::check_joint(what.c_str(), segments[i - 1], segments[i]);
     }
-    if (!outcome.accepted) where(i, outcome.reason);
+    if (outcome.accepted) continue;
+    const std::optional<double> slower = slower_within(segments, limits);
+    where(i,
+          std::string(outcome.reason) + (slower && *slower > 1.0 ? "; " + advice_of(*slower, options) : ""));
   }
   return path;
 }

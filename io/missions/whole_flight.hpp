@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,12 +39,22 @@ double raise_by(const Heights& heights, MissionFrame frame, const std::string& f
                 std::vector<std::string>& assumptions);
 
 // Returns the path if it can be flown. Calls `where`, which must throw, with the index of the first segment
-// that violates the fence or the limits or does not continue the previous segment, and with the reason.
-TrajectoryFile checked(TrajectoryFile path, const control::Limits& limits,
+// that violates the fence or the limits or does not continue the previous segment, and with the reason and, if the
+// path can be flown more slowly, the option --time-scale with which it can.
+TrajectoryFile checked(TrajectoryFile path, const control::Limits& limits, const FileOptions& options,
                        const std::function<void(std::size_t, const std::string&)>& where);
 
 // Returns take-off to the height of the path's start, the path, and landing.
 MissionFile whole_flight(const std::string& file_name, TrajectoryFile path, const control::Limits& limits);
+
+// The least time scale at which the path is within the limits, a multiple of 0.01; nothing if there is none up to
+// kLargestTimeScale.
+std::optional<double> slower_within(const std::vector<control::PolynomialSegment>& segments,
+                                    const control::Limits& limits);
+constexpr double kLargestTimeScale = 20.0;
+
+// "slower by 1.4: --time-scale 1.4"
+std::string advice_of(double slower, const FileOptions& options);
 
 control::MotionLimits reference_limits(const control::Limits& limits);
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/control/planning/feasibility.hpp"
 #include "swiftlet/services/control/arrivals.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
@@ -84,10 +85,13 @@ control::Outcome read(const Message& message, const control::Limits& limits, Pla
 
 }  // namespace
 
-CommandServer::CommandServer(InnerLoop& loop, const control::Limits& limits, GainDesigner designer,
+CommandServer::CommandServer(InnerLoop& loop, const plant::Vehicle& vehicle,
+                             const control::ControlSettings& settings, GainDesigner designer,
                              runtime::Semaphore& wake)
     : loop_(loop),
-      limits_(limits),
+      vehicle_(vehicle),
+      limits_(settings.limits),
+      low_battery_voltage_(settings.failsafe.low_battery_voltage),
       designer_(std::move(designer)),
       wake_(wake),
       gains_in_force_(designer_.initial()) {}
@@ -110,6 +114,7 @@ void CommandServer::on_mission(const comms::msg::Mission& message) {
   auto pending = std::make_unique<PendingRequest>();
   pending->mission = std::make_unique<control::Mission>();
   control::Outcome outcome = read(message, limits_, *pending->mission);
+  if (outcome.accepted) outcome = check_rotors("the mission", pending->mission->segments);
   if (outcome.accepted && is_of_another(message)) {
     outcome = control::refuse("mission id %llu belongs to another mission: upload with a new id",
                               static_cast<unsigned long long>(message.id()));
@@ -121,13 +126,19 @@ void CommandServer::on_mission(const comms::msg::Mission& message) {
   submit(std::move(pending));
 }
 
+control::Outcome CommandServer::check_rotors(const char* what,
+                                             const std::vector<control::PolynomialSegment>& segments) const {
+  return control::check_rotors(what, vehicle_, limits_, low_battery_voltage_, segments);
+}
+
 void CommandServer::on_trajectory(const comms::msg::Trajectory& message) {
   if (!active()) return on_flown_trajectory(message);
   const Key key{message.client(), message.id()};
   if (is_known(key)) return;
   auto pending = std::make_unique<PendingRequest>();
   pending->trajectory = std::make_unique<control::Trajectory>();
-  const control::Outcome outcome = read(message, limits_, *pending->trajectory);
+  control::Outcome outcome = read(message, limits_, *pending->trajectory);
+  if (outcome.accepted) outcome = check_rotors("the trajectory", pending->trajectory->segments);
   if (!outcome.accepted) return refuse(key, control::RequestKind::kTrajectory, outcome);
   std::tie(pending->client, pending->id) = key;
   pending->request.kind = control::RequestKind::kTrajectory;

@@ -12,7 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include "swiftlet/control/types/polynomial.hpp"
 #include "swiftlet/control/types/settings.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 #include "swiftlet/services/control/gain_designer.hpp"
 #include "swiftlet/services/control/inner_loop.hpp"
 #include "swiftlet/services/control/plan_store.hpp"
@@ -36,8 +38,8 @@ struct RequestResult {
 class CommandServer {
  public:
   // Posts `wake` when collect() has something to return.
-  CommandServer(InnerLoop& loop, const control::Limits& limits, GainDesigner designer,
-                runtime::Semaphore& wake);
+  CommandServer(InnerLoop& loop, const plant::Vehicle& vehicle, const control::ControlSettings& settings,
+                GainDesigner designer, runtime::Semaphore& wake);
 
   // Call from any thread that may lock a mutex; each message type from one thread at a time. Refuses
   // malformed and infeasible requests at once; the inner loop evaluates the others.
@@ -80,6 +82,9 @@ class CommandServer {
 
   bool is_known(const Key& key);
   bool is_of_another(const comms::msg::Mission& message);
+  // Refuses paths that the rotors cannot fly.
+  control::Outcome check_rotors(const char* what,
+                                const std::vector<control::PolynomialSegment>& segments) const;
   void submit(std::unique_ptr<PendingRequest> pending);
   void refuse(const Key& key, control::RequestKind kind, const control::Outcome& outcome);
   void settle(const Key& key, control::RequestKind kind, const control::Outcome& outcome,
@@ -89,7 +94,9 @@ class CommandServer {
 
   InnerLoop& loop_;
   std::atomic<bool> active_{true};
+  const plant::Vehicle vehicle_;
   const control::Limits limits_;
+  const double low_battery_voltage_;  // V, at which paths are checked
   const GainDesigner designer_;
   runtime::Semaphore& wake_;
 

@@ -48,7 +48,7 @@ ControlService::ControlService(const plant::Vehicle& vehicle, const control::Con
       clock_(clock),
       realtime_(realtime),
       loop_(vehicle, settings),
-      command_server_(loop_, settings.limits, GainDesigner(vehicle, settings, std::move(fixed)), wake_),
+      command_server_(loop_, vehicle, settings, GainDesigner(vehicle, settings, std::move(fixed)), wake_),
       telemetry_(loop_, command_server_, settings.failsafe, node, controller_,
                  {vehicle.motor.time_constant_s, settings.estimator.rotor_speed_bandwidth}),
       failover_(controller_, failover_priority),

@@ -114,10 +114,13 @@ TEST_F(BadInput, MissionWithoutALanding) {
   expect_refusal({file}, file + ":5: items[1]: is the last item, which must be a land");
 }
 
-TEST_F(BadInput, MissionThatTakesTooLong) {
-  const std::string file = folder_.write(
-      "long.yaml", replaced(kMission, "-1], speed_m_s: 0.5", "-1], speed_m_s: 0.5, hold_s: 900"));
-  expect_refusal({file}, "must be at most 600 s");
+TEST_F(BadInput, MissionThatTheVehicleCannotFly) {
+  const std::string mass = "mass: {value: ";
+  std::string vehicle = text_of(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+  const std::size_t at = vehicle.find(mass) + mass.size();
+  vehicle.replace(at, vehicle.find(',', at) - at, "0.066");
+  const std::string file = folder_.write("m.yaml", kMission);
+  expect_refusal({file, "--vehicle", folder_.write("heavy.yaml", vehicle)}, "cannot fly it: item ");
 }
 
 TEST_F(BadInput, InvalidVehicle) {

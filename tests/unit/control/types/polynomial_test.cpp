@@ -206,6 +206,19 @@ TEST(Join, MatchesBothReferences) {
   }
 }
 
+TEST(Stretched, IsTheSamePathMoreSlowly) {
+  const PolynomialSegment quick = minimum_jerk({0, 1, -1}, 0.2, {1, 0, -2}, 0.9, 2.0);
+  const PolynomialSegment slow = stretched(quick, 1.5);
+  EXPECT_DOUBLE_EQ(slow.duration_s, 3.0);
+  for (const double t : {0.0, 0.7, 2.0}) {
+    const Reference a = evaluate(quick, t);
+    const Reference b = evaluate(slow, 1.5 * t);
+    EXPECT_LT((b.position_ned - a.position_ned).norm(), 1e-12);
+    EXPECT_LT((1.5 * b.velocity_ned - a.velocity_ned).norm(), 1e-12);
+    EXPECT_NEAR(b.yaw_rad, a.yaw_rad, 1e-12);
+  }
+}
+
 TEST(Join, RestToRestDurationReachesAPeakLimit) {
   for (const auto& [speed, acceleration, jerk] :
        {std::array{0.5, 9.0, 99.0}, std::array{9.0, 0.5, 99.0}, std::array{9.0, 9.0, 0.5}}) {

@@ -30,7 +30,7 @@ class MissionCheckTest : public testing::Test {
     return parse_mission_file(text, "m.yaml", settings_.limits);
   }
   MissionCheck checked(const MissionFile& file) const {
-    return check_mission(file, dry_run(file.mission, settings_, {0.0, 0.0}), vehicle_, settings_, 3.3);
+    return check_mission(file, vehicle_, settings_, {{0.0, 0.0}, 3.3});
   }
   static const WorstDemand& worst(const ItemCheck& item, Demand demand) {
     return item.demands.at(static_cast<std::size_t>(demand));
@@ -80,11 +80,12 @@ TEST_F(MissionCheckTest, ReportsWhereATooHeavyVehicleExceedsItsLimit) {
   EXPECT_FALSE(check.feasible());
   const WorstDemand& rotor = worst(check.items[0], Demand::kRotorMost);
   EXPECT_TRUE(rotor.exceeded());
+  EXPECT_NE(check.refusal().find("item "), std::string::npos) << check.refusal();
   const std::string table = check_table(check, file, vehicle_.name);
   EXPECT_NE(table.find("item 1 (takeoff, line 10): greatest thrust of a rotor is "), std::string::npos)
       << table;
   EXPECT_NE(table.find(vehicle_.name + " cannot fly the mission"), std::string::npos) << table;
-  const auto json = nlohmann::json::parse(check_json(check, file, vehicle_.name, settings_.name));
+  const auto json = nlohmann::json::parse(check_json(check, file, vehicle_.name, settings_.name, ""));
   EXPECT_EQ(json.at("feasible"), false);
   const auto& demand = json.at("items").at(0).at("demands").at(static_cast<std::size_t>(Demand::kRotorMost));
   EXPECT_EQ(demand.at("demand"), "greatest thrust of a rotor");
@@ -152,8 +153,9 @@ TEST_F(MissionCheckTest, RefusesWhatTheControlServiceRefuses) {
   EXPECT_FALSE(outside.feasible());
   EXPECT_EQ(outside.reason,
             "mission refused: the vehicle: x is 0.000 m, outside the fence of 0.500 to 2.000 m");
-  const MissionDryRun inside = dry_run(file.mission, settings_, {1.0, 0.0});
-  EXPECT_TRUE(check_mission(file, inside, vehicle_, settings_, 3.3).feasible()) << inside.reason;
+  EXPECT_EQ(outside.refusal(), "the control service would not complete it: " + outside.reason);
+  const MissionCheck inside = check_mission(file, vehicle_, settings_, {{1.0, 0.0}, 3.3});
+  EXPECT_TRUE(inside.feasible()) << inside.refusal();
 }
 
 TEST_F(MissionCheckTest, StartsAnAirborneMissionFromAHover) {

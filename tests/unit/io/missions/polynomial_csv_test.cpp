@@ -102,7 +102,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"outside_the_fence", kPolynomialHeader + "\n" + polynomial_row(9.0, 0.0, 3.01, 1.0),
               "p.csv:2: segment 1 in NED: y is 3.010 m, outside the fence of -3.000 to 3.000 m"},
         Fault{"too_fast", kPolynomialHeader + "\n" + polynomial_row(1.8, 0.0, 2.0, 1.0),
-              "p.csv:2: segment 1 in NED reaches 2.08 m/s, the limit is 2.00 m/s"},
+              "p.csv:2: segment 1 in NED reaches 2.08 m/s, the limit is 2.00 m/s; slower by 1.05: "
+              "--time-scale 1.05"},
         Fault{"discontinuous",
               kPolynomialHeader + "\n" + polynomial_row(4.0, 0.0, 1.0, 1.0) + "\n" +
                   polynomial_row(4.0, 1.1, 1.0, 1.0),

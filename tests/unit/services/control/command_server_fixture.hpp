@@ -24,7 +24,7 @@ class CommandServerTest : public testing::Test {
       : vehicle_(runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml")),
         settings_(runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml")),
         loop_(vehicle_, settings_),
-        command_server_(loop_, settings_.limits, GainDesigner(vehicle_, settings_), wake_) {}
+        command_server_(loop_, vehicle_, settings_, GainDesigner(vehicle_, settings_), wake_) {}
 
   // The vehicle at rest on the ground: one IMU, battery and rotor speed sample, and a pose with every fifth.
   plant::ActuatorCommand step() {

@@ -166,6 +166,36 @@ TEST_F(CommandServerTest, RefusesInvalidRequestsBeforeTheInnerLoop) {
   EXPECT_EQ(loop_.requests.read_available(), 0U);
 }
 
+// A yaw acceleration of up to 577 rad/s^2, within all limits of speed and acceleration.
+TEST_F(CommandServerTest, RefusesPathsBeyondItsRotors) {
+  control::Trajectory spin;
+  spin.id = 1;
+  spin.segments = {control::minimum_jerk({0, 0, -1}, 0.0, {0, 0, -1}, 1.0, 0.1)};
+  msg::Trajectory message = comms::to_message(spin);
+  message.client(kClient);
+  command_server_.on_trajectory(message);
+  control::Mission around;
+  around.id = 2;
+  around.segments = spin.segments;
+  around.items = {
+      {control::MissionItemKind::kTakeoff, {0, 0, -1}, 0.0, true, 0.5, 0.0},
+      {control::MissionItemKind::kTrajectory, {0, 0, 0}, 0.0, false, 0.5, 0.0, 0, 1},
+  };
+  msg::Mission mission = comms::to_message(around);
+  mission.client(kClient);
+  command_server_.on_mission(mission);
+  const std::vector<RequestResult> answers = command_server_.collect();
+  ASSERT_EQ(answers.size(), 2U);
+  for (const RequestResult& answer : answers) EXPECT_FALSE(answer.outcome.accepted);
+  EXPECT_EQ(std::string(answers[0].outcome.reason).rfind("the trajectory: least thrust of a rotor is ", 0),
+            0U)
+      << answers[0].outcome.reason;
+  EXPECT_EQ(std::string(answers[1].outcome.reason).rfind("the mission: least thrust of a rotor is ", 0), 0U)
+      << answers[1].outcome.reason;
+  EXPECT_NE(std::string(answers[1].outcome.reason).find(" s, segment 1, (0.00, 0.00, -1.00) m NED"),
+            std::string::npos);
+}
+
 TEST_F(CommandServerTest, KeepsItsOwnCopyOfAMission) {
   settle();
   command_server_.on_command(command(Command_Constants::ARM, 1));

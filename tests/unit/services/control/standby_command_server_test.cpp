@@ -16,7 +16,7 @@ class StandbyCommandServerTest : public CommandServerTest {
  protected:
   StandbyCommandServerTest()
       : standby_loop_(vehicle_, settings_),
-        standby_server_(standby_loop_, settings_.limits, GainDesigner(vehicle_, settings_), wake_) {
+        standby_server_(standby_loop_, vehicle_, settings_, GainDesigner(vehicle_, settings_), wake_) {
     standby_server_.set_active(false);
   }
   static constexpr std::uint32_t kTerm = 7;

@@ -1,0 +1,83 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "swiftlet/ground/mission/mission_check.hpp"
+#include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/missions/mission_format.hpp"
+#include "swiftlet/io/missions/whole_flight.hpp"
+#include "swiftlet/io/text_file.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+constexpr double kPrecision = 0.01;  // of a time scale
+constexpr double kFirstTolerance_m = 1e-4, kLargestTolerance_m = 0.05;
+
+class Search {
+ public:
+  Search(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
+         const CheckConditions& conditions)
+      : vehicle_(vehicle), settings_(settings), conditions_(conditions) {}
+
+  // The least factor by which the mission must be slowed, 0 if none up to kLargestTimeScale helps.
+  double slower(const MissionFile& file) const {
+    double fails = 1.0;
+    double flies = 1.0;
+    do {
+      fails = flies;
+      flies *= 1.5;
+      if (flies > kLargestTimeScale) return 0.0;
+    } while (!can_fly_slower(file, flies));
+    while (flies - fails > kPrecision) {
+      const double middle = 0.5 * (fails + flies);
+      (can_fly_slower(file, middle) ? flies : fails) = middle;
+    }
+    const double rounded = std::ceil(flies / kPrecision) * kPrecision;
+    return can_fly_slower(file, rounded) ? rounded : flies;
+  }
+
+  // The least of some tolerances with which the samples of the file can be flown; 0 if none.
+  double tolerance_m(const std::string& path, FileOptions options) const {
+    for (double m = std::max(kFirstTolerance_m, 2.0 * options.tolerance_m.value_or(0.0));
+         m <= kLargestTolerance_m; m *= 2.0) {
+      options.tolerance_m = m;
+      try {
+        if (can_fly(load_mission_file(path, settings_.limits, options))) return m;
+      } catch (const runtime::ConfigError&) {  // with this tolerance a limit is exceeded
+      }
+    }
+    return 0.0;
+  }
+
+ private:
+  bool can_fly(const MissionFile& file) const {
+    return check_mission(file, vehicle_, settings_, conditions_).feasible();
+  }
+  bool can_fly_slower(MissionFile file, double factor) const {
+    file.mission = control::stretched(std::move(file.mission), factor);
+    return can_fly(file);
+  }
+
+  const plant::Vehicle& vehicle_;
+  const control::ControlSettings& settings_;
+  const CheckConditions& conditions_;
+};
+
+}  // namespace
+
+std::string advice(const MissionFile& file, const std::string& path, const FileOptions& options,
+                   const plant::Vehicle& vehicle, const control::ControlSettings& settings,
+                   const CheckConditions& conditions) {
+  const Search search(vehicle, settings, conditions);
+  std::string text;
+  if (const double slower = search.slower(file); slower > 1.0) text = advice_of(slower, options);
+  if (detect_format(runtime::read_text_file(path), path) != MissionFormat::kSampledCsv) return text;
+  if (const double tolerance_m = search.tolerance_m(path, options); tolerance_m > 0.0)
+    text += fmt::format("{}past the samples by up to {:.3g} mm: --tolerance {:.3g}",
+                        text.empty() ? "" : ", or ", tolerance_m * 1e3, tolerance_m);
+  return text;
+}
+
+}  // namespace swiftlet::ground
