@@ -46,6 +46,7 @@ Command add_check_vehicle_command(runtime::CommandLine check);
 
 // Recorded flights.
 Command add_record_command(runtime::CommandLine root);
+Command add_log_command(runtime::CommandLine root);  // `log info`, `log cut`, `log csv` ...
 Command add_report_command(runtime::CommandLine root);
 
 // Vehicle parameters from bench data or flights.

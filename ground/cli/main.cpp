@@ -36,6 +36,7 @@ int main(int argc, char** argv) {
       ground::add_doctor_command(root),
       ground::add_check_command(root),
       ground::add_record_command(root),
+      ground::add_log_command(root),
       ground::add_report_command(root),
       ground::add_gains_command(root),
       ground::add_tune_command(root),

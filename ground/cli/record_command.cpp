@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/log/compression_option.hpp"
 #include "swiftlet/ground/client/context.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
@@ -149,12 +150,7 @@ Command add_record_command(runtime::CommandLine root) {
   app.add_option("-o,--output", options->output, "the file to write").type_name("FILE").required();
   app.add_flag("--replace", options->replace, "overwrite the file");
   app.add_option("--duration", options->duration_s, "end after this time, s").range(0.1, 1e6);
-  app.add_choice("--compression", options->recorder.file.compression,
-                 {{"zstd", mcap::Compression::kZstd},
-                  {"lz4", mcap::Compression::kLz4},
-                  {"none", mcap::Compression::kNone}},
-                 "compression of the file")
-      .show_default("zstd");
+  add_compression_option(app, options->recorder.file.compression);
   app.add_choice(
          "--time", options->recorder.clock,
          {{"wall", RecordClock::kWall}, {"vehicle", RecordClock::kVehicle}},

@@ -109,6 +109,7 @@ void RecordWriter::record(const Statistics& statistics) {
 }
 
 std::uint32_t crc32(ByteView bytes, std::uint32_t crc) {
+  if (bytes.size == 0) return crc;  // zlib takes a null pointer for a new start
   return static_cast<std::uint32_t>(::crc32_z(crc, bytes.data, bytes.size));
 }
 

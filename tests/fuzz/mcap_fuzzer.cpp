@@ -1,8 +1,26 @@
-// Fuzzes MCAP files.
+// Fuzzes MCAP files, and the definitions and messages in them.
+#include "swiftlet/io/mcap/message_decoder.hpp"
 #include "swiftlet/io/mcap/reader.hpp"
 #include "tests/fuzz/refusal.hpp"
 
 using namespace swiftlet;
+
+namespace {
+
+// Decodes the message by the schema of its channel, if that is understood.
+void decode(const mcap::Reader& file, const mcap::Channel& channel, const mcap::Message& message) {
+  const mcap::Schema* const schema = file.schema_of(channel);
+  if (schema == nullptr) return;
+  try {
+    const mcap::MessageDecoder decoder(*schema);
+    std::vector<mcap::Value> values;
+    if (decoder.decode(message.payload, values))
+      tests::demand(values.size() == decoder.columns().size(), "each column has a value");
+  } catch (const runtime::ConfigError&) {
+  }
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   for (const mcap::Access access : {mcap::Access::kIndexed, mcap::Access::kScanned}) {
@@ -17,7 +35,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         tests::demand(message.log_time_ns >= last_ns || access == mcap::Access::kIndexed,
                       "messages come in order");
         last_ns = message.log_time_ns;
-        file.schema_of(messages.channel());
+        decode(file, messages.channel(), message);
       }
       tests::demand(access == mcap::Access::kIndexed || count == file.statistics().message_count,
                     "all counted messages are read");

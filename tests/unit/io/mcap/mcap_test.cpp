@@ -223,6 +223,25 @@ TEST_F(McapTest, WhatIsNoMcapFileIsRefused) {
             path("magic") + ": byte 8: there is no header");
 }
 
+TEST_F(McapTest, FlushingNothingChangesNothing) {
+  {
+    Writer file(path(), tests::small_chunks(Compression::kZstd));
+    file.flush();
+    tests::begin_file(file);
+    for (int i = 0; i < kCount; ++i) {
+      tests::write_message(file, i);
+      file.flush();
+      file.flush();
+    }
+    file.flush();
+    file.close();
+  }
+  const Reader file(path(), Access::kScanned);
+  EXPECT_TRUE(file.damages().empty());
+  EXPECT_EQ(messages_of(file), first_messages(kCount));
+  EXPECT_EQ(file.chunks().size(), static_cast<std::size_t>(kCount));
+}
+
 TEST_F(McapTest, AFileWithoutMessagesIsWhole) {
   Writer(path(), {}).close();
   const Reader file(path());

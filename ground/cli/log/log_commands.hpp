@@ -1,0 +1,31 @@
+// The subcommands of `swiftlet log`, which work on recorded MCAP files.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/io/mcap/reader.hpp"
+
+namespace swiftlet::ground {
+
+Command add_log_info_command(runtime::CommandLine log);
+Command add_log_ls_command(runtime::CommandLine log);
+Command add_log_cut_command(runtime::CommandLine log);
+Command add_log_merge_command(runtime::CommandLine log);
+Command add_log_repair_command(runtime::CommandLine log);
+Command add_log_csv_command(runtime::CommandLine log);
+
+// The part of a file that an option selects: times in s from its first message.
+struct TimeRange {
+  double from_s = 0.0;
+  double to_s = 1e12;
+};
+void add_time_range_options(runtime::CommandLine app, TimeRange& range);
+mcap::Selection selection_of(const TimeRange& range, const mcap::Reader& file);
+
+// Throws InputError if the file exists and may not be replaced, or is one of the inputs.
+void require_new(const std::string& output, bool replace, const std::vector<std::string>& inputs);
+
+}  // namespace swiftlet::ground
