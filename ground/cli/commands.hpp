@@ -1,12 +1,14 @@
 // The subcommands of `swiftlet`: each function adds one to the command line and returns what runs it.
 #pragma once
 
+#include <string>
+
 #include "swiftlet/ground/command_line/command.hpp"
 
 namespace swiftlet::ground {
 
-// Starts the processes, flies a mission and reports.
-Command add_fly_command(runtime::CommandLine root);
+// Starts the processes, flies a mission and reports. version: of the program, for the record.
+Command add_fly_command(runtime::CommandLine root, const std::string& version = "swiftlet");
 
 // Requests to, and state of, a vehicle that already runs.
 Command add_arm_command(runtime::CommandLine root);
@@ -45,7 +47,7 @@ Command add_check_command(runtime::CommandLine root);
 Command add_check_vehicle_command(runtime::CommandLine check);
 
 // Recorded flights.
-Command add_record_command(runtime::CommandLine root);
+Command add_record_command(runtime::CommandLine root, const std::string& version = "swiftlet");
 Command add_log_command(runtime::CommandLine root);  // `log info`, `log cut`, `log csv` ...
 Command add_report_command(runtime::CommandLine root);
 

@@ -18,6 +18,7 @@
 #include "swiftlet/ground/flight/flight_outcome.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/flight/launch_configuration.hpp"
+#include "swiftlet/ground/flight/message_record.hpp"
 #include "swiftlet/ground/flight/process_flight.hpp"
 #include "swiftlet/ground/flight/process_group.hpp"
 #include "swiftlet/ground/terminal/fleet_progress.hpp"
@@ -146,7 +147,8 @@ std::vector<std::string> vehicles_of(const FlyOptions& options) {
 int fly(const FlyOptions& options) {
   const std::vector<std::string> vehicles = vehicles_of(options);
   check(options, vehicles.size());
-  Fleet fleet{vehicles, plan_flights(options, vehicles), options.spacing_m, options.per_row, {}};
+  Fleet fleet{vehicles,       plan_flights(options, vehicles), options.spacing_m, options.per_row, {},
+              options.program};
   std::vector<LaunchConfiguration>& plans = fleet.plans;
 
   const bool attached = options.launch_mode == LaunchMode::kAttached;
@@ -166,6 +168,8 @@ int fly(const FlyOptions& options) {
 
   ProgressLine progress;
   const Interrupts interrupts;
+  std::optional<MessageRecord> messages;  // receives from the first message on
+  if (options.mcap) messages.emplace(network, fleet);
   ProcessGroup processes(ground::processes(fleet, network));
   comms::NodeSettings own = network;
   own.deadlines = options.clock != runtime::Clock::kLockstep;
@@ -190,6 +194,9 @@ int fly(const FlyOptions& options) {
   } else {
     fly_together(flights, processes, interrupts, progress);
   }
+  std::string incomplete;
+  if (messages) incomplete = messages->finish();
+  if (!incomplete.empty()) progress.say("swiftlet: the record of the messages is incomplete: " + incomplete);
   // A killed process leaves its shared memory segments behind.
   if (network.transport == comms::Transport::kSharedMemory) comms::remove_stale_shared_memory();
 
@@ -202,8 +209,9 @@ int fly(const FlyOptions& options) {
 
 }  // namespace
 
-Command add_fly_command(runtime::CommandLine root) {
+Command add_fly_command(runtime::CommandLine root, const std::string& version) {
   const auto options = std::make_shared<FlyOptions>();
+  options->program = version;
   const runtime::CommandLine app =
       root.add_subcommand("fly", "Start plant, mocap and control on this computer, fly a mission and report");
   add_fly_options(app, *options);
@@ -237,6 +245,8 @@ Command add_fly_command(runtime::CommandLine root) {
          "--speed", options->speed,
          "simulation speed factor (1 = real time); default: 1, or with --clock lockstep as fast as possible")
       .range(0.01, 100.0);
+  app.add_flag("--mcap", options->mcap,
+               "write flight.mcap, every message of the flight, as `swiftlet record` does");
   app.add_flag("--trace", options->trace,
                "lockstep only: write trace.csv, which holds every sample and command bit for bit");
   for (const char* launch_option :

@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
       "example: swiftlet fly square\n`swiftlet COMMAND --help` explains a command.\nExit codes: 0 success, 1 "
       "failed or refused, 2 bad input.");
   const std::vector<ground::Command> commands = {
-      ground::add_fly_command(root),
+      ground::add_fly_command(root, runtime::version_text()),
       ground::add_arm_command(root),
       ground::add_disarm_command(root),
       ground::add_takeoff_command(root),
@@ -35,7 +35,7 @@ int main(int argc, char** argv) {
       ground::add_discovery_server_command(root),
       ground::add_doctor_command(root),
       ground::add_check_command(root),
-      ground::add_record_command(root),
+      ground::add_record_command(root, runtime::version_text()),
       ground::add_log_command(root),
       ground::add_report_command(root),
       ground::add_gains_command(root),

@@ -140,8 +140,9 @@ int record(const Options& options) {
 
 }  // namespace
 
-Command add_record_command(runtime::CommandLine root) {
+Command add_record_command(runtime::CommandLine root, const std::string& version) {
   const auto options = std::make_shared<Options>();
+  options->recorder.file.library = version;
   const runtime::CommandLine app = root.add_subcommand(
       "record", "Record every message of one or more vehicles as an MCAP file, until Ctrl-C");
   add_network_options(app, options->network, Vehicles::kSeveral);
@@ -157,6 +158,9 @@ Command add_record_command(runtime::CommandLine root) {
          "times in the file: wall, when a message arrived; vehicle, the stamps of the vehicle's clock, "
          "for simulated time")
       .show_default("wall");
+  app.add_flag(
+      "--no-standard-messages", [options] { options->recorder.standard_messages = false; },
+      "write only what was received, and no poses, transforms, IMU and battery as standard types of ROS 2");
   app.add_option("--queue", options->queue_mb,
                  "memory for messages that wait for the disk, MB; what does not fit is dropped and counted")
       .range(1, 4096)

@@ -31,6 +31,7 @@ constexpr double kSpareS = 30.0;  // recorded before and after the mission
 constexpr double kTelemetryRowBytes = 1000.0;  // a row of flight.csv and its part of flight.gp
 constexpr double kSensorsRowBytes = 450.0;
 constexpr double kTraceRowBytes = 450.0;
+constexpr double kMessagesBytes = 500.0;  // of all messages, compressed, for each sample of the IMU
 constexpr double kOtherFilesBytes = 1e6;  // settings, logs, pictures
 constexpr double kGroundTimeS = 10.0;     // recorded before take-off and after landing
 
@@ -140,6 +141,7 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
   plan.folder = options.record.empty() ? default_folder(plan.mission.name) : fs::path(options.record);
   plan.trace = options.trace;
   plan.sensors = options.sensors;
+  plan.mcap = options.mcap;
   return plan;
 }
 
@@ -154,7 +156,8 @@ std::size_t LaunchConfiguration::record_capacity() const {
 }
 
 std::uintmax_t LaunchConfiguration::record_bytes() const {
-  const double imu_row_bytes = (sensors ? kSensorsRowBytes : 0.0) + (trace ? kTraceRowBytes : 0.0);
+  const double imu_row_bytes =
+      (sensors ? kSensorsRowBytes : 0.0) + (trace ? kTraceRowBytes : 0.0) + (mcap ? kMessagesBytes : 0.0);
   const double bytes_per_s = kTelemetryRateHz * kTelemetryRowBytes + simulation.imu.rate_hz * imu_row_bytes;
   return static_cast<std::uintmax_t>((planned_duration_s + kGroundTimeS) * bytes_per_s + kOtherFilesBytes);
 }

@@ -49,13 +49,15 @@ struct FlyOptions {
   comms::NodeSettings network;
   // m, initial position; the mission is shifted by it.
   Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();
-  int vehicles = 1;         // above 1: kl1, kl2 ... instead of network.vehicle
-  double spacing_m = 1.0;   // distance between several vehicles, to the east
-  int per_row = 0;          // several vehicles: further rows stand to the north; 0: all in one row
-  int domain = -1;          // DDS domain; < 0: a free one, or 0 if attached
-  bool trace = false;       // write a trace of a lockstep or in-process flight
-  bool sensors = false;     // record sensors and commands, for `swiftlet identify flight`
-  bool skip_check = false;  // kAttached: do not check the vehicle before it is armed
+  int vehicles = 1;                  // above 1: kl1, kl2 ... instead of network.vehicle
+  double spacing_m = 1.0;            // distance between several vehicles, to the east
+  int per_row = 0;                   // several vehicles: further rows stand to the north; 0: all in one row
+  int domain = -1;                   // DDS domain; < 0: a free one, or 0 if attached
+  bool trace = false;                // write a trace of a lockstep or in-process flight
+  bool sensors = false;              // record sensors and commands, for `swiftlet identify flight`
+  bool mcap = false;                 // record every message, as flight.mcap
+  std::string program = "swiftlet";  // with its version, for the record
+  bool skip_check = false;           // kAttached: do not check the vehicle before it is armed
   bool json = false;
 };
 
@@ -76,6 +78,7 @@ struct LaunchConfiguration {
   std::filesystem::path folder;                         // of the record; not created by plan_flight()
   bool trace = false;                                   // write trace_file()
   bool sensors = false;                                 // record sensors and commands
+  bool mcap = false;                                    // record every message
   std::filesystem::path plant_program, mocap_program, control_program;  // if kStarted
 
   std::size_t record_capacity() const;  // rows: IMU samples within the flight's time limit
@@ -102,6 +105,7 @@ struct Fleet {
   double spacing_m = 1.0;
   int per_row = 0;
   std::filesystem::path folder;  // of the record; that of the plan of a single vehicle
+  std::string program;           // with its version, for the record
 };
 
 // Where the i-th of several vehicles starts, m: in rows about the origin.

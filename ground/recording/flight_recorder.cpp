@@ -1,9 +1,12 @@
 #include "swiftlet/ground/recording/flight_recorder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <exception>
+#include <limits>
 #include <map>
+#include <unistd.h>
 #include <utility>
 
 #include "swiftlet/services/messages/all_topics.hpp"
@@ -15,7 +18,9 @@ using namespace std::chrono_literals;
 
 constexpr auto kBatchPeriod = 100ms;
 constexpr auto kFlushPeriod = 500ms;
+constexpr const char* kRecorder = "swiftlet/recorder";
 constexpr const char* kCounts = "swiftlet/counts";
+constexpr const char* kClocks = "swiftlet/clocks";
 
 std::int64_t wall_now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -29,18 +34,32 @@ bool is_fast(comms::Qos qos, const std::string& topic) {
          topic == comms::topics::kRotorSpeeds.name;
 }
 
+std::optional<std::int64_t> stamp_of(const comms::RawSample& sample, int offset) {
+  std::int64_t stamp_ns = 0;
+  const auto at = static_cast<std::size_t>(offset);
+  if (offset < 0 || at + sizeof(stamp_ns) > sample.size) return std::nullopt;
+  std::memcpy(&stamp_ns, sample.payload + at, sizeof(stamp_ns));
+  return stamp_ns;
+}
+
 }  // namespace
 
 struct FlightRecorder::Vehicle {
+  explicit Vehicle(std::string vehicle_name) : name(std::move(vehicle_name)) {}
+
   std::string name;
   std::unique_ptr<comms::Node> node;
+  StandardMessages standard{name};  // of the thread that writes
   std::atomic<std::int64_t> newest_stamp_ns{0};
+  // Of an IMU sample: its arrival by the wall clock minus its stamp, the least of all.
+  std::atomic<std::int64_t> least_age_ns{std::numeric_limits<std::int64_t>::max()};
   std::vector<comms::Subscription> subscriptions;  // last: their callbacks use all members above
 };
 
 struct FlightRecorder::Channel {
   Vehicle& vehicle;
-  std::string topic;
+  const char* name;   // "imu"
+  std::string topic;  // "/kl1/imu"
   std::uint16_t id;
   int stamp_offset;
   GapCounter gaps;  // of the thread that receives the topic
@@ -55,7 +74,14 @@ FlightRecorder::FlightRecorder(const comms::Participant& participant, std::files
       participant_(participant),
       queue_(settings_.queue_bytes),
       file_(std::move(file), settings_.file),
-      writer_([this] { write_until_stopped(); }) {}
+      writer_([this] { write_until_stopped(); }) {
+  std::array<char, 256> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  add(mcap::Metadata{kRecorder,
+                     {{"host", host.data()},
+                      {"started_ns", std::to_string(wall_now_ns())},
+                      {"time", settings_.clock == RecordClock::kVehicle ? "vehicle" : "wall"}}});
+}
 
 FlightRecorder::~FlightRecorder() { stop(); }
 
@@ -82,9 +108,8 @@ void FlightRecorder::add(const mcap::Attachment& attachment) {
 }
 
 void FlightRecorder::add_vehicle(const std::string& name) {
-  vehicles_.push_back(std::make_unique<Vehicle>());
+  vehicles_.push_back(std::make_unique<Vehicle>(name));
   Vehicle& vehicle = *vehicles_.back();
-  vehicle.name = name;
   vehicle.node = std::make_unique<comms::Node>(participant_, name);
   comms::for_each_topic([&](const auto& topic) { subscribe(vehicle, topic); });
 }
@@ -94,20 +119,15 @@ void FlightRecorder::subscribe(Vehicle& vehicle, const comms::Topic<T>& topic) {
   const comms::MessageSchema& schema = comms::schema_of<T>();
   const std::string name = "/" + vehicle.name + "/" + topic.name;
   std::uint16_t id = 0;
-  use_file([&](mcap::Writer& file) {
-    auto known = std::find_if(schemas_.begin(), schemas_.end(),
-                              [&](const auto& written) { return written.first == &schema; });
-    if (known == schemas_.end())
-      known = schemas_.insert(known, {&schema, file.add_schema(schema.name, "ros2msg", schema.definition)});
-    id = file.add_channel(name, known->second, "cdr", {});
-  });
+  use_file([&](mcap::Writer& file) { id = file.add_channel(name, schema_in(file, schema), "cdr", {}); });
   const Writers writers = topic.qos == comms::Qos::kOwnedStream ? Writers::kStrongest : Writers::kAll;
   Channel* channel = nullptr;
   {
     const std::lock_guard<std::mutex> lock(channels_mutex_);
-    channels_.push_back(
-        std::unique_ptr<Channel>(new Channel{vehicle, name, id, schema.stamp_offset, GapCounter(writers)}));
+    channels_.push_back(std::unique_ptr<Channel>(
+        new Channel{vehicle, topic.name, name, id, schema.stamp_offset, GapCounter(writers)}));
     channel = channels_.back().get();
+    channel_by_id_[id] = channel;
   }
   vehicle.subscriptions.push_back(vehicle.node->subscribe_raw<T>(
       topic, [this, channel](const comms::RawSample& sample) { receive(*channel, sample); },
@@ -123,19 +143,45 @@ void FlightRecorder::receive(Channel& channel, const comms::RawSample& sample) {
                         wall_now_ns(),
                         sample.source_stamp_ns,
                         {sample.payload, sample.size}};
+  Vehicle& vehicle = channel.vehicle;
+  const auto stamp_ns = stamp_of(sample, channel.stamp_offset);
+  if (stamp_ns && channel.name == comms::topics::kImu.name)
+    vehicle.least_age_ns = std::min(vehicle.least_age_ns.load(), message.log_time_ns - *stamp_ns);
   if (settings_.clock == RecordClock::kVehicle) {
-    std::int64_t stamp_ns = 0;
-    const auto at = static_cast<std::size_t>(channel.stamp_offset);
-    if (channel.stamp_offset >= 0 && at + sizeof(stamp_ns) <= sample.size) {
-      std::memcpy(&stamp_ns, sample.payload + at, sizeof(stamp_ns));
-      if (stamp_ns > channel.vehicle.newest_stamp_ns) channel.vehicle.newest_stamp_ns = stamp_ns;
-      message.log_time_ns = stamp_ns;
-    } else {
-      message.log_time_ns = channel.vehicle.newest_stamp_ns;
-    }
+    if (stamp_ns && *stamp_ns > vehicle.newest_stamp_ns) vehicle.newest_stamp_ns = *stamp_ns;
+    message.log_time_ns = stamp_ns.value_or(vehicle.newest_stamp_ns);
     message.publish_time_ns = message.log_time_ns;
   }
   if (failed_ || !queue_.put(message)) channel.dropped.fetch_add(1, std::memory_order_relaxed);
+}
+
+std::uint16_t FlightRecorder::schema_in(mcap::Writer& file, const comms::MessageSchema& schema) {
+  const auto known = schemas_.find(&schema);
+  if (known != schemas_.end()) return known->second;
+  return schemas_[&schema] = file.add_schema(schema.name, "ros2msg", schema.definition);
+}
+
+std::uint16_t FlightRecorder::standard_channel(mcap::Writer& file, const StandardMessage& message) {
+  const auto known = standard_channels_.find(message.topic);
+  if (known != standard_channels_.end()) return known->second;
+  return standard_channels_[message.topic] =
+             file.add_channel(message.topic, schema_in(file, *message.schema), "cdr", {});
+}
+
+void FlightRecorder::write(mcap::Writer& file, const mcap::Message& message) {
+  file.write(message);
+  if (!settings_.standard_messages) return;
+  Channel* source = nullptr;
+  {
+    const std::lock_guard<std::mutex> lock(channels_mutex_);
+    source = channel_by_id_.at(message.channel_id);
+  }
+  for (const StandardMessage& follows : source->vehicle.standard.of(source->name, message)) {
+    mcap::Message standard = message;
+    standard.channel_id = standard_channel(file, follows);
+    standard.payload = {follows.payload.data(), follows.payload.size()};
+    file.write(standard);
+  }
 }
 
 void FlightRecorder::write_until_stopped() {
@@ -143,7 +189,7 @@ void FlightRecorder::write_until_stopped() {
   for (bool last = false; !last;) {
     last = stopping_;  // what was put before is taken once more
     queue_.take_all(last ? 0ms : kBatchPeriod, [this](const mcap::Message& message) {
-      use_file([&](mcap::Writer& file) { file.write(message); });
+      use_file([&](mcap::Writer& file) { write(file, message); });
     });
     const auto now = std::chrono::steady_clock::now();
     if (now - flushed < kFlushPeriod) continue;
@@ -154,7 +200,7 @@ void FlightRecorder::write_until_stopped() {
 
 void FlightRecorder::stop() {
   if (!writer_.joinable()) return;
-  vehicles_.clear();  // no sample comes any more
+  for (const auto& vehicle : vehicles_) vehicle->subscriptions.clear();  // no sample comes any more
   stopping_ = true;
   writer_.join();
   write_counts();
@@ -174,6 +220,12 @@ void FlightRecorder::write_counts() {
     }
   }
   add(mcap::Metadata{kCounts, counts});
+  std::map<std::string, std::string> clocks;
+  for (const auto& vehicle : vehicles_) {
+    if (vehicle->least_age_ns != std::numeric_limits<std::int64_t>::max())
+      clocks["wall_minus_stamp_ns " + vehicle->name] = std::to_string(vehicle->least_age_ns);
+  }
+  add(mcap::Metadata{kClocks, clocks});
 }
 
 RecorderTotals FlightRecorder::totals() const {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -15,6 +16,7 @@
 
 #include "swiftlet/ground/recording/gap_counter.hpp"
 #include "swiftlet/ground/recording/sample_queue.hpp"
+#include "swiftlet/ground/recording/standard_messages.hpp"
 #include "swiftlet/io/mcap/writer.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/messages/schemas.hpp"
@@ -30,6 +32,7 @@ enum class RecordClock {
 struct RecorderSettings {
   mcap::WriterSettings file{};
   RecordClock clock = RecordClock::kWall;
+  bool standard_messages = true;  // also those of standard_messages.hpp
   std::size_t queue_bytes = std::size_t{64} << 20;
 };
 
@@ -72,6 +75,9 @@ class FlightRecorder {
   template <class T>
   void subscribe(Vehicle& vehicle, const comms::Topic<T>& topic);
   void receive(Channel& channel, const comms::RawSample& sample);
+  void write(mcap::Writer& file, const mcap::Message& message);
+  std::uint16_t standard_channel(mcap::Writer& file, const StandardMessage& message);
+  std::uint16_t schema_in(mcap::Writer& file, const comms::MessageSchema& schema);
   void write_until_stopped();
   void write_counts();
   template <class Work>
@@ -86,9 +92,11 @@ class FlightRecorder {
   std::atomic<bool> failed_{false};
   std::atomic<bool> stopping_{false};
   std::atomic<std::uint64_t> file_bytes_{0};
-  std::vector<std::pair<const comms::MessageSchema*, std::uint16_t>> schemas_;  // in the file
-  mutable std::mutex channels_mutex_;                                           // guards channels_
+  std::map<const comms::MessageSchema*, std::uint16_t> schemas_;  // in the file; guarded by mutex_
+  std::map<std::string, std::uint16_t> standard_channels_;        // likewise
+  mutable std::mutex channels_mutex_;                             // guards the two below
   std::vector<std::unique_ptr<Channel>> channels_;
+  std::map<std::uint16_t, Channel*> channel_by_id_;  // in the file
   std::thread writer_;
   std::vector<std::unique_ptr<Vehicle>> vehicles_;  // last: their callbacks use all members above
 };

@@ -86,6 +86,31 @@ inline bool write(eprosima::fastdds::dds::DataWriter& writer, const void* sample
 #endif
 }
 
+// Message to bytes and back. `type` knows the message's type.
+inline std::uint32_t serialized_size(eprosima::fastdds::dds::TopicDataType& type, void* message) {
+#if SWIFTLET_FAST_DDS_3
+  return type.calculate_serialized_size(message, eprosima::fastdds::dds::XCDR_DATA_REPRESENTATION);
+#else
+  return type.getSerializedSizeProvider(message)();
+#endif
+}
+inline bool serialize(eprosima::fastdds::dds::TopicDataType& type, void* message,
+                      rtps::SerializedPayload_t& payload) {
+#if SWIFTLET_FAST_DDS_3
+  return type.serialize(message, payload, eprosima::fastdds::dds::XCDR_DATA_REPRESENTATION);
+#else
+  return type.serialize(message, &payload);
+#endif
+}
+inline bool deserialize(eprosima::fastdds::dds::TopicDataType& type, rtps::SerializedPayload_t& payload,
+                        void* message) {
+#if SWIFTLET_FAST_DDS_3
+  return type.deserialize(payload, message);
+#else
+  return type.deserialize(&payload, message);
+#endif
+}
+
 // ---- settings of the library and of participants
 
 // If a participant has flow controllers, 3 sends its announcements from a queue, and the build of Debian asserts there

@@ -84,8 +84,15 @@ TEST_F(Log, HoldsEveryMessageOfAFlight) {
   const mcap::Reader recorded(file, mcap::Access::kScanned);
   EXPECT_TRUE(recorded.finished());
   EXPECT_TRUE(recorded.damages().empty());
-  EXPECT_EQ(recorded.statistics().message_count, result.at("messages"));
   const auto heads = heads_of(recorded);
+  std::uint64_t received = 0;  // without those that the recorder adds
+  for (const auto& [id, count] : recorded.statistics().messages_by_channel) {
+    if (recorded.schema_of(recorded.channels().at(id))->name.rfind("swiftlet_msgs/", 0) == 0)
+      received += count;
+  }
+  EXPECT_EQ(received, result.at("messages"));
+  for (const char* topic : {"/tf", "/kl1/pose", "/kl1/path", "/kl1/imu_flu", "/kl1/battery_state"})
+    EXPECT_EQ(heads.count(topic), 1U) << topic;
   for (const char* topic :
        {"/kl1/imu", "/kl1/actuator_command", "/kl1/mocap_pose", "/kl1/battery", "/kl1/estimate",
         "/kl1/reference", "/kl1/ground_truth", "/kl1/control_status", "/kl1/mission_status",
@@ -94,13 +101,37 @@ TEST_F(Log, HoldsEveryMessageOfAFlight) {
   const auto& imu = heads.at("/kl1/imu");
   EXPECT_EQ(gaps_in(imu), 0U) << recorder->output();
   EXPECT_EQ(result.at("lost"), 0);
-  // As many samples as the time they span has periods.
-  const double time_s = static_cast<double>(imu.back().publish_time_ns - imu.front().publish_time_ns) * 1e-9;
-  EXPECT_NEAR(static_cast<double>(imu.size()), 500.0 * time_s, 50.0);
+  EXPECT_GT(imu.size(), 2000U);
   for (const mcap::Message& sample : imu) {
     EXPECT_GE(sample.log_time_ns, sample.publish_time_ns);
     EXPECT_LE(sample.log_time_ns, sample.publish_time_ns + kSecond_ns);
   }
+}
+
+TEST_F(Log, IsPartOfTheRecordOfAFlight) {
+  const ProgramResult flight = run_program(
+      "swiftlet",
+      {"fly", folder_.write("hop.yaml", kHopMission), "--clock", "lockstep", "--seed", "5", "--mcap",
+       "--domain", std::to_string(lock_.domain()), "--record", path("record"), "--json"},
+      folder_.path(), kStuck);
+  ASSERT_EQ(flight.exit_code, 0) << flight.errors;
+  const mcap::Reader recorded(path("record/flight.mcap"), mcap::Access::kScanned);
+  EXPECT_TRUE(recorded.finished());
+  EXPECT_TRUE(recorded.damages().empty());
+  std::map<std::string, std::map<std::string, std::string>> metadata;
+  for (const mcap::Metadata& one : recorded.metadata()) metadata[one.name] = one.values;
+  const auto& about = metadata.at("swiftlet/flight");
+  EXPECT_EQ(about.at("missions"), "hop");
+  EXPECT_EQ(about.at("seed"), "5");
+  EXPECT_EQ(about.at("control"), "motor_lag");
+  EXPECT_EQ(metadata.at("swiftlet/recorder").at("time"), "vehicle");
+  EXPECT_EQ(recorded.attachments().size(), 4U);
+  // In simulated time.
+  const auto heads = heads_of(recorded);
+  const double simulated_s = json::parse(flight.output).at("simulated_s");
+  EXPECT_NEAR(static_cast<double>(recorded.statistics().end_ns) * 1e-9, simulated_s, 1.0);
+  EXPECT_GT(heads.at("/kl1/imu").size(), 1000U);
+  EXPECT_EQ(heads.count("/kl1/mission"), 1U);
 }
 
 TEST_F(Log, OfAKilledRecorderIsReadableUpToTheLastSecond) {

@@ -103,4 +103,4 @@ for await (const record of index.readAttachments({ validateCrcs: true })) attach
 const plain = (_, value) =>
   typeof value === "bigint" ? Number(value) : ArrayBuffer.isView(value) ? Array.from(value, (item) => Number(item)) : value;
 console.log(JSON.stringify({ messages: streamed.messages, topics: streamed.topics, metadata, attachments, faults }, plain));
-process.exit(faults.length === 0 ? 0 : 1);
+process.exitCode = faults.length === 0 ? 0 : 1;  // process.exit() would cut the output

@@ -14,6 +14,7 @@ import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
+LAYOUT = HERE.parent.parent / "config" / "foxglove" / "flight.json"
 MISSION = HERE.parent.parent / "config" / "missions" / "square.yaml"
 
 
@@ -63,6 +64,20 @@ class Readers:
             self.check_last(file, topic, row["last"])
         print(f"readers: {file.name}: {read['messages']} messages of {len(counts)} topics decoded by @mcap/core and "
               f"@foxglove/rosmsg2-serialization, as by swiftlet log")
+        return read
+
+    def check_layout(self, layout, read):
+        """Each topic and signal that the layout shows is in the flight."""
+        panels = json.loads(layout.read_text())["configById"]
+        shown = [path["value"] for panel in panels.values() for path in panel.get("paths", [])]
+        for signal in shown:
+            topic, _, name = signal.partition(".")
+            require(topic in read["topics"] and name in dict(flat("", read["topics"][topic]["last"])),
+                    f"{layout.name}: {signal} is not in the flight")
+        topics = [topic for panel in panels.values() for topic in panel.get("topics", {})]
+        for topic in topics:
+            require(topic in read["topics"], f"{layout.name}: {topic} is not in the flight")
+        print(f"readers: {layout.name}: {len(shown)} signals and {len(topics)} topics are in the flight")
 
     def check_last(self, file, topic, message):
         """The last message of a topic has the values of the last row of its CSV table."""
@@ -93,7 +108,7 @@ def flat(prefix, value):
         yield prefix, value
 
 
-SEQUENCES = {"items", "segments", "requests", "fixed_settings"}
+SEQUENCES = {"items", "segments", "requests", "fixed_settings", "transforms", "poses", "cell_voltage", "cell_temperature"}
 
 
 def main(programs, work):
@@ -104,7 +119,7 @@ def main(programs, work):
     file.unlink(missing_ok=True)
     result = readers.fly_and_record(file, domain)
     require(result["dropped"] == 0, f"the recorder dropped {result['dropped']} messages")
-    readers.check(file)
+    readers.check_layout(LAYOUT, readers.check(file))
     packed = work / "lz4.mcap"
     run(readers.swiftlet, "log", "cut", file, "--to", 5, "-o", packed, "--replace", "--compression", "lz4")
     readers.check(packed)
