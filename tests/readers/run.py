@@ -14,6 +14,7 @@ import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
+NUMPY_PYTHON = "/usr/bin/python3"  # with Debian's python3-numpy
 LAYOUT = HERE.parent.parent / "config" / "foxglove" / "flight.json"
 MISSION = HERE.parent.parent / "config" / "missions" / "square.yaml"
 
@@ -94,6 +95,26 @@ class Readers:
             require(same or value is None, f"{topic}: {name}: {text}, others read {value}")  # JSON has no NaN
 
 
+def check_arrays(swiftlet, file, work):
+    """NumPy reads the arrays, with the values of the CSV table."""
+    arrays, table = work / "flight.npz", work / "topic.csv"
+    run(swiftlet, "log", "npz", file, "-o", arrays, "--replace")
+    run(swiftlet, "log", "csv", file, "/kl1/estimate", "-o", table, "--replace")
+    with table.open(newline="") as text:
+        rows = list(csv.DictReader(text))
+    print(run(NUMPY_PYTHON, "-c", """
+import json, sys, numpy
+arrays = numpy.load(sys.argv[1])
+rows = json.load(sys.stdin)
+position = arrays["kl1/estimate/position_ned"]
+assert position.dtype == numpy.float64 and position.shape == (len(rows), 3), position.shape
+assert (position == [[float(row[f"position_ned[{i}]"]) for i in range(3)] for row in rows]).all()
+assert arrays["kl1/estimate/log_time_ns"].tolist() == [int(row["log_time_ns"]) for row in rows]
+assert arrays["kl1/vehicle_info/name"][0] == b"kaylion"
+print("readers: flight.npz:", len(arrays.files), "arrays read by numpy", numpy.__version__)
+""", arrays, input=json.dumps(rows)), end="")
+
+
 def flat(prefix, value):
     """The signals of a message, named as in the CSV table: of a sequence only its length."""
     if isinstance(value, dict):
@@ -120,6 +141,7 @@ def main(programs, work):
     result = readers.fly_and_record(file, domain)
     require(result["dropped"] == 0, f"the recorder dropped {result['dropped']} messages")
     readers.check_layout(LAYOUT, readers.check(file))
+    check_arrays(readers.swiftlet, file, work)
     packed = work / "lz4.mcap"
     run(readers.swiftlet, "log", "cut", file, "--to", 5, "-o", packed, "--replace", "--compression", "lz4")
     readers.check(packed)

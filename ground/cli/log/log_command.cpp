@@ -33,7 +33,8 @@ Command add_log_command(runtime::CommandLine root) {
   app.require_subcommand(1, 1);
   const std::vector<Command> commands = {add_log_info_command(app),   add_log_ls_command(app),
                                          add_log_cut_command(app),    add_log_merge_command(app),
-                                         add_log_repair_command(app), add_log_csv_command(app)};
+                                         add_log_repair_command(app), add_log_csv_command(app),
+                                         add_log_npz_command(app)};
   app.footer("example: swiftlet log info flight.mcap");
   return {app, [commands] {
             for (const Command& command : commands) {
