@@ -144,7 +144,16 @@ std::vector<std::string> vehicles_of(const FlyOptions& options) {
                                                       : options.network.vehicle);
 }
 
-int fly(const FlyOptions& options) {
+// PX4 runs in the domain of its agent, 0 unless told, and is commanded above level actuators.
+FlyOptions with_px4(FlyOptions options) {
+  if (!options.px4_instance) return options;
+  options.domain = std::max(options.domain, 0);
+  if (options.level == plant::ControlLevel::kActuators) options.level = plant::ControlLevel::kAttitude;
+  return options;
+}
+
+int fly(const FlyOptions& given) {
+  const FlyOptions options = with_px4(given);
   const std::vector<std::string> vehicles = vehicles_of(options);
   check(options, vehicles.size());
   Fleet fleet{vehicles,       plan_flights(options, vehicles), options.spacing_m, options.per_row, {},
@@ -156,7 +165,8 @@ int fly(const FlyOptions& options) {
   if (options.domain < 0 && !attached) domain_lock.emplace();
   comms::NodeSettings network = options.network;
   network.domain = domain_lock ? domain_lock->domain() : std::max(options.domain, 0);
-  network.localhost_only = network.localhost_only || !attached;
+  const bool is_alone = !attached && !options.px4_instance;  // all processes are started here
+  network.localhost_only = network.localhost_only || is_alone;
   if (attached) require_on_ground(network, vehicles);
   if (attached && !options.skip_check) require_sound_vehicles(network, vehicles);
   // In a domain that others may use, the vehicles must not live already.
@@ -229,7 +239,7 @@ Command add_fly_command(runtime::CommandLine root, const std::string& version) {
       .excludes(app.option("--vehicle-name"));
   app.option("--localhost-only")
       .describe(
-          "with --attach: use the loopback interface only, without multicast; always set without --attach");
+          "with --attach or --px4: use the loopback interface only, without multicast; otherwise always set");
   app.remove_option("--domain");  // added below with another default
   app.add_option("--domain", options->domain, "DDS domain; default: a free one")
       .environment("ROS_DOMAIN_ID")
@@ -240,6 +250,14 @@ Command add_fly_command(runtime::CommandLine root, const std::string& version) {
   app.add_flag("--skip-check", options->skip_check,
                "with --attach: arm the vehicle although it was not checked, see `swiftlet check vehicle`")
       .needs(attach);
+  runtime::Option px4 = app.add_option("--px4", options->px4_instance,
+                                       "start swiftlet-px4 in place of plant, for this instance of PX4, "
+                                       "which runs already with its agent "
+                                       "in the domain (default: 0) and flies `swiftlet-plant --autopilot "
+                                       "mavlink --truth-only`; --level is "
+                                       "attitude unless told")
+                            .range(0, 254)
+                            .excludes(attach);
   runtime::add_clock_option(app, options->clock);
   app.add_option(
          "--speed", options->speed,
@@ -254,6 +272,8 @@ Command add_fly_command(runtime::CommandLine root, const std::string& version) {
         "--radio-loss", "--clock", "--speed"}) {
     attach.excludes(app.option(launch_option));
   }
+  for (const char* of_simulation : {"--imu-rate", "--clock", "--speed", "--spacing", "--sensors"})
+    px4.excludes(app.option(of_simulation));
   // Processes that it starts are on this host.
   for (const char* network_option :
        {"--network", "--peer", "--discovery-server", "--interface", "--dds-profile"})
@@ -264,7 +284,7 @@ Command add_fly_command(runtime::CommandLine root, const std::string& version) {
       "Ctrl-C ends the flight at once.\nexample: swiftlet fly square --record /tmp/square --json | jq "
       ".rms_3d_m\nexample: swiftlet fly square,zigzag --vehicle-name kl1,kl2\nexample: swiftlet fly hop.yaml "
       "--vehicles 16 "
-      "--clock lockstep --spacing 0.4 --per-row 4");
+      "--clock lockstep --spacing 0.4 --per-row 4\nexample: swiftlet fly square --px4 0 --level trajectory");
   return {app, [options] { return fly(*options); }};
 }
 

@@ -134,12 +134,13 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
   plan.planned_duration_s = require_flyable(plan, options.reading);
 
   if (plan.launch_mode == LaunchMode::kStarted) {
-    plan.plant_program = program_beside("swiftlet-plant");
+    plan.vehicle_program = program_beside(options.px4_instance ? "swiftlet-px4" : "swiftlet-plant");
     plan.mocap_program = program_beside("swiftlet-mocap");
     plan.control_program = program_beside("swiftlet-control");
   }
   plan.folder = options.record.empty() ? default_folder(plan.mission.name) : fs::path(options.record);
   plan.trace = options.trace;
+  plan.px4_instance = options.px4_instance;
   plan.sensors = options.sensors;
   plan.mcap = options.mcap;
   return plan;
@@ -201,12 +202,12 @@ std::vector<ProcessSettings> processes(const Fleet& fleet, const comms::NodeSett
   if (first.launch_mode != LaunchMode::kStarted) return {};
   std::vector<std::string> common = {"--domain",       std::to_string(network.domain),
                                      "--vehicle-name", fmt::format("{}", fmt::join(fleet.vehicles, ",")),
-                                     "--transport",    to_string(network.transport),
-                                     "--clock",        runtime::to_string(first.clock)};
+                                     "--transport",    to_string(network.transport)};
   if (network.localhost_only) common.emplace_back("--localhost-only");
   if (!network.network_key_file.empty())
     common.insert(common.end(), {"--network-key", absolute_path(network.network_key_file)});
   if (!network.security.empty()) common.insert(common.end(), {"--security", absolute_path(network.security)});
+  const std::vector<std::string> clock = {"--clock", runtime::to_string(first.clock)};
   const auto process = [&](const std::string& name, const fs::path& program,
                            std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), common.begin(), common.end());
@@ -215,6 +216,18 @@ std::vector<ProcessSettings> processes(const Fleet& fleet, const comms::NodeSett
   const std::string vehicle = absolute_path(first.vehicle_file);
   const std::string simulation = absolute_path(first.simulation_file);
   const std::string seed = std::to_string(first.seed);
+  const char* const level = plant::to_string(first.simulation.control_levels.lowest());
+  const std::vector<std::string> control = {
+      "--vehicle", vehicle, "--control", absolute_path(first.control_file),
+      "--level",   level,   clock[0],    clock[1]};
+  const std::vector<std::string> mocap = {"--simulation", simulation, "--seed", seed, clock[0], clock[1]};
+  if (first.px4_instance) {
+    return {
+        process("swiftlet-px4", first.vehicle_program,
+                {"--vehicle", vehicle, "--levels", level, "--instance", std::to_string(*first.px4_instance)}),
+        process("swiftlet-mocap", first.mocap_program, mocap),
+        process("swiftlet-control", first.control_program, control)};
+  }
   std::vector<std::string> plant = {"--vehicle",
                                     vehicle,
                                     "--simulation",
@@ -230,8 +243,7 @@ std::vector<ProcessSettings> processes(const Fleet& fleet, const comms::NodeSett
   if (first.imu_rate_option_hz > 0) {
     plant.insert(plant.end(), {"--imu-rate", std::to_string(first.imu_rate_option_hz)});
   }
-  const char* const level = plant::to_string(first.simulation.control_levels.lowest());
-  plant.insert(plant.end(), {"--level", level});
+  plant.insert(plant.end(), {"--level", level, clock[0], clock[1]});
   const plant::RadioSettings& radio = first.simulation.radio;
   if (radio.on()) {
     plant.insert(plant.end(), {"--radio-delay", runtime::exact(radio.delay_s), "--radio-jitter",
@@ -244,10 +256,9 @@ std::vector<ProcessSettings> processes(const Fleet& fleet, const comms::NodeSett
   }
   if (first.speed) plant.insert(plant.end(), {"--speed", runtime::exact(*first.speed)});
   return {
-      process("swiftlet-plant", first.plant_program, std::move(plant)),
-      process("swiftlet-mocap", first.mocap_program, {"--simulation", simulation, "--seed", seed}),
-      process("swiftlet-control", first.control_program,
-              {"--vehicle", vehicle, "--control", absolute_path(first.control_file), "--level", level}),
+      process("swiftlet-plant", first.vehicle_program, std::move(plant)),
+      process("swiftlet-mocap", first.mocap_program, mocap),
+      process("swiftlet-control", first.control_program, control),
   };
 }
 

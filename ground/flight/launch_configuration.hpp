@@ -49,10 +49,13 @@ struct FlyOptions {
   comms::NodeSettings network;
   // m, initial position; the mission is shifted by it.
   Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();
-  int vehicles = 1;                  // above 1: kl1, kl2 ... instead of network.vehicle
-  double spacing_m = 1.0;            // distance between several vehicles, to the east
-  int per_row = 0;                   // several vehicles: further rows stand to the north; 0: all in one row
-  int domain = -1;                   // DDS domain; < 0: a free one, or 0 if attached
+  int vehicles = 1;        // above 1: kl1, kl2 ... instead of network.vehicle
+  double spacing_m = 1.0;  // distance between several vehicles, to the east
+  int per_row = 0;         // several vehicles: further rows stand to the north; 0: all in one row
+  // kStarted: swiftlet-px4 in place of plant, for this instance of PX4, which runs already; of several vehicles each
+  // has the next one.
+  std::optional<int> px4_instance;
+  int domain = -1;                   // DDS domain; < 0: a free one, or 0 if attached or with px4_instance
   bool trace = false;                // write a trace of a lockstep or in-process flight
   bool sensors = false;              // record sensors and commands, for `swiftlet identify flight`
   bool mcap = false;                 // record every message, as flight.mcap
@@ -79,7 +82,9 @@ struct LaunchConfiguration {
   bool trace = false;                                   // write trace_file()
   bool sensors = false;                                 // record sensors and commands
   bool mcap = false;                                    // record every message
-  std::filesystem::path plant_program, mocap_program, control_program;  // if kStarted
+  std::optional<int> px4_instance;                      // of FlyOptions
+  std::filesystem::path vehicle_program, mocap_program,
+      control_program;  // if kStarted; the first is plant or px4
 
   std::size_t record_capacity() const;  // rows: IMU samples within the flight's time limit
   std::uintmax_t record_bytes() const;  // size of the record's files, estimated from duration and rates

@@ -8,6 +8,12 @@ std::optional<std::uint8_t> crc_extra_of(std::uint32_t message_id) {
       return Heartbeat::kCrcExtra;
     case SystemTime::kId:
       return SystemTime::kCrcExtra;
+    case ParamRequestRead::kId:
+      return ParamRequestRead::kCrcExtra;
+    case ParamValue::kId:
+      return ParamValue::kCrcExtra;
+    case ParamSet::kId:
+      return ParamSet::kCrcExtra;
     case CommandLong::kId:
       return CommandLong::kCrcExtra;
     case HilActuatorControls::kId:

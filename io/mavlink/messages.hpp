@@ -1,4 +1,4 @@
-// The messages of a simulator and an autopilot, with the units of https://mavlink.io/en/messages/common.html.
+// The messages of a simulator and an autopilot, and those of an autopilot's parameters, with the units of https://mavlink.io/en/messages/common.html.
 //
 // visit() calls visitor(name, field) for each field in the order of the wire: by size, largest first, then as in
 // the definition. Extensions follow in the order of the definition, after visitor.extensions(). kCrcExtra is the
@@ -49,6 +49,72 @@ struct SystemTime {
   static void visit(Visitor& visitor, Self& m) {
     visitor("time_unix_usec", m.time_unix_usec);
     visitor("time_boot_ms", m.time_boot_ms);
+  }
+};
+
+// Of PARAM_SET and PARAM_VALUE: whole numbers and reals of 32 bits. PX4 puts the bytes of a whole number into the float.
+constexpr std::uint8_t kParamInt32 = 6;
+constexpr std::uint8_t kParamReal32 = 9;
+using ParamId = std::array<char, 16>;  // ends with NUL, unless it has 16 letters
+
+struct ParamRequestRead {
+  static constexpr const char* kName = "PARAM_REQUEST_READ";
+  static constexpr std::uint32_t kId = 20;
+  static constexpr std::uint8_t kCrcExtra = 214;
+
+  std::int16_t param_index = -1;  // -1: by its name
+  std::uint8_t target_system = 0;
+  std::uint8_t target_component = 0;
+  ParamId param_id{};
+
+  template <class Visitor, class Self>
+  static void visit(Visitor& visitor, Self& m) {
+    visitor("param_index", m.param_index);
+    visitor("target_system", m.target_system);
+    visitor("target_component", m.target_component);
+    visitor("param_id", m.param_id);
+  }
+};
+
+struct ParamValue {
+  static constexpr const char* kName = "PARAM_VALUE";
+  static constexpr std::uint32_t kId = 22;
+  static constexpr std::uint8_t kCrcExtra = 220;
+
+  float param_value = 0.0F;
+  std::uint16_t param_count = 0;
+  std::uint16_t param_index = 0;
+  ParamId param_id{};
+  std::uint8_t param_type = 0;
+
+  template <class Visitor, class Self>
+  static void visit(Visitor& visitor, Self& m) {
+    visitor("param_value", m.param_value);
+    visitor("param_count", m.param_count);
+    visitor("param_index", m.param_index);
+    visitor("param_id", m.param_id);
+    visitor("param_type", m.param_type);
+  }
+};
+
+struct ParamSet {
+  static constexpr const char* kName = "PARAM_SET";
+  static constexpr std::uint32_t kId = 23;
+  static constexpr std::uint8_t kCrcExtra = 168;
+
+  float param_value = 0.0F;
+  std::uint8_t target_system = 0;
+  std::uint8_t target_component = 0;
+  ParamId param_id{};
+  std::uint8_t param_type = 0;
+
+  template <class Visitor, class Self>
+  static void visit(Visitor& visitor, Self& m) {
+    visitor("param_value", m.param_value);
+    visitor("target_system", m.target_system);
+    visitor("target_component", m.target_component);
+    visitor("param_id", m.param_id);
+    visitor("param_type", m.param_type);
   }
 };
 

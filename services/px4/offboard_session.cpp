@@ -82,6 +82,7 @@ std::optional<msg::VehicleCommand> OffboardSession::update(const OffboardInputs&
       }
       return std::nullopt;
     case Phase::kDisarmed:
+      fault_ = inputs.arming_fault;
       if (lost.empty()) return start(inputs);
       enter(Phase::kDisconnected, lost);
       return std::nullopt;

@@ -5,9 +5,11 @@
 namespace swiftlet::px4 {
 namespace {
 
-constexpr std::int64_t kLongestDelayNs =
-    100'000'000;                 // after the fastest sample; more: PX4's stamps were set
-constexpr int kAwaySamples = 5;  // before that is believed
+constexpr std::int64_t kLongestDelayNs = 15'000'000;  // after the fastest sample
+// So many in a row that are later than that, by the same: PX4's stamps were set, or its simulation stood still. Those
+// that queued up somewhere are not late by the same.
+constexpr int kAwaySamples = 5;
+constexpr std::int64_t kSameDelayNs = 6'000'000;
 constexpr std::int64_t kLeastIntervalNs = 1'000;
 
 }  // namespace
@@ -24,7 +26,7 @@ std::int64_t Px4Clock::to_host(std::uint64_t stamp_us, std::int64_t arrived_ns) 
   if (!is_started_) restart(delay_ns, arrived_ns);
   is_started_ = true;
   const std::int64_t least_ns = *std::min_element(least_ns_.begin(), least_ns_.end());
-  const bool fits = delay_ns - least_ns < kLongestDelayNs && least_ns - delay_ns < kLongestDelayNs;
+  const bool fits = delay_ns - least_ns < kLongestDelayNs;
   std::int64_t stamp_ns = arrived_ns;
   if (fits) {
     away_ = 0;
@@ -35,9 +37,17 @@ std::int64_t Px4Clock::to_host(std::uint64_t stamp_us, std::int64_t arrived_ns) 
     }
     least_ns_[part_] = std::min(least_ns_[part_], delay_ns);
     stamp_ns = arrived_ns - (delay_ns - std::min(least_ns, delay_ns));
-  } else if (++away_ >= kAwaySamples) {
-    restart(delay_ns, arrived_ns);
-    ++steps_;
+  } else {
+    least_away_ns_ = away_ == 0 ? delay_ns : std::min(least_away_ns_, delay_ns);
+    most_away_ns_ = away_ == 0 ? delay_ns : std::max(most_away_ns_, delay_ns);
+    ++away_;
+    if (most_away_ns_ - least_away_ns_ > kSameDelayNs) {
+      away_ = 1;
+      least_away_ns_ = most_away_ns_ = delay_ns;
+    } else if (away_ >= kAwaySamples) {
+      restart(least_away_ns_, arrived_ns);
+      ++steps_;
+    }
   }
   last_ns_ = std::max(std::min(stamp_ns, arrived_ns), last_ns_ + kLeastIntervalNs);
   return last_ns_;

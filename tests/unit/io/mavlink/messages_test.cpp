@@ -46,6 +46,23 @@ const Definition kHeartbeat{"HEARTBEAT",
                              {"uint8_t", "system_status"},
                              {"uint8_t", "mavlink_version"}}};
 const Definition kSystemTime{"SYSTEM_TIME", {{"uint64_t", "time_unix_usec"}, {"uint32_t", "time_boot_ms"}}};
+const Definition kParamRequestRead{"PARAM_REQUEST_READ",
+                                   {{"uint8_t", "target_system"},
+                                    {"uint8_t", "target_component"},
+                                    {"char", "param_id", 16},
+                                    {"int16_t", "param_index"}}};
+const Definition kParamValue{"PARAM_VALUE",
+                             {{"char", "param_id", 16},
+                              {"float", "param_value"},
+                              {"uint8_t", "param_type"},
+                              {"uint16_t", "param_count"},
+                              {"uint16_t", "param_index"}}};
+const Definition kParamSet{"PARAM_SET",
+                           {{"uint8_t", "target_system"},
+                            {"uint8_t", "target_component"},
+                            {"char", "param_id", 16},
+                            {"float", "param_value"},
+                            {"uint8_t", "param_type"}}};
 const Definition kCommandLong{"COMMAND_LONG",
                               {{"uint8_t", "target_system"},
                                {"uint8_t", "target_component"},
@@ -143,6 +160,7 @@ const char* type_name(std::int32_t) { return "int32_t"; }
 const char* type_name(std::uint16_t) { return "uint16_t"; }
 const char* type_name(std::int16_t) { return "int16_t"; }
 const char* type_name(std::uint8_t) { return "uint8_t"; }
+const char* type_name(char) { return "char"; }
 
 // Collects what visit() calls, with elements of a definition's array that are separate fields as they are.
 struct Collector {
@@ -174,6 +192,9 @@ void expect_as_defined(const Definition& definition) {
 TEST(MavlinkMessages, HaveTheFieldsAndChecksumsOfTheirDefinitions) {
   expect_as_defined<Heartbeat>(kHeartbeat);
   expect_as_defined<SystemTime>(kSystemTime);
+  expect_as_defined<ParamRequestRead>(kParamRequestRead);
+  expect_as_defined<ParamValue>(kParamValue);
+  expect_as_defined<ParamSet>(kParamSet);
   expect_as_defined<CommandLong>(kCommandLong);
   expect_as_defined<HilActuatorControls>(kHilActuatorControls);
   expect_as_defined<HilSensor>(kHilSensor);
@@ -216,6 +237,9 @@ bool survives_a_round_trip() {
 TEST(MavlinkMessages, SurviveARoundTrip) {
   EXPECT_TRUE(survives_a_round_trip<Heartbeat>());
   EXPECT_TRUE(survives_a_round_trip<SystemTime>());
+  EXPECT_TRUE(survives_a_round_trip<ParamRequestRead>());
+  EXPECT_TRUE(survives_a_round_trip<ParamValue>());
+  EXPECT_TRUE(survives_a_round_trip<ParamSet>());
   EXPECT_TRUE(survives_a_round_trip<CommandLong>());
   EXPECT_TRUE(survives_a_round_trip<HilActuatorControls>());
   EXPECT_TRUE(survives_a_round_trip<HilSensor>());

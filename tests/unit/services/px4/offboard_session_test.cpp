@@ -122,8 +122,11 @@ TEST_F(Px4Session, ARefusalNamesPx4sReason) {
   EXPECT_TRUE(until(Phase::kFlying)) << session_.fault();
 }
 
-TEST_F(Px4Session, WhatMustNotFlyIsNotArmed) {
+TEST_F(Px4Session, WhatMustNotFlyIsToldBeforeAndNotArmed) {
   inputs_.arming_fault = "no pose of motion capture";
+  run(0.1);
+  EXPECT_EQ(session_.phase(), Phase::kDisarmed);
+  EXPECT_EQ(session_.fault(), "no pose of motion capture");
   inputs_.rotors_wanted = true;
   ASSERT_TRUE(until(Phase::kRefused));
   EXPECT_EQ(session_.fault(), "no pose of motion capture");

@@ -58,7 +58,35 @@ TEST(Px4Clock, AStepOfThePx4sStampsIsNotPassedOn) {
     EXPECT_LE(stamp_ns - last_ns, 2 * kPeriodNs);
     last_ns = stamp_ns;
   }
+  EXPECT_LE(clock.steps(), 1);
+}
+
+// GIVEN a simulated PX4 WHEN its time stands still for 60 ms THEN the stamps are right again after five samples.
+TEST(Px4Clock, AStandstillIsForgottenAtOnce) {
+  Px4Clock clock;
+  for (int i = 1; i < 400; ++i) {
+    const std::int64_t px4_ns = kStart + i * kPeriodNs;
+    const std::int64_t true_ns = px4_ns + (i < 200 ? 0 : 60'000'000);
+    const std::int64_t stamp_ns = clock.to_host(static_cast<std::uint64_t>(px4_ns / 1000), true_ns);
+    if (i >= 200 && i <= 206) continue;
+    EXPECT_NEAR(static_cast<double>(true_ns - stamp_ns), 0.0, 1e6) << i;
+  }
   EXPECT_EQ(clock.steps(), 1);
+}
+
+// GIVEN samples that queued up for 200 ms and then arrive at once THEN they keep their intervals.
+TEST(Px4Clock, AQueueIsNoStepOfTheStamps) {
+  Px4Clock clock;
+  for (int i = 1; i < 400; ++i) {
+    const std::int64_t true_ns = kStart + i * kPeriodNs;
+    const std::int64_t arrived_ns =
+        i > 200 && i < 220 ? kStart + 220 * kPeriodNs - 1'000'000 + i * 1000 : true_ns;
+    const std::int64_t stamp_ns = clock.to_host(static_cast<std::uint64_t>(true_ns / 1000), arrived_ns);
+    EXPECT_LE(stamp_ns, arrived_ns);
+    if (i >= 200 && i <= 225) continue;
+    EXPECT_NEAR(static_cast<double>(true_ns - stamp_ns), 0.0, 1e6) << i;
+  }
+  EXPECT_EQ(clock.steps(), 0);
 }
 
 }  // namespace
