@@ -17,8 +17,12 @@ bool is_stable(const Loop& loop) {
 }  // namespace
 
 std::array<double, 6> flown_delay_margins(const ControlDesign& design, const ControlSettings& settings) {
+  return delay_margins([&](double delay_s) { return flown_loops(design, settings, delay_s); });
+}
+
+std::array<double, 6> delay_margins(const LoopsAtDelay& loops_at) {
   const auto stable = [&](double delay_s) {
-    const std::array<FlownLoop, 6> loops = flown_loops(design, settings, delay_s);
+    const std::array<FlownLoop, 6> loops = loops_at(delay_s);
     std::array<bool, 6> all{};
     std::transform(loops.begin(), loops.end(), all.begin(),
                    [](const FlownLoop& flown) { return is_stable(flown.loop); });
@@ -47,8 +51,12 @@ std::array<double, 6> flown_delay_margins(const ControlDesign& design, const Con
 }
 
 double least_flown_delay_margin(const ControlGains& gains, const ObservedRotors& rotors) {
+  return least_delay_margin([&](double delay_s) { return flown_loops(gains, rotors, delay_s); });
+}
+
+double least_delay_margin(const LoopsAtDelay& loops_at) {
   for (double delay_s = 0.0; delay_s <= kLongestDelay_s; delay_s += kLeastDelayAccuracy_s) {
-    const std::array<FlownLoop, 6> loops = flown_loops(gains, rotors, delay_s);
+    const std::array<FlownLoop, 6> loops = loops_at(delay_s);
     const bool stable =
         std::all_of(loops.begin(), loops.end(), [](const FlownLoop& flown) { return is_stable(flown.loop); });
     if (!stable) return std::max(0.0, delay_s - kLeastDelayAccuracy_s);

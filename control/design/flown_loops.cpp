@@ -55,33 +55,9 @@ FlownLoop attitude(const Eigen::Vector3d& k, const Rotors& rotors) {
   return {loop, k[0] * loop.b, RowVectorXd::Unit(n, 0)};
 }
 
-// The integral is that of the error.
-FlownLoop position(const RptGains& gains, const Loop& loop) {
-  const Index place = gains.k_i > 0.0 ? 1 : 0;
-  FlownLoop out{loop, gains.k_p * loop.b, RowVectorXd::Unit(loop.a.rows(), place)};
-  if (gains.k_i > 0.0) out.reference[0] = -1.0;
-  return out;
-}
-
 FlownLoop horizontal(const RptGains& gains, const FlownLoop& inner) {
-  return position(
-      gains, position_loop(gains, inner.loop.a - inner.loop.b * inner.loop.c, inner.reference, inner.output));
-}
-
-FlownLoop vertical(const RptGains& gains, const Rotors& rotors, double disturbance_bandwidth) {
-  const bool observed = disturbance_bandwidth > 0.0;
-  const Index n = rotors.a.rows();
-  MatrixXd a = rotors.a;
-  VectorXd b = rotors.b;
-  if (observed) {  // one more state, the disturbance, which the command compensates
-    a.conservativeResizeLike(MatrixXd::Zero(n + 1, n + 1));
-    b.conservativeResizeLike(VectorXd::Zero(n + 1));
-    a(n, Rotors::kResponse) = disturbance_bandwidth;
-    a(n, Rotors::kObserved) = -disturbance_bandwidth;
-    a(n, n) = -disturbance_bandwidth;
-    a.col(n) -= b;
-  }
-  return position(gains, position_loop(gains, a, b, RowVectorXd::Unit(a.rows(), Rotors::kResponse)));
+  return flown_position_loop(gains, inner.loop.a - inner.loop.b * inner.loop.c, inner.reference,
+                             inner.output);
 }
 
 // exp(A) by scaling, a Taylor series, and squaring.
@@ -102,6 +78,33 @@ MatrixXd exponential(const MatrixXd& a) {
 
 }  // namespace
 
+FlownLoop flown_position_loop(const RptGains& gains, const MatrixXd& inner_a, const VectorXd& inner_b,
+                              const RowVectorXd& acceleration) {
+  const Loop loop = position_loop(gains, inner_a, inner_b, acceleration);
+  const Index place = gains.k_i > 0.0 ? 1 : 0;
+  FlownLoop out{loop, gains.k_p * loop.b, RowVectorXd::Unit(loop.a.rows(), place)};
+  if (gains.k_i > 0.0) out.reference[0] = -1.0;
+  return out;
+}
+
+FlownLoop flown_vertical_loop(const RptGains& gains, const ObservedRotors& observed,
+                              double disturbance_bandwidth, double delay_s) {
+  const Rotors rotors = behind_delay(observed, delay_s);
+  const bool compensated = disturbance_bandwidth > 0.0;
+  const Index n = rotors.a.rows();
+  MatrixXd a = rotors.a;
+  VectorXd b = rotors.b;
+  if (compensated) {  // one more state, the disturbance, which the command compensates
+    a.conservativeResizeLike(MatrixXd::Zero(n + 1, n + 1));
+    b.conservativeResizeLike(VectorXd::Zero(n + 1));
+    a(n, Rotors::kResponse) = disturbance_bandwidth;
+    a(n, Rotors::kObserved) = -disturbance_bandwidth;
+    a(n, n) = -disturbance_bandwidth;
+    a.col(n) -= b;
+  }
+  return flown_position_loop(gains, a, b, RowVectorXd::Unit(a.rows(), Rotors::kResponse));
+}
+
 std::array<FlownLoop, 6> flown_loops(const ControlGains& gains, const ObservedRotors& observed,
                                      double delay_s) {
   const Rotors rotors = behind_delay(observed, delay_s);
@@ -119,7 +122,7 @@ std::array<FlownLoop, 6> flown_loops(const ControlGains& gains, const ObservedRo
           attitude(attitude_k(2), rotors),
           horizontal(position_k(0), pitch),
           horizontal(position_k(1), roll),
-          vertical(position_k(2), rotors, gains.disturbance_bandwidth)};
+          flown_vertical_loop(position_k(2), observed, gains.disturbance_bandwidth, delay_s)};
 }
 
 std::array<FlownLoop, 6> flown_loops(const ControlDesign& design, const ControlSettings& settings,

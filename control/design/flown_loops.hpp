@@ -42,6 +42,14 @@ std::array<FlownLoop, 6> flown_loops(const ControlGains& gains, const ObservedRo
 std::array<FlownLoop, 6> flown_loops(const ControlDesign& design, const ControlSettings& settings,
                                      double delay_s);
 
+// A position axis over an inner loop, as position_loop() with its reference and output. The integral is that of the error.
+FlownLoop flown_position_loop(const RptGains& gains, const Eigen::MatrixXd& inner_a,
+                              const Eigen::VectorXd& inner_b, const Eigen::RowVectorXd& acceleration);
+
+// The vertical axis over the rotors behind a delay, with their observer and that of disturbances, rad/s (0: none).
+FlownLoop flown_vertical_loop(const RptGains& gains, const ObservedRotors& rotors,
+                              double disturbance_bandwidth, double delay_s);
+
 // y at the times 0, step_s, 2 step_s, ... after a unit step of the reference: `count` values, exact but for
 // rounding. Diverges for an unstable loop.
 std::vector<double> step_response(const FlownLoop& loop, double step_s, std::size_t count);

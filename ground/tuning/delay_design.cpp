@@ -26,10 +26,16 @@ constexpr NamedRpt kPositionAxes[] = {{"x", &control::PositionSettings::x},
                                       {"y", &control::PositionSettings::y},
                                       {"z", &control::PositionSettings::z}};
 
-double least_margin_s(const plant::Vehicle& vehicle, const control::ControlSettings& settings) {
+control::LoopsAtDelay loops_of(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
+                               const CommandLevel& commanded) {
   const control::ControlDesign design = control::design(vehicle, settings);
-  return control::least_flown_delay_margin(control::control_gains(design, settings),
-                                           {design.rotor_lag_s, settings.estimator.rotor_speed_bandwidth});
+  const control::ControlGains gains = control::control_gains(design, settings);
+  const control::ObservedRotors rotors{design.rotor_lag_s, settings.estimator.rotor_speed_bandwidth};
+  return [gains, rotors, commanded](double delay_s) {
+    if (commanded.level == plant::ControlLevel::kActuators)
+      return control::flown_loops(gains, rotors, delay_s);
+    return control::level_loops(commanded.level, gains, rotors, commanded.vehicle, delay_s);
+  };
 }
 
 }  // namespace
@@ -52,20 +58,20 @@ control::ControlSettings slowed(const control::ControlSettings& settings, double
 }
 
 DelayDesign design_for_delay(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
-                             double delay_s) {
-  const auto suffices = [&](double factor) {
-    return least_margin_s(vehicle, slowed(settings, factor)) >= kDelayReserve * delay_s;
+                             double delay_s, const CommandLevel& commanded) {
+  const auto least_margin_s = [&](double factor) {
+    return control::least_delay_margin(loops_of(vehicle, slowed(settings, factor), commanded));
   };
+  const auto suffices = [&](double factor) { return least_margin_s(factor) >= kDelayReserve * delay_s; };
   double factor = 1.0;
   if (!suffices(factor)) {
     double below = kLeastBandwidthFactor;
     if (!suffices(below)) {
-      throw std::invalid_argument(
-          fmt::format("no gains for a delay of {:.0f} ms: even loops of {:.0f} % of the bandwidth tolerate "
-                      "only {:.0f} ms, "
-                      "and must tolerate {:.0f} ms",
-                      1e3 * delay_s, 100.0 * below, 1e3 * least_margin_s(vehicle, slowed(settings, below)),
-                      1e3 * kDelayReserve * delay_s));
+      throw std::invalid_argument(fmt::format(
+          "no gains for a delay of {:.0f} ms: even loops of {:.0f} % of the bandwidth tolerate "
+          "only {:.0f} ms, "
+          "and must tolerate {:.0f} ms",
+          1e3 * delay_s, 100.0 * below, 1e3 * least_margin_s(below), 1e3 * kDelayReserve * delay_s));
     }
     double above = 1.0;
     while (above - below > kFactorAccuracy) {
@@ -75,7 +81,7 @@ DelayDesign design_for_delay(const plant::Vehicle& vehicle, const control::Contr
     factor = below;
   }
   DelayDesign out{factor, slowed(settings, factor)};
-  out.margins_s = control::flown_delay_margins(control::design(vehicle, out.settings), out.settings);
+  out.margins_s = control::delay_margins(loops_of(vehicle, out.settings, commanded));
   return out;
 }
 

@@ -12,6 +12,7 @@
 
 #include "swiftlet/control/design/flown_delay.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/simulation/level_gains.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
@@ -212,6 +213,12 @@ int run_gains(const GainsOptions& options) {
   const plant::Vehicle vehicle = runtime::load_vehicle(file);
   const control::ControlSettings settings =
       runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control));
+  if (options.level.value_or(plant::ControlLevel::kActuators) != plant::ControlLevel::kActuators) {
+    const LevelGains gains = level_gains(vehicle, settings, *options.level, options.delay_s);
+    std::printf("%s%s", options.json ? level_gains_json(gains).c_str() : level_gains_table(gains).c_str(),
+                options.json ? "\n" : "");
+    return kDone;
+  }
   const ControlDesign design = control::design(vehicle, settings);
   for (const plant::Violation& loop : control::unstable_loops(design)) {
     std::fprintf(stderr, "swiftlet: not flyable: %s: %s\n", loop.key.c_str(), loop.message.c_str());
@@ -233,7 +240,9 @@ Command add_gains_command(runtime::CommandLine root) {
   const auto options = std::make_shared<GainsOptions>();
   const runtime::CommandLine app =
       root.add_subcommand("gains", "Print the gains, poles and margins for a vehicle and control settings");
-  app.footer("example: swiftlet gains --vehicle config/vehicles/kaylion.yaml --json");
+  app.footer(
+      "example: swiftlet gains --vehicle config/vehicles/kaylion.yaml --json\nexample: swiftlet gains "
+      "--vehicle crazyflie2 --level attitude --delay 0.04");
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
       .type_name(runtime::kinds::kVehicle.value)
       .show_default();
@@ -247,6 +256,20 @@ Command add_gains_command(runtime::CommandLine root) {
   app.add_option("--seed", options->seed, "random seed of the first sample; each further sample adds one")
       .whole()
       .show_default();
+  using plant::ControlLevel;
+  const runtime::Option level = app.add_choice<std::optional<ControlLevel>>(
+      "--level", options->level,
+      {{"actuators", ControlLevel::kActuators},
+       {"rates", ControlLevel::kRates},
+       {"attitude", ControlLevel::kAttitude},
+       {"trajectory", ControlLevel::kTrajectory}},
+      "print the loops of a vehicle that is commanded at this level and closes the inner ones itself, as "
+      "the simulated firmware does");
+  app.add_option("--delay", options->delay_s,
+                 "with --level: delay from an IMU sample to the vehicle that obeys the command, s; both ways "
+                 "of the radio")
+      .range(0.0, 0.5)
+      .needs(level);
   app.add_flag("--json", options->json, "print JSON");
   return {app, [options] { return run_gains(*options); }};
 }

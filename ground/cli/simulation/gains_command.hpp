@@ -4,19 +4,23 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "swiftlet/control/design/control_design.hpp"
 #include "swiftlet/ground/batch/margin_study.hpp"
 #include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/plant/model/control_level.hpp"
 
 namespace swiftlet::ground {
 
 struct GainsOptions {
-  std::string vehicle = "kaylion";    // a file, or the name of one in config/vehicles
-  std::string control = "motor_lag";  // a file, or the name of one in config/control
-  std::size_t samples = 1000;         // sampled vehicles, if the vehicle file states an uncertainty
-  std::uint64_t seed = 1;             // of the first sample
+  std::string vehicle = "kaylion";           // a file, or the name of one in config/vehicles
+  std::string control = "motor_lag";         // a file, or the name of one in config/control
+  std::size_t samples = 1000;                // sampled vehicles, if the vehicle file states an uncertainty
+  std::uint64_t seed = 1;                    // of the first sample
+  std::optional<plant::ControlLevel> level;  // of a vehicle that closes loops itself
+  double delay_s = 0.0;                      // at that level, from a sample to the vehicle
   bool json = false;
 };
 

@@ -1,4 +1,5 @@
 // `swiftlet tune delay`: control settings for a loop with a delay.
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -9,6 +10,8 @@
 
 #include "swiftlet/control/design/flown_loops.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/fly_options.hpp"
+#include "swiftlet/ground/cli/simulation/level_gains.hpp"
 #include "swiftlet/ground/cli/tuning/tune_commands.hpp"
 #include "swiftlet/ground/command_line/output_files.hpp"
 #include "swiftlet/ground/tuning/delay_design.hpp"
@@ -29,6 +32,7 @@ struct Options {
   double delay_s = 0.0;
   std::string control = "motor_lag";
   std::string vehicle = "kaylion";
+  plant::ControlLevel level = plant::ControlLevel::kActuators;
   std::string output = "slow.yaml";
 };
 
@@ -37,7 +41,9 @@ std::string table(const DelayDesign& design, double delay_s) {
                                  1e3 * delay_s, 100.0 * design.factor);
   text += "tolerated delay, ms:";
   for (std::size_t i = 0; i < design.margins_s.size(); ++i)
-    text += fmt::format("  {} {:.0f}", control::kFlownLoopNames[i], 1e3 * design.margins_s[i]);
+    text += std::isfinite(design.margins_s[i])
+                ? fmt::format("  {} {:.0f}", control::kFlownLoopNames[i], 1e3 * design.margins_s[i])
+                : fmt::format("  {} any", control::kFlownLoopNames[i]);
   return text + "\n";
 }
 
@@ -47,11 +53,14 @@ int design_delay(const Options& options) {
   const std::filesystem::path control_file =
       runtime::configuration_file(runtime::kinds::kControl, options.control);
   refuse_overwriting({{"--out", options.output}}, {vehicle_file, control_file});
+  if (options.level == plant::ControlLevel::kTrajectory)
+    throw InputError("--level trajectory: the vehicle closes all loops, control none");
   const std::string text = runtime::read_text_file(control_file);
   DelayDesign design;
   try {
-    design = design_for_delay(runtime::load_vehicle(vehicle_file),
-                              runtime::parse_control_settings(text, control_file), options.delay_s);
+    const plant::Vehicle vehicle = runtime::load_vehicle(vehicle_file);
+    design = design_for_delay(vehicle, runtime::parse_control_settings(text, control_file), options.delay_s,
+                              {options.level, vehicle_loops(vehicle)});
   } catch (const std::invalid_argument& e) {
     throw InputError(e.what());
   }
@@ -89,6 +98,7 @@ Command add_tune_delay_command(runtime::CommandLine tune) {
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
       .type_name(runtime::kinds::kVehicle.value)
       .show_default();
+  add_level_option(app, options->level);
   app.add_option("-o,--out", options->output, "output file; the settings are named after it").show_default();
   return {app, [options] { return design_delay(*options); }};
 }
