@@ -66,7 +66,8 @@ std::string_view without_byte_order_mark(std::string_view text) {
 // Iterates over the lines of a text. An empty last line does not count.
 class Lines {
  public:
-  explicit Lines(std::string_view text) : rest_(text) {}
+  // first_line: that of the text in the file
+  explicit Lines(std::string_view text, int first_line = 1) : rest_(text), number_(first_line - 1) {}
 
   bool next(std::string_view& line) {
     if (rest_.empty()) return false;
@@ -82,7 +83,7 @@ class Lines {
 
  private:
   std::string_view rest_;
-  int number_ = 0;
+  int number_;
 };
 
 // first_line: that of the text in the file
@@ -117,6 +118,7 @@ CsvTable read_rows(Lines& lines, const std::string& file_name, const std::vector
   std::string_view line;
   std::vector<double> numbers(columns.size());
   while (!lines.only_blank_left() && lines.next(line)) {
+    if (form.may_have_blank_lines && trimmed(line).empty()) continue;
     const std::vector<std::string_view> fields = fields_of(line, form);
     if (fields.size() != columns.size()) {
       throw ConfigError(file_name, lines.number(), "",
@@ -192,8 +194,8 @@ void CsvTable::fail(std::size_t row, const std::string& columns, const std::stri
 
 CsvTable parse_csv(std::string_view text, const std::string& file_name,
                    const std::vector<std::string>& columns, std::size_t min_rows, const CsvForm& form) {
-  require_text(text, file_name);
-  Lines lines(without_byte_order_mark(text));
+  require_text(text, file_name, form.first_line);
+  Lines lines(without_byte_order_mark(text), form.first_line);
   std::string_view line;
   if (lines.only_blank_left()) {
     throw ConfigError(file_name, 0, "",
@@ -201,7 +203,9 @@ CsvTable parse_csv(std::string_view text, const std::string& file_name,
                           (form.has_header ? "begin with the header " : "hold rows of ") + joined(columns));
   }
   if (form.has_header) {
-    lines.next(line);
+    do {
+      lines.next(line);
+    } while (form.may_have_blank_lines && trimmed(line).empty());
     check_header(line, file_name, columns, form);
   }
   return read_rows(lines, file_name, columns, min_rows, form);

@@ -74,6 +74,8 @@ class CsvTable {
 struct CsvForm {
   bool has_header = true;
   bool may_end_with_comma = false;  // every line, including the header
+  bool may_have_blank_lines = false;
+  int first_line = 1;  // of the text in the file
 };
 
 // Reads a table of exactly these columns, in this order, with at least min_rows rows. file_name appears in

@@ -34,6 +34,7 @@ std::string repeat_of(const FlyOptions& options) {
   const FileOptions& reading = options.reading;
   if (reading.frame) command += *reading.frame == MissionFrame::kNed ? " --frame ned" : " --frame enu";
   if (reading.tolerance_m) command += " --tolerance " + runtime::exact(*reading.tolerance_m);
+  if (!reading.columns.empty()) command += " --columns " + shell_word(reading.columns);
   if (reading.time_scale != usual.reading.time_scale)
     command += " --time-scale " + runtime::exact(reading.time_scale);
   const auto add = [&](const char* option, const std::string& value, const std::string& usual_value) {

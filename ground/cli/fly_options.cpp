@@ -74,6 +74,10 @@ void add_file_options(runtime::CommandLine app, FileOptions& options) {
          "default: half of the last digit with which they are written")
       .range(1e-9, 1.0);
   app.add_option(
+      "--columns", options.columns,
+      "names of all columns of a CSV file in order, in place of its header, such as t,x,y,z,yaw; w_ for "
+      "one that is not used");
+  app.add_option(
          "--time-scale", options.time_scale,
          "fly the file so many times as slow: paths take longer, moves are flown at lower speeds; below 1 "
          "faster; holds and waits stay")

@@ -18,7 +18,7 @@ void add_fly_options(runtime::CommandLine app, FlyOptions& options);
 // Of the radio between vehicle and control.
 void add_radio_options(runtime::CommandLine app, FlyOptions& options);
 void add_level_option(runtime::CommandLine app, plant::ControlLevel& level);
-// Adds --frame, --tolerance and --time-scale: how a file is read.
+// Adds --frame, --tolerance, --columns and --time-scale: how a file is read.
 void add_file_options(runtime::CommandLine app, FileOptions& options);
 // Adds --frame: the frame of a CSV file that does not name its own.
 void add_frame_option(runtime::CommandLine app, std::optional<MissionFrame>& frame);

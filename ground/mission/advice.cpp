@@ -7,7 +7,6 @@
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
-#include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -73,7 +72,7 @@ std::string advice(const MissionFile& file, const std::string& path, const FileO
   const Search search(vehicle, settings, conditions);
   std::string text;
   if (const double slower = search.slower(file); slower > 1.0) text = advice_of(slower, options);
-  if (detect_format(runtime::read_text_file(path), path) != MissionFormat::kSampledCsv) return text;
+  if (read_source(path, options).format != MissionFormat::kSampledCsv) return text;
   if (const double tolerance_m = search.tolerance_m(path, options); tolerance_m > 0.0)
     text += fmt::format("{}past the samples by up to {:.3g} mm: --tolerance {:.3g}",
                         text.empty() ? "" : ", or ", tolerance_m * 1e3, tolerance_m);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "swiftlet/io/missions/mission_frame.hpp"
 
@@ -13,6 +14,8 @@ struct FileOptions {
   // of the last digit with which they are written.
   std::optional<double> tolerance_m;
   double time_scale = 1.0;  // > 0: the file is flown so many times as slow
+  std::string columns =
+      {};  // of a table, in place of its header: names in order, between commas; empty: none
 };
 
 }  // namespace swiftlet::ground

@@ -12,7 +12,6 @@
 #include "swiftlet/io/config.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/missions/mission_items.hpp"
-#include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -98,11 +97,6 @@ MissionFile read_mission(const ConfigNode& root, const control::Limits& settings
   return file;
 }
 
-void require_samples(const FileOptions& options, MissionFormat format, const std::string& path) {
-  if (options.tolerance_m && format != MissionFormat::kSampledCsv)
-    throw runtime::ConfigError(path, 0, "", "is no table of samples: --tolerance is for those");
-}
-
 // The time scale may be below 1, so that limits are exceeded.
 MissionFile stretched(MissionFile file, const control::Limits& limits, const FileOptions& options,
                       const std::string& path) {
@@ -131,38 +125,40 @@ bool MissionFile::lands() const {
 
 MissionFile load_mission_file(const std::string& path, const control::Limits& limits,
                               const FileOptions& options) {
-  const std::string text = runtime::read_text_file(path);
-  const MissionFormat format = detect_format(text, path);
-  if (options.frame && (format == MissionFormat::kYaml || format == MissionFormat::kQGroundControlPlan))
-    throw runtime::ConfigError(path, 0, "", "names its frame itself: --frame is for CSV files");
-  require_samples(options, format, path);
-  switch (format) {
+  Source source = read_source(path, options);
+  const auto with = [&](MissionFile file) {
+    file.assumptions.insert(file.assumptions.begin(), source.assumptions.begin(), source.assumptions.end());
+    return file;
+  };
+  switch (source.format) {
     case MissionFormat::kYaml:
-      return stretched(parse_mission_file(text, path, limits), limits, options, path);
+      return stretched(parse_mission_file(source.text, path, limits), limits, options, path);
     case MissionFormat::kPolynomialCsv:
-      return parse_polynomial_csv(text, path, limits, options);
+      return with(parse_polynomial_csv(source.text, path, limits, options, source.first_line));
     case MissionFormat::kSampledCsv:
-      return parse_sampled_csv(text, path, limits, options);
+      return with(parse_sampled_csv(source.text, path, limits, options, source.first_line));
     case MissionFormat::kWaypointCsv:
-      return parse_waypoint_csv(text, path, limits, options);
+      return with(parse_waypoint_csv(source.text, path, limits, options, source.first_line));
     case MissionFormat::kQGroundControlPlan:
-      return stretched(parse_qgroundcontrol_plan(text, path, limits), limits, options, path);
+      return with(stretched(parse_qgroundcontrol_plan(source.text, path, limits), limits, options, path));
   }
   throw std::logic_error("a format that is not read");
 }
 
 TrajectoryFile load_trajectory_file(const std::string& path, const control::Limits& limits,
                                     const FileOptions& options) {
-  const std::string text = runtime::read_text_file(path);
-  const MissionFormat format = detect_format(text, path);
-  require_samples(options, format, path);
-  switch (format) {
+  const Source source = read_source(path, options);
+  const auto with = [&](TrajectoryFile file) {
+    file.assumptions.insert(file.assumptions.begin(), source.assumptions.begin(), source.assumptions.end());
+    return file;
+  };
+  switch (source.format) {
     case MissionFormat::kPolynomialCsv:
-      return read_polynomial_csv(text, path, limits, options);
+      return with(read_polynomial_csv(source.text, path, limits, options, source.first_line));
     case MissionFormat::kSampledCsv:
-      return read_sampled_csv(text, path, limits, options);
+      return with(read_sampled_csv(source.text, path, limits, options, source.first_line));
     case MissionFormat::kWaypointCsv:
-      return read_waypoint_csv(text, path, limits, options);
+      return with(read_waypoint_csv(source.text, path, limits, options, source.first_line));
     default:
       break;
   }

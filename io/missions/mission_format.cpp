@@ -5,8 +5,11 @@
 #include <vector>
 
 #include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/missions/foreign_table.hpp"
 #include "swiftlet/io/missions/motion_columns.hpp"
+#include "swiftlet/io/missions/waypoint_list.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
+#include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -52,19 +55,49 @@ MissionFormat detect_format(std::string_view text, const std::string& file_name)
                                  fields.front().substr(0, 40) + "; must begin with " + kKnown);
 }
 
+Source read_source(const std::string& path, const FileOptions& options) {
+  Source source;
+  source.text = runtime::read_text_file(path);
+  const std::string extension = lower_case_extension(path);
+  const std::size_t first = source.text.find_first_not_of(" \t\r\n");
+  const bool json = first != std::string::npos && source.text[first] == '{';
+  if (is_waypoint_list(source.text)) {
+    source.text = plan_of_waypoint_list(source.text, path);
+    source.format = MissionFormat::kQGroundControlPlan;
+    source.assumptions.emplace_back("a list of waypoints, read like a plan of QGroundControl");
+  } else if (json || extension == ".plan" || extension == ".yaml" || extension == ".yml") {
+    source.format = detect_format(source.text, path);
+  } else {
+    ForeignTable table = read_foreign_table(source.text, path, options.columns);
+    source.text = std::move(table.text);
+    source.first_line = table.first_line;
+    source.assumptions = std::move(table.assumptions);
+    source.format = detect_format(source.text, path);
+  }
+  const bool table =
+      source.format != MissionFormat::kYaml && source.format != MissionFormat::kQGroundControlPlan;
+  if (options.frame && !table)
+    throw runtime::ConfigError(path, 0, "", "names its frame itself: --frame is for CSV files");
+  if (!options.columns.empty() && !table)
+    throw runtime::ConfigError(path, 0, "", "is no table: --columns is for CSV files");
+  if (options.tolerance_m && source.format != MissionFormat::kSampledCsv)
+    throw runtime::ConfigError(path, 0, "", "is no table of samples: --tolerance is for those");
+  return source;
+}
+
 MissionFile parse_polynomial_csv(const std::string& text, const std::string& file_name,
-                                 const control::Limits& limits, const FileOptions& options) {
-  return whole_flight(file_name, read_polynomial_csv(text, file_name, limits, options), limits);
+                                 const control::Limits& limits, const FileOptions& options, int first_line) {
+  return whole_flight(file_name, read_polynomial_csv(text, file_name, limits, options, first_line), limits);
 }
 
 MissionFile parse_sampled_csv(const std::string& text, const std::string& file_name,
-                              const control::Limits& limits, const FileOptions& options) {
-  return whole_flight(file_name, read_sampled_csv(text, file_name, limits, options), limits);
+                              const control::Limits& limits, const FileOptions& options, int first_line) {
+  return whole_flight(file_name, read_sampled_csv(text, file_name, limits, options, first_line), limits);
 }
 
 MissionFile parse_waypoint_csv(const std::string& text, const std::string& file_name,
-                               const control::Limits& limits, const FileOptions& options) {
-  return whole_flight(file_name, read_waypoint_csv(text, file_name, limits, options), limits);
+                               const control::Limits& limits, const FileOptions& options, int first_line) {
+  return whole_flight(file_name, read_waypoint_csv(text, file_name, limits, options, first_line), limits);
 }
 
 }  // namespace swiftlet::ground

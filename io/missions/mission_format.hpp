@@ -13,6 +13,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "swiftlet/control/types/polynomial.hpp"
 #include "swiftlet/io/missions/file_options.hpp"
@@ -22,26 +23,43 @@ namespace swiftlet::ground {
 
 enum class MissionFormat { kYaml, kPolynomialCsv, kSampledCsv, kWaypointCsv, kQGroundControlPlan };
 
+// A file as the functions below read it.
+struct Source {
+  MissionFormat format = MissionFormat::kYaml;
+  std::string text;    // tables of other programs are in the dialect of ours, and lists of waypoints a .plan
+  int first_line = 1;  // of the text in the file
+  std::vector<std::string> assumptions;
+};
+
+// Reads a file and detects its format. Throws runtime::ConfigError, also for options that the format does not have.
+Source read_source(const std::string& path, const FileOptions& options = {});
+
 // Detects the format from the content, or from the extension of file_name if the content is ambiguous. Throws
 // runtime::ConfigError for a CSV file of another format.
 MissionFormat detect_format(std::string_view text, const std::string& file_name);
 
-// All functions below throw runtime::ConfigError with file, line, column, value and limit for a violation of
+// first_line: of the text in the file, for messages. All functions below throw runtime::ConfigError with file, line, column, value and limit for a violation of
 // the format, the limits or the fence.
 TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& file_name,
-                                   const control::Limits& limits, const FileOptions& options = {});
+                                   const control::Limits& limits, const FileOptions& options = {},
+                                   int first_line = 1);
 TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file_name,
-                                const control::Limits& limits, const FileOptions& options = {});
+                                const control::Limits& limits, const FileOptions& options = {},
+                                int first_line = 1);
 TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& file_name,
-                                 const control::Limits& limits, const FileOptions& options = {});
+                                 const control::Limits& limits, const FileOptions& options = {},
+                                 int first_line = 1);
 
 // Complete flights: take-off, the path, landing.
 MissionFile parse_polynomial_csv(const std::string& text, const std::string& file_name,
-                                 const control::Limits& limits, const FileOptions& options = {});
+                                 const control::Limits& limits, const FileOptions& options = {},
+                                 int first_line = 1);
 MissionFile parse_sampled_csv(const std::string& text, const std::string& file_name,
-                              const control::Limits& limits, const FileOptions& options = {});
+                              const control::Limits& limits, const FileOptions& options = {},
+                              int first_line = 1);
 MissionFile parse_waypoint_csv(const std::string& text, const std::string& file_name,
-                               const control::Limits& limits, const FileOptions& options = {});
+                               const control::Limits& limits, const FileOptions& options = {},
+                               int first_line = 1);
 MissionFile parse_qgroundcontrol_plan(const std::string& text, const std::string& file_name,
                                       const control::Limits& limits);
 

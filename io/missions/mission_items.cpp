@@ -186,12 +186,16 @@ class Reader {
   }
 
   TrajectoryFile load_trajectory_file(const std::string& path, const ConfigNode& name) const {
-    const std::string text = runtime::read_text_file(path);
-    switch (detect_format(text, path)) {
+    const Source source = read_source(path);
+    const auto with = [&](TrajectoryFile file) {
+      file.assumptions.insert(file.assumptions.begin(), source.assumptions.begin(), source.assumptions.end());
+      return file;
+    };
+    switch (source.format) {
       case MissionFormat::kPolynomialCsv:
-        return read_polynomial_csv(text, path, limits_);
+        return with(read_polynomial_csv(source.text, path, limits_, {}, source.first_line));
       case MissionFormat::kSampledCsv:
-        return read_sampled_csv(text, path, limits_);
+        return with(read_sampled_csv(source.text, path, limits_, {}, source.first_line));
       default:
         name.fail("is " + name.text() + ", must be a trajectory: polynomials or samples as CSV");
     }

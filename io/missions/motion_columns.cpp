@@ -15,7 +15,7 @@ struct Unit {
   const char* name;
   double factor;  // to SI
 };
-const std::vector<Unit> kSeconds = {{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}};
+const std::vector<Unit> kSeconds = {{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}};
 const std::vector<Unit> kMetres = {{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}};
 const std::vector<Unit> kSpeeds = {{"m/s", 1.0}, {"cm/s", 1e-2}};
 const std::vector<Unit> kAccelerations = {{"m/s^2", 1.0}, {"m/s2", 1.0}, {"g", kStandardGravity}};

@@ -29,8 +29,10 @@ control::PolynomialSegment read(const runtime::CsvTable& table, std::size_t row)
 }  // namespace
 
 TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& file_name,
-                                   const control::Limits& limits, const FileOptions& options) {
-  const runtime::CsvTable table = runtime::parse_csv(text, file_name, columns(), 1, {true, true});
+                                   const control::Limits& limits, const FileOptions& options,
+                                   int first_line) {
+  const runtime::CsvTable table =
+      runtime::parse_csv(text, file_name, columns(), 1, {true, true, true, first_line});
   if (table.row_count() > control::kMaxTrajectorySegments) {
     table.fail(control::kMaxTrajectorySegments, "duration",
                "is segment " + std::to_string(control::kMaxTrajectorySegments + 1) + ", at most " +

@@ -87,6 +87,19 @@ PositionYaw tolerance_of(const runtime::CsvTable& table, std::size_t row, const 
   return tolerance;
 }
 
+// Without a unit, a yaw beyond a full turn may be in degrees.
+void require_clear_yaw(const runtime::CsvTable& table, std::size_t row, const MotionColumns& columns) {
+  const auto yaw = columns.index(Motion::kYaw);
+  if (!yaw || columns.declares_units() || std::abs(table.number(row, *yaw)) <= 2.0 * M_PI) return;
+  table.fail(
+      row, "yaw",
+      fmt::format(
+          "is {:g}, more than a full turn in rad: degrees, or several turns? Units in the header say "
+          "which, or --frame enu --columns \"t [s],x,y,z,yaw [deg]\" or ...yaw [rad], with all columns "
+          "of the file",
+          table.number(row, *yaw)));
+}
+
 Samples read(const runtime::CsvTable& table, const MotionColumns& columns, const Given& given,
              const std::optional<double>& tolerance_m) {
   Samples samples;
@@ -94,6 +107,7 @@ Samples read(const runtime::CsvTable& table, const MotionColumns& columns, const
   samples.times = sample_times(table, t, columns.factor(t));
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     const std::vector<double> numbers = table.row(row);
+    require_clear_yaw(table, row, columns);
     PositionYaw place;
     place.head<3>() = columns.ned(numbers, Motion::kX);
     place[3] = given.yaw ? columns.yaw_ned(numbers) : 0.0;
@@ -291,7 +305,7 @@ std::size_t row_of(const Samples& samples, const std::vector<control::Polynomial
 }  // namespace
 
 TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file_name,
-                                const control::Limits& limits, const FileOptions& options) {
+                                const control::Limits& limits, const FileOptions& options, int first_line) {
   std::vector<std::string> header = table_header(text, file_name);
   std::optional<runtime::CsvTable> recorded;
   if (runtime::is_flight_csv(header)) {
@@ -301,7 +315,7 @@ TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file
   const MotionColumns columns(header, file_name, options.frame);
   const Given given = given_in(columns, file_name);
   const runtime::CsvTable table =
-      recorded ? *recorded : runtime::parse_csv(text, file_name, header, 2, {true, true});
+      recorded ? *recorded : runtime::parse_csv(text, file_name, header, 2, {true, true, true, first_line});
   Samples samples = read(table, columns, given, options.tolerance_m);
   std::vector<std::string> assumptions;
   if (recorded) assumptions.push_back(extent_of(table));

@@ -53,7 +53,7 @@ std::size_t row_of(const control::PlannedPath& planned, std::size_t segment) {
 }  // namespace
 
 TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& file_name,
-                                 const control::Limits& limits, const FileOptions& options) {
+                                 const control::Limits& limits, const FileOptions& options, int first_line) {
   std::vector<std::string> first = runtime::first_csv_line(text, file_name);
   if (first.empty()) first.emplace_back();  // parse_csv() refuses the empty file
   const bool has_header = !first.front().empty() && !runtime::is_number(first.front());
@@ -62,7 +62,8 @@ TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& fil
   const MotionColumns columns(header, file_name, options.frame);
   require_columns(columns, file_name, "a list of waypoints", {Motion::kX, Motion::kY, Motion::kZ},
                   {{Motion::kYaw}});
-  const runtime::CsvTable table = runtime::parse_csv(text, file_name, header, 2, {has_header, true});
+  const runtime::CsvTable table =
+      runtime::parse_csv(text, file_name, header, 2, {has_header, true, true, first_line});
   control::WaypointPath path = read(table, columns);
   path.limits = reference_limits(limits);
 
