@@ -194,7 +194,10 @@ TEST_F(Px4Failures, TheKillSwitchIsNamed) {
   start_all("trajectory");
   wait_until_ready();
   ASSERT_TRUE(ask(msg::Command_Constants::ARM).accepted());
-  ASSERT_TRUE(eventually([&] { return px4_->armed(); })) << errors();
+  // Before the bridge has seen it armed, a kill is an order to arm that was not obeyed.
+  ASSERT_TRUE(eventually([&] {
+    return bridge_->errors().find("armed, in offboard mode") != std::string::npos;
+  })) << errors();
   px4_->kill();
   ASSERT_TRUE(fault_is("PX4 disarmed: kill switch")) << errors();
   expect_stopped_by("PX4 disarmed: kill switch");
