@@ -81,12 +81,12 @@ class LoopTransport final : public MissionTransport {
     return !sampled || !observer_.cancelled || !observer_.cancelled();
   }
 
-  // True if control has answered a sample at the telemetry rate since the last call.
+  // True if control has answered a sample at the telemetry rate since the last call. The first one after a missed sample is
+  // none here: over DDS, the ground has no true position of its stamp.
   bool answered_sample() {
     if (!loop_.answered) return false;
     const std::uint64_t before = std::exchange(answered_sequence_, loop_.answered->sequence);
-    return before != answered_sequence_ &&
-           runtime::is_telemetry_sample(answered_sequence_, before, imu_period_ns_);
+    return before != answered_sequence_ && runtime::is_telemetry_sample(answered_sequence_, imu_period_ns_);
   }
 
   void record(FlightRecord& record) {
