@@ -235,9 +235,11 @@ TEST_P(Levels, AnotherVehicleFliesWithTheSameSettings) {
   EXPECT_LT(fly_square(crazyflie, world_, settings_).rms_3d_m, own_position_loop() ? 0.05 : 0.02);
 }
 
+// The levels above actuators, whose inner loops are not behind the radio.
+class LevelsOverARadio : public Levels {};
+
 // GIVEN a Crazyflie behind a radio with 2 % loss THEN it flies the square with the default gains.
-TEST_P(Levels, TheSquareIsTrackedOverARadio) {
-  if (GetParam() == ControlLevel::kActuators) GTEST_SKIP() << "its loops need less delay";
+TEST_P(LevelsOverARadio, TrackTheSquare) {
   const plant::Vehicle crazyflie = runtime::load_vehicle(runtime::find_config("vehicles/crazyflie2.yaml"));
   for (const double delay_s : {0.01, 0.04}) {
     world_.radio = {delay_s, 0.004, 0.02};
@@ -292,6 +294,10 @@ TEST(LevelChoice, StaysWhileTheRotorsTurn) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Levels, testing::ValuesIn(plant::kControlLevels),
+                         [](const auto& level) { return std::string(plant::to_string(level.param)); });
+INSTANTIATE_TEST_SUITE_P(All, LevelsOverARadio,
+                         testing::Values(ControlLevel::kRates, ControlLevel::kAttitude,
+                                         ControlLevel::kTrajectory),
                          [](const auto& level) { return std::string(plant::to_string(level.param)); });
 
 }  // namespace
