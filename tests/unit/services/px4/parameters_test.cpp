@@ -61,13 +61,17 @@ class ScriptedParameters {
                   [&](const mavlink::Frame& frame) { answer(frame, from); });
     }
   }
+  // A name of 16 letters has no terminating 0.
+  static std::string name_of(const mavlink::ParamId& id) {
+    return {id.begin(), std::find(id.begin(), id.end(), '\0')};
+  }
   void answer(const mavlink::Frame& frame, const sockaddr_in& to) {
     std::string name;
     if (frame.message_id == mavlink::ParamRequestRead::kId)
-      name = mavlink::from_frame<mavlink::ParamRequestRead>(frame).param_id.data();
+      name = name_of(mavlink::from_frame<mavlink::ParamRequestRead>(frame).param_id);
     if (frame.message_id == mavlink::ParamSet::kId) {
       const auto request = mavlink::from_frame<mavlink::ParamSet>(frame);
-      name = request.param_id.data();
+      name = name_of(request.param_id);
       ParameterValue& value = values[name];
       std::int32_t whole = 0;
       std::memcpy(&whole, &request.param_value, sizeof whole);
