@@ -1,4 +1,4 @@
-// swiftlet-px4 with control and motion capture as processes, and a scripted PX4 (tests/support/scripted_px4.hpp) in the test.
+// swiftlet-px4 with control and motion capture as processes, and a scripted PX4 (tests/support/px4/scripted_px4.hpp) in the test.
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -15,7 +15,7 @@
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/program.hpp"
-#include "tests/support/scripted_px4.hpp"
+#include "tests/support/px4/scripted_px4.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::tests {

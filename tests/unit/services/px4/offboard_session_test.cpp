@@ -9,7 +9,7 @@
 
 #include "swiftlet/services/px4/translate.hpp"
 #include "swiftlet/services/px4/words.hpp"
-#include "tests/support/px4_rules.hpp"
+#include "tests/support/px4/rules.hpp"
 
 namespace swiftlet::px4 {
 namespace {

@@ -1,6 +1,4 @@
 // The scripted PX4 against a captured flight of PX4 1.16.0 (tests/data/README.md): it answers the captured inputs as PX4 did.
-#include "tests/support/px4_capture.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -23,7 +21,8 @@
 #include "swiftlet/services/px4/translate.hpp"
 #include "swiftlet/services/px4/versions.hpp"
 #include "swiftlet/services/px4/words.hpp"
-#include "tests/support/px4_rules.hpp"
+#include "tests/support/px4/capture.hpp"
+#include "tests/support/px4/rules.hpp"
 
 namespace swiftlet::tests {
 namespace {

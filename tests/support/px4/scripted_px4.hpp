@@ -1,4 +1,4 @@
-// A scripted PX4 on DDS: its commander's rules (px4_rules.hpp), and a simulated vehicle with the loops of a firmware under them. It
+// A scripted PX4 on DDS: its commander's rules (rules.hpp), and a simulated vehicle with the loops of a firmware under them. It
 // publishes and obeys PX4's topics as PX4 1.16 does through its agent: best effort, at 100 Hz, with stamps in us that lag. The
 // ground truth of the vehicle goes to motion capture.
 #pragma once
@@ -19,7 +19,7 @@
 #include "swiftlet/plant/simulation/plant_simulation.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/px4/px4_topics.hpp"
-#include "tests/support/px4_rules.hpp"
+#include "tests/support/px4/rules.hpp"
 
 namespace swiftlet::tests {
 

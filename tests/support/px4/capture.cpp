@@ -1,4 +1,4 @@
-#include "tests/support/px4_capture.hpp"
+#include "tests/support/px4/capture.hpp"
 
 #include <algorithm>
 #include <map>

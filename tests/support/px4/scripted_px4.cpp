@@ -1,4 +1,4 @@
-#include "tests/support/scripted_px4.hpp"
+#include "tests/support/px4/scripted_px4.hpp"
 
 #include <algorithm>
 #include <cmath>

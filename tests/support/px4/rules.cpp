@@ -1,4 +1,4 @@
-#include "tests/support/px4_rules.hpp"
+#include "tests/support/px4/rules.hpp"
 
 #include <cmath>
 
