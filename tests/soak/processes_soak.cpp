@@ -1,10 +1,11 @@
 // Lets each process of a flight fail in each way at each level, and prints a row for each.
+#include <cstddef>
 #include <cstdio>
 #include <exception>
 #include <string>
 
-#include "swiftlet/services/runtime/process.hpp"
 #include "tests/soak/processes_flight.hpp"
+#include "tests/soak/table_soak.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::soak {
@@ -30,32 +31,19 @@ bool fly_row(const ProcessCase& one) {
   return fault.empty();
 }
 
-int run(int first, int last) {
+void print_header() {
   std::printf("%-38s %-10s %8s %9s  %s\n", "what fails", "vehicle", "climbs m", "leaves m",
               "reason of control's last mode");
-  const auto& all = process_cases();
-  int bad = 0;
-  for (int row = first; row <= last && row < static_cast<int>(all.size()); ++row)
-    bad += fly_row(all[static_cast<std::size_t>(row)]) ? 0 : 1;
-  return bad == 0 ? 0 : 1;
 }
 
 }  // namespace
 }  // namespace swiftlet::soak
 
 int main(int argc, char** argv) {
-  using namespace swiftlet;
-  int first = 0;
-  int last = 1000;
-  int exit_code = 0;
-  const int status = runtime::run_process(
+  using namespace swiftlet::soak;
+  const auto& rows = process_cases();
+  return run_table_soak(
       {"processes_soak", "Kills, stops or restarts each process of a flight, at each level.",
        "--first 4 --last 7"},
-      argc, argv,
-      [&](runtime::CommandLine app) {
-        app.add_option("--first", first, "number of the first row").range(0, 1000).show_default();
-        app.add_option("--last", last, "number of the last row").range(0, 1000);
-      },
-      [&] { exit_code = soak::run(first, last); });
-  return status != 0 ? status : exit_code;
+      argc, argv, rows.size(), print_header, [&](std::size_t row) { return fly_row(rows[row]); });
 }
