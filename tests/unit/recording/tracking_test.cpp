@@ -115,8 +115,8 @@ TEST(TrackingErrors, DoNotInterpolateOverLongGaps) {
     return tracking_errors(flight.truth, flight.reference, {0, 100 * kStep}, TruthSource::kInterpolated)
         .matched;
   };
-  EXPECT_EQ(matched(9), 100U) << "20 ms between the rows";
-  EXPECT_EQ(matched(10), 90U) << "22 ms between the rows";
+  EXPECT_EQ(matched(24), 100U) << "50 ms between the rows";
+  EXPECT_EQ(matched(25), 75U) << "52 ms between the rows";
 }
 
 TEST(TrackingErrors, AreNaNWithoutAMatch) {
