@@ -100,11 +100,11 @@ class MotionCapture : public SeparateProcesses {
     for (int attempt = 0; attempt < 3; ++attempt) {
       start_with(room);
       if (HasFatalFailure()) break;
-      result = run_program(
-          "swiftlet",
-          {"fly", mission, "--attach", "--localhost-only", "--domain", std::to_string(lock_.domain()),
-           "--json", "--record", (folder_.path() / "record").string(), "--replace"},
-          folder_.path(), kStuck);
+      result = run_program("swiftlet",
+                           {"fly", mission, "--time-scale", "0.5", "--attach", "--localhost-only", "--domain",
+                            std::to_string(lock_.domain()), "--json", "--record",
+                            (folder_.path() / "record").string(), "--replace"},
+                           folder_.path(), kStuck);
       for (const auto& process : {mocap_.get(), plant_.get(), control_.get()}) {
         process->signal(SIGTERM);
         EXPECT_EQ(process->wait(kStuck), 0) << process->errors();
@@ -131,7 +131,7 @@ class MotionCapture : public SeparateProcesses {
 };
 
 // GIVEN a server of NatNet 4.1 with y up, an hour ahead, whose body is turned by 20 degrees and 4 cm off THEN the square is
-// flown as closely as with the simulated motion capture.
+// flown at 1 m/s as closely as with the simulated motion capture.
 TEST_F(MotionCapture, FliesTheSquareThroughNatNet) {
   NatNetServer::Settings settings;
   settings.clock_offset_ns = kHourNs;
@@ -145,7 +145,7 @@ TEST_F(MotionCapture, FliesTheSquareThroughNatNet) {
                            kBodyKeys + "}\n";
   const double rms_m = flown_rms_m(room, "square");
   RecordProperty("rms_3d_um", static_cast<int>(std::lround(1e6 * rms_m)));
-  EXPECT_LT(rms_m, 0.005);
+  EXPECT_LT(rms_m, 0.008);
   EXPECT_NE(mocap_->errors().find("kl1 is body 'drone' with number 42"), std::string::npos)
       << mocap_->errors();
 }
