@@ -28,13 +28,26 @@ std::string shell_word(const std::string& text) {
   return quoted + "'";
 }
 
+std::string numbers(const std::vector<Eigen::Vector3d>& vectors) {
+  std::string text;
+  for (const Eigen::Vector3d& vector : vectors) {
+    for (const double number : vector) text += (text.empty() ? "" : ",") + runtime::exact(number);
+  }
+  return text;
+}
+
 std::string repeat_of(const FlyOptions& options) {
   const FlyOptions usual;
   std::string command = "swiftlet sim fly " + shell_word(options.mission);
   const FileOptions& reading = options.reading;
-  if (reading.frame) command += *reading.frame == MissionFrame::kNed ? " --frame ned" : " --frame enu";
+  if (reading.frame) command += std::string(" --frame ") + frame_name(*reading.frame);
   if (reading.tolerance_m) command += " --tolerance " + runtime::exact(*reading.tolerance_m);
   if (!reading.columns.empty()) command += " --columns " + shell_word(reading.columns);
+  const Placement& placement = reading.placement;
+  if (placement.scale != 1.0) command += " --scale " + runtime::exact(placement.scale);
+  if (placement.rotate_deg != 0.0) command += " --rotate " + runtime::exact(placement.rotate_deg);
+  if (!placement.offset_ned.isZero(0.0)) command += " --offset " + numbers({placement.offset_ned});
+  if (reading.fence) command += " --fence " + numbers({reading.fence->min_ned, reading.fence->max_ned});
   if (reading.time_scale != usual.reading.time_scale)
     command += " --time-scale " + runtime::exact(reading.time_scale);
   const auto add = [&](const char* option, const std::string& value, const std::string& usual_value) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "swiftlet/io/configuration.hpp"
 
@@ -62,8 +63,10 @@ void add_radio_options(runtime::CommandLine app, FlyOptions& options) {
 
 void add_frame_option(runtime::CommandLine app, std::optional<MissionFrame>& frame) {
   app.add_choice<std::optional<MissionFrame>>(
-      "--frame", frame, {{"ned", MissionFrame::kNed}, {"enu", MissionFrame::kEnu}},
-      "frame of a CSV file that names none: ned (north, east, down) or enu (east, north, up)");
+      "--frame", frame,
+      {{"ned", MissionFrame::kNed}, {"enu", MissionFrame::kEnu}, {"nwu", MissionFrame::kNwu}},
+      "frame of a file that names none: ned (north, east, down), enu (east, north, up) or nwu (north, west, "
+      "up)");
 }
 
 void add_file_options(runtime::CommandLine app, FileOptions& options) {
@@ -77,6 +80,30 @@ void add_file_options(runtime::CommandLine app, FileOptions& options) {
       "--columns", options.columns,
       "names of all columns of a CSV file in order, in place of its header, such as t,x,y,z,yaw; w_ for "
       "one that is not used");
+  app.add_option("--scale", options.placement.scale,
+                 "enlarge the file about the origin, heights too; times stay, so that paths become faster")
+      .range(1e-3, 1e3)
+      .show_default();
+  app.add_option("--rotate", options.placement.rotate_deg,
+                 "turn the file about the origin, headings too: deg, clockwise seen from above")
+      .range(-360.0, 360.0)
+      .show_default();
+  app.add_numbers(
+         "--offset", 3,
+         [&options](const std::vector<double>& m) {
+           options.placement.offset_ned = {m[0], m[1], m[2]};
+         },
+         "move the file by so many m north, east and down, after --scale and --rotate")
+      .type_name("N,E,D");
+  app.add_numbers(
+         "--fence", 6,
+         [&options](const std::vector<double>& m) {
+           options.fence = Fence{{m[0], m[1], m[2]}, {m[3], m[4], m[5]}};
+         },
+         "fence of the flight: north, east and down of two opposite corners, m, inside the fence of the "
+         "control "
+         "settings; in place of that of a mission file")
+      .type_name("N,E,D,N,E,D");
   app.add_option(
          "--time-scale", options.time_scale,
          "fly the file so many times as slow: paths take longer, moves are flown at lower speeds; below 1 "

@@ -102,7 +102,7 @@ Column column_of(const std::string& given, const std::string& file, int line) {
     }
   }
   std::string ending;  // names the frame
-  for (const char* const frame : {"_ned", "_enu"}) {
+  for (const char* const frame : {"_ned", "_enu", "_nwu"}) {
     if (name.size() > 4 && name.compare(name.size() - 4, 4, frame) == 0) ending = frame;
   }
   name.resize(name.size() - ending.size());
@@ -332,7 +332,7 @@ bool is_polynomial(const Fields& fields) { return lower(fields.front()) == "dura
 
 std::string base_of(const std::string& header) {
   std::string name = trimmed(header.substr(0, header.find('[')));
-  for (const char* const frame : {"_ned", "_enu", "_frd"}) {
+  for (const char* const frame : {"_ned", "_enu", "_nwu", "_frd"}) {
     if (name.size() > 4 && name.compare(name.size() - 4, 4, frame) == 0) name.resize(name.size() - 4);
   }
   return name;

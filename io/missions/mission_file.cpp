@@ -43,8 +43,26 @@ void read_limits(const ConfigNode& node, const control::Limits& settings, contro
   read("yaw_rate_rad_s", settings.max_yaw_rate, bounds.max_yaw_rate);
 }
 
-void read_fence(const ConfigNode& node, MissionFrame frame, const control::Limits& settings,
-                control::MissionBounds& bounds) {
+// The bounds with this fence.
+control::MissionBounds fenced(control::MissionBounds bounds, const Eigen::Vector3d& corner_ned,
+                              const Eigen::Vector3d& other_ned) {
+  bounds.fenced = true;
+  bounds.fence_min_ned = corner_ned.cwiseMin(other_ned);
+  bounds.fence_max_ned = corner_ned.cwiseMax(other_ned);
+  return bounds;
+}
+
+// The bounds of --fence, if it is given.
+control::MissionBounds fence_of(const FileOptions& options, const control::Limits& settings) {
+  if (!options.fence) return {};
+  control::MissionBounds bounds = fenced({}, options.fence->min_ned, options.fence->max_ned);
+  const control::Outcome outcome = control::check(bounds, settings);
+  if (!outcome.accepted) throw runtime::ConfigError("--fence", 0, "", outcome.reason);
+  return bounds;
+}
+
+void read_fence(const ConfigNode& node, MissionFrame frame, const Placement& placement,
+                const control::Limits& settings, control::MissionBounds& bounds) {
   node.allow({"min_m", "max_m"});
   const Eigen::Vector3d least = node.at("min_m").vector3();
   const Eigen::Vector3d greatest = node.at("max_m").vector3();
@@ -53,11 +71,13 @@ void read_fence(const ConfigNode& node, MissionFrame frame, const control::Limit
     node.at("max_m").fail(
         fmt::format("number {} is {:g}, must be above that of min_m, {:g}", i + 1, greatest[i], least[i]));
   }
-  const Eigen::Vector3d one = ned_from(frame, least);
-  const Eigen::Vector3d other = ned_from(frame, greatest);
-  bounds.fenced = true;
-  bounds.fence_min_ned = one.cwiseMin(other);
-  bounds.fence_max_ned = one.cwiseMax(other);
+  if (!placement.keeps_axes())
+    node.fail(fmt::format(
+        "has sides along the axes: --rotate must be a multiple of 90 deg, is {:g}, unless --fence is "
+        "given in its place",
+        placement.rotate_deg));
+  bounds = fenced(bounds, placement.position(ned_from(frame, least)),
+                  placement.position(ned_from(frame, greatest)));
   const control::Outcome outcome = control::check(bounds, settings);
   if (!outcome.accepted) node.fail(outcome.reason);
 }
@@ -71,24 +91,37 @@ void require_items_last(const ConfigNode& root, const ConfigNode& items) {
   }
 }
 
-MissionFile read_mission(const ConfigNode& root, const control::Limits& settings) {
+// The frame of the file, or that of --frame if it names none.
+MissionFrame frame_of(const ConfigNode& root, const FileOptions& options) {
+  const auto node = root.find("frame");
+  if (!node && options.frame) return *options.frame;
+  const MissionFrame frame = root.at("frame").choice<MissionFrame>(
+      {{"ned", MissionFrame::kNed}, {"enu", MissionFrame::kEnu}, {"nwu", MissionFrame::kNwu}});
+  if (options.frame && *options.frame != frame)
+    node->fail(std::string("is ") + frame_name(frame) + ", but --frame names " + frame_name(*options.frame));
+  return frame;
+}
+
+MissionFile read_mission(const ConfigNode& root, const control::Limits& settings,
+                         const FileOptions& options) {
   root.allow({"name", "description", "frame", "tolerance_m", "limits", "geofence", "ends", "items"});
   MissionFile file;
   file.name = name_of(root);
   if (const auto description = root.find("description")) file.description = description->text();
-  const MissionFrame frame =
-      root.at("frame").choice<MissionFrame>({{"ned", MissionFrame::kNed}, {"enu", MissionFrame::kEnu}});
+  const MissionFrame frame = frame_of(root, options);
   file.tolerance_m = root.at("tolerance_m").number({0.0, kLargestToleranceM, true, false});
   control::MissionBounds& bounds = file.mission.bounds;
+  bounds = fence_of(options, settings);
   if (const auto limits = root.find("limits")) read_limits(*limits, settings, bounds);
-  if (const auto fence = root.find("geofence")) read_fence(*fence, frame, settings, bounds);
+  const auto fence = root.find("geofence");
+  if (fence && !options.fence) read_fence(*fence, frame, options.placement, settings, bounds);
   const auto ends = root.find("ends");
   const bool hovers = ends && ends->choice<bool>({{"landed", false}, {"hovering", true}});
 
   const ConfigNode items = root.at("items");
   require_items_last(root, items);
   const control::Limits limits = control::tightened(settings, bounds);
-  read_mission_items(items, frame, limits, file);
+  read_mission_items(items, frame, options.placement, limits, file);
   if (hovers && file.lands()) ends->fail("is hovering, must be landed: the last item is a land");
   if (!hovers && !file.lands()) {
     const ConfigNode last = items.items().back();
@@ -109,6 +142,10 @@ MissionFile stretched(MissionFile file, const control::Limits& limits, const Fil
   return file;
 }
 
+void say_placement(const FileOptions& options, std::vector<std::string>& assumptions) {
+  if (!options.placement.is_identity()) assumptions.push_back(options.placement.sentence());
+}
+
 Eigen::Vector3d start_of(const control::Mission& mission, const MissionItem& trajectory) {
   return control::evaluate(mission.segments[trajectory.first_segment], 0.0).position_ned;
 }
@@ -123,16 +160,21 @@ bool MissionFile::lands() const {
   return !mission.items.empty() && mission.items.back().kind == MissionItemKind::kLand;
 }
 
-MissionFile load_mission_file(const std::string& path, const control::Limits& limits,
+MissionFile load_mission_file(const std::string& path, const control::Limits& settings,
                               const FileOptions& options) {
-  Source source = read_source(path, options);
+  const Source source = read_source(path, options);
+  const control::MissionBounds bounds = fence_of(options, settings);
+  const control::Limits limits = control::tightened(settings, bounds);
   const auto with = [&](MissionFile file) {
     file.assumptions.insert(file.assumptions.begin(), source.assumptions.begin(), source.assumptions.end());
+    say_placement(options, file.assumptions);
+    if (source.format != MissionFormat::kYaml) file.mission.bounds = bounds;
     return file;
   };
   switch (source.format) {
     case MissionFormat::kYaml:
-      return stretched(parse_mission_file(source.text, path, limits), limits, options, path);
+      return with(
+          stretched(parse_mission_file(source.text, path, settings, options), settings, options, path));
     case MissionFormat::kPolynomialCsv:
       return with(parse_polynomial_csv(source.text, path, limits, options, source.first_line));
     case MissionFormat::kSampledCsv:
@@ -140,16 +182,19 @@ MissionFile load_mission_file(const std::string& path, const control::Limits& li
     case MissionFormat::kWaypointCsv:
       return with(parse_waypoint_csv(source.text, path, limits, options, source.first_line));
     case MissionFormat::kQGroundControlPlan:
-      return with(stretched(parse_qgroundcontrol_plan(source.text, path, limits), limits, options, path));
+      return with(
+          stretched(parse_qgroundcontrol_plan(source.text, path, limits, options), limits, options, path));
   }
   throw std::logic_error("a format that is not read");
 }
 
-TrajectoryFile load_trajectory_file(const std::string& path, const control::Limits& limits,
+TrajectoryFile load_trajectory_file(const std::string& path, const control::Limits& settings,
                                     const FileOptions& options) {
   const Source source = read_source(path, options);
+  const control::Limits limits = control::tightened(settings, fence_of(options, settings));
   const auto with = [&](TrajectoryFile file) {
     file.assumptions.insert(file.assumptions.begin(), source.assumptions.begin(), source.assumptions.end());
+    say_placement(options, file.assumptions);
     return file;
   };
   switch (source.format) {
@@ -162,7 +207,7 @@ TrajectoryFile load_trajectory_file(const std::string& path, const control::Limi
     default:
       break;
   }
-  MissionFile file = load_mission_file(path, limits, options);
+  MissionFile file = load_mission_file(path, settings, options);
   const auto is_trajectory = [](const control::MissionItem& item) {
     return item.kind == control::MissionItemKind::kTrajectory;
   };
@@ -175,8 +220,8 @@ TrajectoryFile load_trajectory_file(const std::string& path, const control::Limi
 }
 
 MissionFile parse_mission_file(const std::string& text, const std::string& file_name,
-                               const control::Limits& limits) {
-  return read_mission(runtime::parse_config(text, file_name), limits);
+                               const control::Limits& limits, const FileOptions& options) {
+  return read_mission(runtime::parse_config(text, file_name), limits, options);
 }
 
 double planned_duration_s(const control::Mission& mission, const control::Limits& settings) {

@@ -3,7 +3,7 @@
 //
 //   name: square         # optional; default: the file name without its extension
 //   description: One lap # optional
-//   frame: ned           # of positions and yaws: ned (north, east, down) or enu (east, north, up)
+//   frame: ned           # of positions and yaws: ned (north, east, down), enu (east, north, up) or nwu (north, west, up)
 //   tolerance_m: 0.1     # largest peak 3-D tracking error of a completed mission
 //   limits: {speed_m_s: 1, acceleration_m_s2: 1.5, jerk_m_s3: 10, yaw_rate_rad_s: 1}   # optional, each
 //   geofence: {min_m: [-1, -1, -2], max_m: [3, 3, 0.2]}                                # optional; corners
@@ -54,7 +54,7 @@ struct MissionFile {
 MissionFile load_mission_file(const std::string& path, const control::Limits& limits,
                               const FileOptions& options = {});
 MissionFile parse_mission_file(const std::string& text, const std::string& file_name,
-                               const control::Limits& limits);
+                               const control::Limits& limits, const FileOptions& options = {});
 
 // Reads only the path: a CSV file of any format, or the trajectory of a mission that holds exactly one. Throws
 // runtime::ConfigError as load_mission_file() does.

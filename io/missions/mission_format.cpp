@@ -76,8 +76,9 @@ Source read_source(const std::string& path, const FileOptions& options) {
   }
   const bool table =
       source.format != MissionFormat::kYaml && source.format != MissionFormat::kQGroundControlPlan;
-  if (options.frame && !table)
-    throw runtime::ConfigError(path, 0, "", "names its frame itself: --frame is for CSV files");
+  if (options.frame && source.format == MissionFormat::kQGroundControlPlan)
+    throw runtime::ConfigError(path, 0, "",
+                               "names the frame of each item itself: --frame is for other files");
   if (!options.columns.empty() && !table)
     throw runtime::ConfigError(path, 0, "", "is no table: --columns is for CSV files");
   if (options.tolerance_m && source.format != MissionFormat::kSampledCsv)

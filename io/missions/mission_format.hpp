@@ -61,6 +61,6 @@ MissionFile parse_waypoint_csv(const std::string& text, const std::string& file_
                                const control::Limits& limits, const FileOptions& options = {},
                                int first_line = 1);
 MissionFile parse_qgroundcontrol_plan(const std::string& text, const std::string& file_name,
-                                      const control::Limits& limits);
+                                      const control::Limits& limits, const FileOptions& options = {});
 
 }  // namespace swiftlet::ground

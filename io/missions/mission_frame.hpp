@@ -8,17 +8,46 @@
 namespace swiftlet::ground {
 
 // kNed: x north, y east, z down; yaw clockwise from north. kEnu: x east, y north, z up; yaw counter-clockwise
-// from east.
-enum class MissionFrame { kNed, kEnu };
+// from east. kNwu: x north, y west, z up; yaw counter-clockwise from north.
+enum class MissionFrame { kNed, kEnu, kNwu };
+
+// "ned", as options and the endings of columns have it.
+inline const char* frame_name(MissionFrame frame) {
+  return frame == MissionFrame::kNed ? "ned" : frame == MissionFrame::kEnu ? "enu" : "nwu";
+}
+// "NED", for sentences.
+inline const char* frame_title(MissionFrame frame) {
+  return frame == MissionFrame::kNed ? "NED" : frame == MissionFrame::kEnu ? "ENU" : "NWU";
+}
 
 // Of a position, velocity or acceleration.
 inline Eigen::Vector3d ned_from(MissionFrame frame, const Eigen::Vector3d& vector) {
-  return frame == MissionFrame::kNed ? vector : Eigen::Vector3d(vector.y(), vector.x(), -vector.z());
+  switch (frame) {
+    case MissionFrame::kEnu:
+      return {vector.y(), vector.x(), -vector.z()};
+    case MissionFrame::kNwu:
+      return {vector.x(), -vector.y(), -vector.z()};
+    case MissionFrame::kNed:
+      break;
+  }
+  return vector;
 }
 
 // Not wrapped: turns of a continuous yaw are kept.
 inline double ned_yaw_from(MissionFrame frame, double yaw_rad) {
-  return frame == MissionFrame::kNed ? yaw_rad : M_PI / 2 - yaw_rad;
+  switch (frame) {
+    case MissionFrame::kEnu:
+      return M_PI / 2 - yaw_rad;
+    case MissionFrame::kNwu:
+      return -yaw_rad;
+    case MissionFrame::kNed:
+      break;
+  }
+  return yaw_rad;
+}
+
+inline double ned_yaw_rate_from(MissionFrame frame, double yaw_rate) {
+  return frame == MissionFrame::kNed ? yaw_rate : -yaw_rate;
 }
 
 }  // namespace swiftlet::ground

@@ -45,8 +45,8 @@ struct Defaults {
 
 class Reader {
  public:
-  Reader(MissionFrame frame, const control::Limits& limits, MissionFile& file)
-      : frame_(frame), limits_(limits), file_(file) {}
+  Reader(MissionFrame frame, const Placement& placement, const control::Limits& limits, MissionFile& file)
+      : frame_(frame), placement_(placement), limits_(limits), file_(file) {}
 
   void read(const ConfigNode& node) {
     node.allow({"kind", "height_m", "position_m", "points", "file", "duration_s", "yaw_rad", "speed_m_s",
@@ -106,7 +106,8 @@ class Reader {
     MissionItem item;
     item.kind = MissionItemKind::kTakeoff;
     const ConfigNode height = node.at("height_m");
-    item.position_ned.z() = -height.number(runtime::above(0.0));
+    item.position_ned.z() =
+        placement_.position(Eigen::Vector3d(0.0, 0.0, -height.number(runtime::above(0.0)))).z();
     Eigen::Vector3d top_ned =
         0.5 * (limits_.fence_min_ned + limits_.fence_max_ned);  // horizontal position unknown
     top_ned.z() = item.position_ned.z();
@@ -186,16 +187,18 @@ class Reader {
   }
 
   TrajectoryFile load_trajectory_file(const std::string& path, const ConfigNode& name) const {
-    const Source source = read_source(path);
+    FileOptions options;
+    options.placement = placement_;
+    const Source source = read_source(path, options);
     const auto with = [&](TrajectoryFile file) {
       file.assumptions.insert(file.assumptions.begin(), source.assumptions.begin(), source.assumptions.end());
       return file;
     };
     switch (source.format) {
       case MissionFormat::kPolynomialCsv:
-        return with(read_polynomial_csv(source.text, path, limits_, {}, source.first_line));
+        return with(read_polynomial_csv(source.text, path, limits_, options, source.first_line));
       case MissionFormat::kSampledCsv:
-        return with(read_sampled_csv(source.text, path, limits_, {}, source.first_line));
+        return with(read_sampled_csv(source.text, path, limits_, options, source.first_line));
       default:
         name.fail("is " + name.text() + ", must be a trajectory: polynomials or samples as CSV");
     }
@@ -247,7 +250,7 @@ class Reader {
     return last.free;
   }
 
-  static void read_shape(const ConfigNode& node, control::WaypointPath& path) {
+  void read_shape(const ConfigNode& node, control::WaypointPath& path) const {
     if (const auto smoothness = node.find("smoothness")) {
       path.smoothness = smoothness->choice<control::Smoothness>(
           {{"snap", control::Smoothness::kMinimumSnap}, {"jerk", control::Smoothness::kMinimumJerk}});
@@ -260,7 +263,8 @@ class Reader {
       leg.shape = control::LegShape::kStraight;
     } else if (corridor) {
       leg.shape = control::LegShape::kCorridor;
-      leg.corridor_m = corridor->number(runtime::between(kLeastCorridorM, kLargestCorridorM));
+      leg.corridor_m =
+          placement_.scale * corridor->number(runtime::between(kLeastCorridorM, kLargestCorridorM));
     }
     path.legs.assign(path.points.size() - 1, leg);
   }
@@ -293,7 +297,7 @@ class Reader {
   }
 
   Eigen::Vector3d position(const ConfigNode& node) const {
-    Eigen::Vector3d position_ned = ned_from(frame_, node.vector3());
+    const Eigen::Vector3d position_ned = placement_.position(ned_from(frame_, node.vector3()));
     require_height(node, position_ned.z());
     require_inside_fence(node, position_ned);
     return position_ned;
@@ -315,7 +319,8 @@ class Reader {
   }
 
   double wrapped_yaw_ned(const ConfigNode& node) const {
-    return std::remainder(ned_yaw_from(frame_, node.number(runtime::between(-M_PI, M_PI))), 2 * M_PI);
+    const double yaw_ned = ned_yaw_from(frame_, node.number(runtime::between(-M_PI, M_PI)));
+    return std::remainder(placement_.yaw(yaw_ned), 2 * M_PI);
   }
 
   // Reads a number in rad, or the word free.
@@ -329,6 +334,7 @@ class Reader {
   }
 
   const MissionFrame frame_;
+  const Placement& placement_;
   const control::Limits& limits_;
   MissionFile& file_;
   Defaults defaults_;
@@ -336,9 +342,9 @@ class Reader {
 
 }  // namespace
 
-void read_mission_items(const ConfigNode& list, MissionFrame frame, const control::Limits& limits,
-                        MissionFile& file) {
-  Reader reader(frame, limits, file);
+void read_mission_items(const ConfigNode& list, MissionFrame frame, const Placement& placement,
+                        const control::Limits& limits, MissionFile& file) {
+  Reader reader(frame, placement, limits, file);
   for (const ConfigNode& node : list.items(1, control::kMaxMissionItems)) reader.read(node);
   if (file.mission.items.empty()) list.fail("has no item to fly, must have at least one besides set");
 }

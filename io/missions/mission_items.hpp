@@ -12,7 +12,7 @@ namespace swiftlet::ground {
 
 // Reads list into file.mission, file.lines and file.assumptions. limits are those of the control settings,
 // tightened by the mission. Throws runtime::ConfigError.
-void read_mission_items(const runtime::ConfigNode& list, MissionFrame frame, const control::Limits& limits,
-                        MissionFile& file);
+void read_mission_items(const runtime::ConfigNode& list, MissionFrame frame, const Placement& placement,
+                        const control::Limits& limits, MissionFile& file);
 
 }  // namespace swiftlet::ground

@@ -77,7 +77,7 @@ Declaration declaration_of(const std::string& header) {
   if (open != std::string::npos && header.back() == ']')
     out.unit = trimmed(header.substr(open + 1, header.size() - open - 2));
   out.name = trimmed(header.substr(0, open));
-  for (const char* axes : {"_ned", "_enu", "_frd"}) {
+  for (const char* axes : {"_ned", "_enu", "_nwu", "_frd"}) {
     if (!ends_with(out.name, axes)) continue;
     out.axes = axes;
     out.name.resize(out.name.size() - out.axes.size());
@@ -104,7 +104,7 @@ std::string all_headers() {
   return text;
 }
 
-const char* name_of(MissionFrame frame) { return frame == MissionFrame::kNed ? "ned" : "enu"; }
+constexpr std::array<MissionFrame, 3> kFrames = {MissionFrame::kNed, MissionFrame::kEnu, MissionFrame::kNwu};
 
 }  // namespace
 
@@ -123,10 +123,14 @@ MotionColumns::MotionColumns(const std::vector<std::string>& header, const std::
   for (const std::string& column : header) {
     read(column, file_name);
     const std::string axes = declaration_of(column).axes;
-    if (axes != "_ned" && axes != "_enu") continue;
-    const MissionFrame its = axes == "_ned" ? MissionFrame::kNed : MissionFrame::kEnu;
-    if (named && *named != its) refuse(file_name, "mixes _ned and _enu, must name one frame");
-    named = its;
+    const auto its = std::find_if(kFrames.begin(), kFrames.end(), [&](MissionFrame candidate) {
+      return axes == std::string("_") + frame_name(candidate);
+    });
+    if (its == kFrames.end()) continue;
+    if (named && *named != *its)
+      refuse(file_name,
+             std::string("mixes _") + frame_name(*named) + " and " + axes + ", must name one frame");
+    named = *its;
   }
   settle_frame(file_name, named, frame);
 }
@@ -158,13 +162,15 @@ void MotionColumns::read(const std::string& header, const std::string& file_name
 void MotionColumns::settle_frame(const std::string& file_name, std::optional<MissionFrame> named,
                                  std::optional<MissionFrame> option) {
   if (named && option && *named != *option) {
-    refuse(file_name,
-           std::string("names the frame ") + name_of(*named) + ", but --frame names " + name_of(*option));
+    refuse(file_name, std::string("names the frame ") + frame_name(*named) + ", but --frame names " +
+                          frame_name(*option));
   }
   const bool attitudes = has_any({Motion::kRoll, Motion::kPitch, Motion::kP, Motion::kQ, Motion::kR});
   if (attitudes) {
-    if (named.value_or(option.value_or(MissionFrame::kNed)) == MissionFrame::kEnu)
-      refuse(file_name, "has attitudes or body rates in ENU, must have them in NED and FRD");
+    const MissionFrame meant = named.value_or(option.value_or(MissionFrame::kNed));
+    if (meant != MissionFrame::kNed)
+      refuse(file_name, std::string("has attitudes or body rates in ") + frame_title(meant) +
+                            ", must have them in NED and FRD");
     return;
   }
   const auto framed = std::find_if(columns_.begin(), columns_.end(),
@@ -177,8 +183,9 @@ void MotionColumns::settle_frame(const std::string& file_name, std::optional<Mis
   if (declares_units_) {
     const std::string name = known(*framed).name;
     const std::string unit = std::string(" [") + known(*framed).units->front().name + "]";
-    refuse(file_name, "names no frame: write " + name + "_ned" + unit + " (north, east, down) or " + name +
-                          "_enu" + unit + " (east, north, up), or add --frame ned or --frame enu");
+    refuse(file_name, "names no frame: write " + name + "_ned" + unit + " (north, east, down), " + name +
+                          "_enu" + unit + " (east, north, up) or " + name + "_nwu" + unit +
+                          " (north, west, up), or add --frame ned, --frame enu or --frame nwu");
   }
   frame_ = MissionFrame::kEnu;
   assumed_ = true;
@@ -215,8 +222,7 @@ double MotionColumns::yaw_ned(const std::vector<double>& row) const {
 }
 
 double MotionColumns::yaw_rate_ned(const std::vector<double>& row) const {
-  const double rate = value(row, Motion::kYawRate);
-  return frame_ == MissionFrame::kEnu ? -rate : rate;
+  return ned_yaw_rate_from(frame_, value(row, Motion::kYawRate));
 }
 
 void require_columns(const MotionColumns& columns, const std::string& file_name, const std::string& what,

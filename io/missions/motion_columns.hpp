@@ -2,12 +2,12 @@
 // so:
 //
 //   t [s],x_ned [m],y_ned [m],z_ned [m]      name, frame and unit of each column, in any order
-//   t [s],x [m],y [m],z [m]                  with --frame ned or --frame enu; refused without
-//   t,x,y,z                                  the form of other projects: ENU, m, rad and s; --frame ned if not
+//   t [s],x [m],y [m],z [m]                  with --frame ned, enu or nwu; refused without
+//   t,x,y,z                                  the form of other projects: ENU, m, rad and s; --frame if not
 //
 // Names: t; x, y, z; vx, vy, vz; ax, ay, az; yaw, yaw_rate; roll, pitch; p, q, r; thrust. In NED x is north, y
 // east, z down, and yaw turns clockwise from north; in ENU x is east, y north, z up, and yaw turns
-// counter-clockwise from east. roll, pitch and yaw of an attitude are those of Eq. (3), p, q, r are body rates
+// counter-clockwise from east; in NWU x is north, y west, z up, and yaw turns counter-clockwise from north. roll, pitch and yaw of an attitude are those of Eq. (3), p, q, r are body rates
 // (FRD), thrust is specific, in m/s^2: they have no frame.
 #pragma once
 

@@ -39,17 +39,18 @@ TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& f
                    std::to_string(control::kMaxTrajectorySegments) + " fit");
   }
   std::vector<control::PolynomialSegment> segments;
-  const bool enu = options.frame != MissionFrame::kNed;
+  const MissionFrame frame = options.frame.value_or(MissionFrame::kEnu);
   for (std::size_t row = 0; row < table.row_count(); ++row) {
-    const control::PolynomialSegment segment = read(table, row);
-    segments.push_back(control::stretched(enu ? ned_segment(segment) : segment, options.time_scale));
+    segments.push_back(control::stretched(ned_segment(frame, read(table, row)), options.time_scale));
   }
   std::vector<std::string> assumptions = {std::string("taken as a polynomial trajectory in ") +
-                                          (enu ? "ENU" : "NED") +
+                                          frame_title(frame) +
                                           ": m, rad and s, from the origin of motion capture"};
-  const double raise_m =
-      raise_by(heights_of(segments), enu ? MissionFrame::kEnu : MissionFrame::kNed, file_name, assumptions);
-  for (control::PolynomialSegment& segment : segments) segment.z[0] -= raise_m;
+  const double raise_m = raise_by(heights_of(segments), frame, file_name, assumptions);
+  for (control::PolynomialSegment& segment : segments) {
+    segment.z[0] -= raise_m;
+    segment = options.placement.segment(segment);
+  }
   return checked({std::move(segments), std::move(assumptions)}, limits, options,
                  [&](std::size_t segment, const std::string& fault) { table.fail(segment, "", fault); });
 }

@@ -75,7 +75,8 @@ bool is_null(const ConfigNode& node) { return !node.is_map() && !node.is_list() 
 
 class PlanReader {
  public:
-  PlanReader(const ConfigNode& root, const control::Limits& limits) : root_(root), limits_(limits) {}
+  PlanReader(const ConfigNode& root, const control::Limits& limits, const Placement& placement)
+      : root_(root), limits_(limits), placement_(placement) {}
 
   MissionFile read(const std::string& file_name) {
     if (const ConfigNode type = root_.at("fileType"); type.text() != "Plan")
@@ -201,11 +202,14 @@ class PlanReader {
     if (items_.size() == control::kMaxMissionItems)
       root_.at("mission").at("items").fail(
           fmt::format("has more than {} items with those added", control::kMaxMissionItems));
-    items_.push_back(item);
+    MissionItem placed = item;
+    placed.position_ned = placement_.position(item.position_ned);
+    if (!item.yaw_free) placed.yaw_rad = std::remainder(placement_.yaw(item.yaw_rad), 2.0 * M_PI);
+    items_.push_back(placed);
     if (item.kind != MissionItemKind::kLand) at_ = item.position_ned;
   }
 
-  // Returns the position in NED from home, m. Take-offs and landings may omit the horizontal position.
+  // Returns the position in the plan: in NED from home, m. Take-offs and landings may omit the horizontal position.
   Eigen::Vector3d position(const ConfigNode& item, const std::vector<ConfigNode>& params,
                            bool place_optional) {
     const ConfigNode frame = item.at("frame");
@@ -244,7 +248,9 @@ class PlanReader {
     }
   }
 
-  void require_inside(const ConfigNode& item, const Eigen::Vector3d& position_ned) const {
+  // position: in the plan.
+  void require_inside(const ConfigNode& item, const Eigen::Vector3d& position) const {
+    const Eigen::Vector3d position_ned = placement_.position(position);
     const control::Outcome height = control::check_height("in NED", position_ned.z(), limits_);
     if (!height.accepted) item.fail(height.reason);
     constexpr const char* kAxes[] = {"north", "east", "down"};
@@ -286,9 +292,10 @@ class PlanReader {
 
   const ConfigNode& root_;
   const control::Limits& limits_;
+  const Placement& placement_;
   std::optional<Home> home_;
   std::vector<MissionItem> items_;
-  Eigen::Vector3d at_ = Eigen::Vector3d::Zero();  // end of the items so far
+  Eigen::Vector3d at_ = Eigen::Vector3d::Zero();  // end of the items so far, in the plan
   double speed_ = kDefaultSpeed;
   double fastest_wanted_ = 0.0;  // m/s, largest speed above the limit; 0: none
   double takeoff_aside_m_ = 0.0;
@@ -298,9 +305,9 @@ class PlanReader {
 }  // namespace
 
 MissionFile parse_qgroundcontrol_plan(const std::string& text, const std::string& file_name,
-                                      const control::Limits& limits) {
+                                      const control::Limits& limits, const FileOptions& options) {
   const ConfigNode root = read_json(text, file_name);
-  return PlanReader(root, limits).read(file_name);
+  return PlanReader(root, limits, options.placement).read(file_name);
 }
 
 }  // namespace swiftlet::ground

@@ -145,12 +145,12 @@ void scale_time(Samples& samples, double factor) {
 }
 
 // Refuses places that no vehicle reaches in time, by their row: steps in the file.
-void require_reachable(const runtime::CsvTable& table, const Samples& samples,
+void require_reachable(const runtime::CsvTable& table, const Samples& samples, double scale,
                        const control::Limits& limits) {
   for (std::size_t i = 1; i < samples.size(); ++i) {
     const double step_s = samples.times.time_s[i] - samples.times.time_s[i - 1];
-    const double step_m = (samples.places[i] - samples.places[i - 1]).head<3>().norm();
-    const double spare_m = (samples.tolerances[i] + samples.tolerances[i - 1]).head<3>().norm();
+    const double step_m = scale * (samples.places[i] - samples.places[i - 1]).head<3>().norm();
+    const double spare_m = scale * (samples.tolerances[i] + samples.tolerances[i - 1]).head<3>().norm();
     if (step_m - spare_m <= kStep * limits.max_speed * step_s) continue;
     table.fail(
         i, "",
@@ -333,12 +333,13 @@ TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file
         0, "",
         fmt::format("the path starts at {:.2f} m/s, must start at rest", samples.velocities.front().norm()));
   scale_time(samples, options.time_scale);
-  require_reachable(table, samples, limits);
+  require_reachable(table, samples, options.placement.scale, limits);
   allow_for_rounded_stamps(samples);
   const bool with_derivatives =
       (given.velocity || given.acceleration) && 1.0 / samples.times.step_s < kSlowSamples_hz;
   Fit path = fit(table, columns, samples, with_derivatives, !options.tolerance_m);
   say(table, columns, samples, path, with_derivatives, assumptions);
+  for (control::PolynomialSegment& segment : path.segments) segment = options.placement.segment(segment);
   const std::vector<control::PolynomialSegment> segments = path.segments;
   return checked({std::move(path.segments), std::move(assumptions)}, limits, options,
                  [&](std::size_t segment, const std::string& fault) {

@@ -76,6 +76,8 @@ TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& fil
   for (std::size_t row = 0; row < path.points.size(); ++row) {
     Eigen::Vector3d& position_ned = path.points[row].position_ned;
     position_ned.z() -= raise_m;
+    position_ned = options.placement.position(position_ned);
+    path.points[row].yaw_rad = options.placement.yaw(path.points[row].yaw_rad);
     const control::Outcome inside = control::check_position("in NED", position_ned, limits);
     if (!inside.accepted) table.fail(row, "x,y,z", inside.reason);
   }

@@ -23,10 +23,13 @@ control::Polynomial negative(control::Polynomial polynomial) {
 
 }  // namespace
 
-control::PolynomialSegment ned_segment(const control::PolynomialSegment& segment_enu) {
-  control::PolynomialSegment ned{segment_enu.duration_s, segment_enu.y, segment_enu.x,
-                                 negative(segment_enu.z), negative(segment_enu.yaw)};
-  ned.yaw[0] = ned_yaw_from(MissionFrame::kEnu, segment_enu.yaw[0]);
+control::PolynomialSegment ned_segment(MissionFrame frame, const control::PolynomialSegment& segment) {
+  if (frame == MissionFrame::kNed) return segment;
+  const bool enu = frame == MissionFrame::kEnu;
+  control::PolynomialSegment ned{segment.duration_s, enu ? segment.y : segment.x,
+                                 enu ? segment.x : negative(segment.y), negative(segment.z),
+                                 negative(segment.yaw)};
+  ned.yaw[0] = ned_yaw_from(frame, segment.yaw[0]);
   return ned;
 }
 
@@ -38,13 +41,15 @@ void Heights::add(double z_ned) {
 double raise_by(const Heights& heights, MissionFrame frame, const std::string& file_name,
                 std::vector<std::string>& assumptions) {
   if (heights.greatest_m < 0.0) {
-    const bool down = frame == MissionFrame::kNed;
+    const MissionFrame other = frame == MissionFrame::kNed ? MissionFrame::kEnu : MissionFrame::kNed;
+    const auto axis = [](MissionFrame of) { return of == MissionFrame::kNed ? "down" : "up"; };
     throw runtime::ConfigError(
         file_name, 0, "",
-        fmt::format("the whole path is below the ground, at heights of {:.2f} to {:.2f} m: z is read as {}; "
-                    "if it points {} in this file, the frame is {}: --frame {}",
-                    heights.least_m, heights.greatest_m, down ? "down (NED)" : "up (ENU)",
-                    down ? "up" : "down", down ? "ENU" : "NED", down ? "enu" : "ned"));
+        fmt::format(
+            "the whole path is below the ground, at heights of {:.2f} to {:.2f} m: z is read as {} ({}); "
+            "if it points {} in this file, the frame is {}: --frame {}",
+            heights.least_m, heights.greatest_m, axis(frame), frame_title(frame), axis(other),
+            frame_title(other), frame_name(other)));
   }
   const double rounded_m = std::round(heights.least_m * 100.0) / 100.0 + 0.0;  // no -0.00
   if (heights.least_m >= kLeastHeight_m) {

@@ -1,4 +1,4 @@
-// Common parts of the readers of other projects' formats: ENU to NED, and a complete flight around a path.
+// Common parts of the readers of other projects' formats: their frame to NED, and a complete flight around a path.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@
 
 namespace swiftlet::ground {
 
-control::PolynomialSegment ned_segment(const control::PolynomialSegment& segment_enu);
+control::PolynomialSegment ned_segment(MissionFrame frame, const control::PolynomialSegment& segment);
 
 constexpr double kHoverHeight_m = 1.0;  // lowest point of a path that was raised
 constexpr double kLeastHeight_m = 0.2;  // a path with a lower point is raised

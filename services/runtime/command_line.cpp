@@ -299,6 +299,14 @@ Option CommandLine::add_choice(const std::string& name, const std::vector<std::s
       description);
   return Option(*option).one_of(choices);
 }
+Option CommandLine::add_numbers(const std::string& name, int count,
+                                std::function<void(const std::vector<double>&)> take,
+                                const std::string& description) const {
+  CLI::Option* const option =
+      app_->add_option_function<std::vector<double>>(name, std::move(take), description);
+  option->expected(count)->delimiter(',');
+  return Option(*option).finite();
+}
 Option CommandLine::add_flag(const std::string& name, bool& value, const std::string& description) const {
   return Option(*app_->add_flag(name, value, description));
 }

@@ -74,6 +74,9 @@ class CommandLine {
     return add_choice(name, names, description,
                       [choices, &value](std::size_t chosen) { value = choices[chosen].second; });
   }
+  // So many finite numbers in one argument, between commas.
+  Option add_numbers(const std::string& name, int count, std::function<void(const std::vector<double>&)> take,
+                     const std::string& description) const;
   Option add_flag(const std::string& name, bool& value, const std::string& description) const;
   Option add_flag(const std::string& name, std::function<void()> is_set,
                   const std::string& description) const;

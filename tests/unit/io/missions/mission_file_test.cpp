@@ -214,7 +214,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"NoItems", "frame: ned\ntolerance_m: 0.1\nitems: []\n",
               "m.yaml:3: items: is a list of 0, must be a list of 1 to 2048"},
         Fault{"UnknownFrame", "frame: body\ntolerance_m: 0.1\nitems:\n" + kTakeoff,
-              "m.yaml:1: frame: is body, must be ned or enu"},
+              "m.yaml:1: frame: is body, must be ned, enu or nwu"},
         Fault{"NoTolerance", "frame: ned\nitems:\n" + kTakeoff,
               "m.yaml:1: tolerance_m: is missing, must be given"},
         Fault{"ZeroTolerance", "frame: ned\ntolerance_m: 0\nitems:\n" + kTakeoff,

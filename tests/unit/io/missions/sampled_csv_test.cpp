@@ -235,8 +235,8 @@ INSTANTIATE_TEST_SUITE_P(
               "s.csv:1: header: has no positions, must have x [m], y [m] and z [m]; `swiftlet stream` flies "
               "velocities, accelerations, attitudes and body rates"},
         Fault{"no_frame", "t [s],x [m],y [m],z [m]\n0,0,0,1\n1,0,0,1\n",
-              "s.csv:1: header: names no frame: write x_ned [m] (north, east, down) or x_enu [m] (east, "
-              "north, up), or add --frame ned or --frame enu"},
+              "s.csv:1: header: names no frame: write x_ned [m] (north, east, down), x_enu [m] (east, "
+              "north, up) or x_nwu [m] (north, west, up), or add --frame ned, --frame enu or --frame nwu"},
         Fault{"missing_field", "t,x,y,z\n0,0,0,1\n1,0,0\n", "s.csv:3: has 3 fields, must have 4: t,x,y,z"},
         Fault{"starts_in_motion", "t,x,y,z,vx,vy,vz\n0,0,0,1,0.5,0,0\n1,0.5,0,1,0.5,0,0\n2,1,0,1,0,0,0\n",
               "s.csv:2: the path starts at 0.50 m/s, must start at rest"},

@@ -92,9 +92,8 @@ TEST(SetpointRows, TakeTheFrameFromTheHeaderOrTheOption) {
 
 TEST(SetpointRows, RefuseToGuessAFrame) {
   const std::string sentence =
-      "s.csv:1: header: names no frame: write x_ned [m] (north, east, down) or x_enu [m] (east, north, up), "
-      "or "
-      "add --frame ned or --frame enu";
+      "s.csv:1: header: names no frame: write x_ned [m] (north, east, down), x_enu [m] (east, north, up) "
+      "or x_nwu [m] (north, west, up), or add --frame ned, --frame enu or --frame nwu";
   EXPECT_EQ(refusal("t [s],x [m],y [m],z [m]"), sentence);
   EXPECT_EQ(refusal("t [s],x_ned [m],y_enu [m],z_ned [m]"),
             "s.csv:1: header: mixes _ned and _enu, must name one frame");
