@@ -2,17 +2,15 @@
 
 #include <chrono>
 #include <map>
-#include <set>
 
 #include <fmt/format.h>
 
+#include "swiftlet/io/logs/flight_log_files.hpp"
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/runtime/clock.hpp"
 
 namespace swiftlet::ground {
 namespace {
-
-constexpr const char* kFile = "flight.mcap";
 
 RecorderSettings settings_of(const Fleet& fleet) {
   RecorderSettings settings;
@@ -38,15 +36,20 @@ mcap::Metadata metadata_of(const Fleet& fleet) {
   return metadata;
 }
 
-std::set<std::filesystem::path> files_of(const Fleet& fleet) {
-  std::set<std::filesystem::path> files;
-  for (const LaunchConfiguration& plan : fleet.plans) {
-    if (plan.launch_mode == LaunchMode::kAttached) {
-      files.insert(plan.mission_file);
-    } else {
-      for (const std::filesystem::path& file : plan.input_files()) files.insert(file);
-    }
+// The files of a flight by the names that they have in its record: vehicle.yaml and so on. Missions that differ are
+// called kl2/mission.yaml.
+std::map<std::string, std::filesystem::path> files_of(const Fleet& fleet) {
+  const LaunchConfiguration& first = fleet.plans.front();
+  std::map<std::string, std::filesystem::path> files;
+  for (std::size_t i = 0; i < fleet.plans.size(); ++i) {
+    const std::filesystem::path& mission = fleet.plans[i].mission_file;
+    const std::string name = "mission" + mission.extension().string();
+    files.emplace(mission == first.mission_file ? name : fleet.vehicles[i] + "/" + name, mission);
   }
+  if (first.launch_mode == LaunchMode::kAttached) return files;  // the running processes have their own
+  files.insert({{"vehicle.yaml", first.vehicle_file},
+                {"control.yaml", first.control_file},
+                {"simulation.yaml", first.simulation_file}});
   return files;
 }
 
@@ -64,13 +67,14 @@ comms::NodeSettings listener(comms::NodeSettings network) {
 }  // namespace
 
 MessageRecord::MessageRecord(const comms::NodeSettings& network, const Fleet& fleet)
-    : participant_(listener(network)), recorder_(participant_, fleet.folder / kFile, settings_of(fleet)) {
+    : participant_(listener(network)),
+      recorder_(participant_, fleet.folder / kMessagesFile, settings_of(fleet)) {
   recorder_.add(metadata_of(fleet));
-  for (const std::filesystem::path& file : files_of(fleet)) {
+  for (const auto& [name, file] : files_of(fleet)) {
     const std::int64_t now = now_ns();
     const bool yaml = file.extension() == ".yaml";
-    recorder_.add(mcap::Attachment{now, now, file.filename().string(),
-                                   yaml ? "application/yaml" : "text/plain", runtime::read_text_file(file)});
+    recorder_.add(mcap::Attachment{now, now, name, yaml ? "application/yaml" : "text/plain",
+                                   runtime::read_text_file(file)});
   }
   for (const std::string& vehicle : fleet.vehicles) recorder_.add_vehicle(vehicle);
 }
@@ -80,8 +84,8 @@ std::string MessageRecord::finish() {
   if (const auto fault = recorder_.fault()) return *fault;
   const RecorderTotals totals = recorder_.totals();
   if (totals.dropped + totals.lost == 0) return {};
-  return fmt::format("{}: {} messages dropped because the disk is too slow, {} lost on their way", kFile,
-                     totals.dropped, totals.lost);
+  return fmt::format("{}: {} messages dropped because the disk is too slow, {} lost on their way",
+                     kMessagesFile, totals.dropped, totals.lost);
 }
 
 }  // namespace swiftlet::ground

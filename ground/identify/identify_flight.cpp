@@ -69,7 +69,7 @@ int identify_flight(IdentifyFlightOptions options) {
   };
   std::vector<identification::FlightLog> logs;
   for (const std::string& file : options.logs) {
-    ReadFlightLog read = read_flight_log(file, base, options.axes);
+    ReadFlightLog read = read_flight_log(file, base, options.axes, options.vehicle);
     for (const std::string& assumption : read.assumptions)
       report.assumptions.push_back(options.logs.size() > 1 ? file + ": " + assumption : assumption);
     logs.push_back(std::move(read.log));

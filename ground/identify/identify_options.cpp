@@ -11,10 +11,13 @@ Command add_flight_command(runtime::CommandLine identify, const IdentifyActions&
   const auto options = std::make_shared<IdentifyFlightOptions>();
   const runtime::CommandLine app =
       identify.add_subcommand("flight", "Identify a vehicle from logs of its flights");
-  app.add_option("logs", options->logs,
-                 "flight records made with --sensors, or CSV files, plain or gzip; all of one vehicle")
+  app.add_option(
+         "logs", options->logs,
+         "flight records made with --sensors or --mcap, MCAP files of `swiftlet record`, or CSV files, "
+         "plain or gzip; all of one vehicle")
       .required()
       .type_name("LOG...");
+  app.add_option("--vehicle-name", options->vehicle, "which vehicle of an MCAP file that has several");
   app.add_option("--base", options->base,
                  "base vehicle for parameters that are not identified: a vehicle file, or the name of one in "
                  "the configuration; default: the record's vehicle, else kaylion")

@@ -27,6 +27,7 @@ struct IdentifyBenchOptions {
 // Options of `swiftlet identify flight`.
 struct IdentifyFlightOptions {
   std::vector<std::string> logs;
+  std::string vehicle;  // of recorded messages of several vehicles
   std::string base;
   std::string out;
   std::string report;

@@ -15,11 +15,21 @@ constexpr std::array kKinds = {"control", "mission", "simulation", "vehicle"};
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> recorded_settings(const fs::path& folder) {
-  std::vector<std::pair<std::string, std::string>> all;
+  std::map<std::string, std::string> texts;
   for (const std::string kind : kKinds) {
     const fs::path file = folder / (kind + ".yaml");
-    if (!fs::exists(file)) continue;
-    for (auto& [key, value] : runtime::flatten_yaml(runtime::read_text_file(file.string()), file.string()))
+    if (fs::exists(file)) texts[kind + ".yaml"] = runtime::read_text_file(file.string());
+  }
+  return recorded_settings(folder.string(), texts);
+}
+
+std::vector<std::pair<std::string, std::string>> recorded_settings(
+    const std::string& source, const std::map<std::string, std::string>& texts) {
+  std::vector<std::pair<std::string, std::string>> all;
+  for (const std::string kind : kKinds) {
+    const auto text = texts.find(kind + ".yaml");
+    if (text == texts.end()) continue;
+    for (auto& [key, value] : runtime::flatten_yaml(text->second, source + "/" + text->first))
       all.emplace_back(kind + "." + key, std::move(value));
   }
   return all;

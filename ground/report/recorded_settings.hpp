@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,5 +13,9 @@ namespace swiftlet::ground {
 // mission.yaml, simulation.yaml and vehicle.yaml. Skips a file that does not exist. Throws
 // runtime::ConfigError for a file that is not YAML.
 std::vector<std::pair<std::string, std::string>> recorded_settings(const std::filesystem::path& folder);
+
+// The same, of the texts of such files by their names. source: of the texts, for errors
+std::vector<std::pair<std::string, std::string>> recorded_settings(
+    const std::string& source, const std::map<std::string, std::string>& texts);
 
 }  // namespace swiftlet::ground

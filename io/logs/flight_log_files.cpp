@@ -12,6 +12,7 @@
 #include "swiftlet/io/csv_writer.hpp"
 #include "swiftlet/io/flight_csv.hpp"
 #include "swiftlet/io/logs/compressed_file.hpp"
+#include "swiftlet/io/logs/recorded_flight.hpp"
 #include "swiftlet/io/measurements.hpp"
 #include "swiftlet/plant/model/esc.hpp"
 
@@ -267,6 +268,27 @@ void refuse_telemetry(const std::string& text, const std::string& file) {
   }
 }
 
+FlightLog recorded_log(const fs::path& path, BodyAxes axes, const std::string& vehicle) {
+  const mcap::Reader file(path.string());
+  if (axes == BodyAxes::kFlu)
+    throw ConfigError(path.string(), 0, "", "has _frd axes, but --axes names others");
+  const std::string name = recorded_vehicle(file, vehicle);
+  FlightLog log = flight_log_of(*read_flight_record(file, name)->sensors);
+  if (log.size() == 0)
+    throw ConfigError(path.string(), 0, "/" + name,
+                      "has no IMU samples with actuator commands, which an identification needs");
+  log.name = path.string();
+  return log;
+}
+
+// The log in a flight record.
+fs::path log_in(const fs::path& folder) {
+  for (const char* name : {kSensorsFile, kMessagesFile}) {
+    if (fs::exists(folder / name)) return folder / name;
+  }
+  throw ConfigError(folder.string(), 0, "", "has no sensor log; fly with --sensors or --mcap");
+}
+
 }  // namespace
 
 FlightLog flight_log_of(const SensorRecord& record) {
@@ -338,10 +360,10 @@ void write_flight_log(const fs::path& file, const FlightLog& log) {
   csv.finish();
 }
 
-ReadFlightLog read_flight_log(const fs::path& path, const plant::Vehicle& base, BodyAxes axes) {
-  const fs::path file = fs::is_directory(path) ? path / kSensorsFile : path;
-  if (fs::is_directory(path) && !fs::exists(file))
-    throw ConfigError(path.string(), 0, "", "has no sensor log; fly with --sensors");
+ReadFlightLog read_flight_log(const fs::path& path, const plant::Vehicle& base, BodyAxes axes,
+                              const std::string& vehicle) {
+  const fs::path file = fs::is_directory(path) ? log_in(path) : path;
+  if (is_mcap(file)) return {recorded_log(file, axes, vehicle), {}};
   const std::string text = read_unpacked(file.string());
   refuse_telemetry(text, file.string());
   const Measurements table = runtime::parse_measurements(text, file.string(), flight_quantities());

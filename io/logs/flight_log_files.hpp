@@ -1,4 +1,4 @@
-// Flight log files: the sensors.csv of a flight record, and CSV logs of other tools.
+// Flight log files: the sensors.csv of a flight record, MCAP files of recorded messages, and CSV logs of other tools.
 #pragma once
 
 #include <filesystem>
@@ -12,6 +12,7 @@
 namespace swiftlet::ground {
 
 inline constexpr const char* kSensorsFile = "sensors.csv";
+inline constexpr const char* kMessagesFile = "flight.mcap";
 
 // Converts a record to one row per IMU sample. The rows start with the first IMU sample at which every
 // recorded stream has a sample. Supply voltages are interpolated linearly, commands and rotor speeds are
@@ -37,7 +38,11 @@ struct ReadFlightLog {
 // Reads a CSV file with columns as in io/measurements.hpp, plain or compressed by gzip. Required: time,
 // specific force and body rates along x, y and z, and per motor a command or a pulse width. The ESC of `base`
 // converts pulse widths to throttles. Optional: supply voltage, rotor speeds, running, and pose_time with
-// position and orientation. If the path is a folder, reads its sensors.csv. Throws runtime::ConfigError.
-ReadFlightLog read_flight_log(const std::filesystem::path& file, const plant::Vehicle& base, BodyAxes axes);
+// position and orientation.
+// Or reads an MCAP file of recorded messages, whose axes are forward, right, down; vehicle: of those in the file, may be
+// empty if it has only one. If the path is a folder, reads its sensors.csv, else its flight.mcap. Throws
+// runtime::ConfigError.
+ReadFlightLog read_flight_log(const std::filesystem::path& file, const plant::Vehicle& base, BodyAxes axes,
+                              const std::string& vehicle = {});
 
 }  // namespace swiftlet::ground

@@ -14,8 +14,12 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/ground/report/recorded_messages.hpp"
+#include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/logs/recorded_flight.hpp"
+#include "swiftlet/io/mcap/reader.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
@@ -38,6 +42,7 @@ constexpr double kJump = 1e-4;   // m, step between segments with rounded coeffi
 struct Options {
   std::string figure_of_eight = SWIFTLET_SOURCE_DIR "/tests/data/crazyswarm_figure8.csv";
   std::uint64_t seed = 1;
+  std::vector<std::string> logs;
   bool json = false;
 };
 
@@ -335,7 +340,37 @@ void run(const Options& options) {
       "sagging.\n");
 }
 
+// The errors of recorded flights, from the messages in their files.
+void score_logs(const Options& options) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const std::string& log : options.logs) {
+    const mcap::Reader file(log);
+    for (const std::string& vehicle : ground::recorded_vehicles(file)) {
+      const ground::FlownMission flown = ground::flown_mission(file, vehicle);
+      if (flown.errors.matched == 0)
+        throw runtime::ConfigError(log, 0, "/" + vehicle, "has no ground truth and reference of a mission");
+      rows.push_back({{"name", log + " " + vehicle},
+                      {"rms_m", flown.errors.rms_3d_m},
+                      {"peak_m", flown.errors.peak_3d_m},
+                      {"samples", flown.errors.matched}});
+    }
+  }
+  if (options.json) {
+    std::printf("%s\n", rows.dump().c_str());
+    return;
+  }
+  std::printf("%-42s%8s%8s%10s\n", "3-D error against truth, mm", "RMS", "peak", "samples");
+  for (const auto& row : rows) {
+    std::printf("%-42s%8.2f%8.2f%10zu\n", row["name"].get<std::string>().c_str(),
+                row["rms_m"].get<double>() * 1e3, row["peak_m"].get<double>() * 1e3,
+                row["samples"].get<std::size_t>());
+  }
+}
+
 void add_options(runtime::CommandLine app, Options& options) {
+  app.add_option("log", options.logs,
+                 "MCAP files of recorded flights: print their errors in place of those of the paths")
+      .type_name("LOG...");
   app.add_option("--figure-of-eight", options.figure_of_eight, "Crazyswarm trajectory file").show_default();
   app.add_option("--seed", options.seed, "seed of the sensor errors").show_default();
   app.add_flag("--json", options.json, "print JSON instead of the table");
@@ -349,5 +384,6 @@ int main(int argc, char** argv) {
   Options options;
   return runtime::run_process(
       {"tracking_bench", "Tracking errors of five paths, beside those of other projects.", "--json"}, argc,
-      argv, [&](runtime::CommandLine app) { add_options(app, options); }, [&] { run(options); });
+      argv, [&](runtime::CommandLine app) { add_options(app, options); },
+      [&] { options.logs.empty() ? run(options) : score_logs(options); });
 }

@@ -109,7 +109,7 @@ TEST_F(IdentifyFlight, RefusesInvalidLogs) {
   EXPECT_NE(missing.errors.find("nowhere.csv: cannot be read"), std::string::npos) << missing.errors;
   const ProgramResult no_log = run({"identify", "flight", folder_.path()});
   EXPECT_EQ(no_log.exit_code, 2);
-  EXPECT_NE(no_log.errors.find(": has no sensor log; fly with --sensors"), std::string::npos)
+  EXPECT_NE(no_log.errors.find(": has no sensor log; fly with --sensors or --mcap"), std::string::npos)
       << no_log.errors;
   const ProgramResult unit = run({"identify", "flight", folder_.write("unit.csv", "t,acc_x [g]\n0,0\n")});
   EXPECT_EQ(unit.exit_code, 2);
