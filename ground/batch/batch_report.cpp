@@ -102,9 +102,10 @@ std::string row_of(const char* name, const char* unit, const Spread& spread, dou
 std::string headline_of(const BatchReport& report) {
   const Batch& batch = report.batch;
   const std::uint64_t first = report.first_seed;
+  const std::string shard = report.shard.empty() ? "" : ", shard " + report.shard;
   std::string text = report.mission + ", " + report.vehicle + " with " + report.control + ", dispersion " +
                      report.dispersion +
-                     fmt::format(": {}, seeds {} to {}\n", counted(batch.requested, "run").c_str(),
+                     fmt::format("{}: {}, seeds {} to {}\n", shard, counted(batch.requested, "run").c_str(),
                                  static_cast<unsigned long long>(first),
                                  static_cast<unsigned long long>(first + batch.requested - 1));
   text += fmt::format("  {} completed, {} failed", batch.runs.size() - batch.failed(), batch.failed());
@@ -161,7 +162,12 @@ BatchReport report_of(const LaunchConfiguration& plan, const FlyOptions& options
   report.batch = std::move(batch);
   for (const ParameterDistribution& distribution : plan.dispersion.distributions)
     report.parameters.push_back(distribution.what().name);
+  report.repeat = repeat_of(options);
+  summarize(report);
+  return report;
+}
 
+void summarize(BatchReport& report) {
   report.rms_3d_m = spread(column(report.batch, [](const BatchRun& run) { return run.rms_3d_m; }));
   report.peak_3d_m = spread(column(report.batch, [](const BatchRun& run) { return run.peak_3d_m; }));
   for (std::size_t i = 0; i < kMarginNames.size(); ++i) {
@@ -169,8 +175,6 @@ BatchReport report_of(const LaunchConfiguration& plan, const FlyOptions& options
         spread(column(report.batch, [i](const BatchRun& run) { return as_array(run.margins_deg)[i]; }));
   }
   report.effects = effects_of(report);
-  report.repeat = repeat_of(options);
-  return report;
 }
 
 Json to_json(const BatchReport& report) {
@@ -182,6 +186,7 @@ Json to_json(const BatchReport& report) {
   json["vehicle"] = report.vehicle;
   json["control"] = report.control;
   json["dispersion"] = report.dispersion;
+  if (!report.shard.empty()) json["shard"] = report.shard;
   json["seed"] = report.first_seed;
   json["runs"] = batch.requested;
   json["runs_done"] = batch.runs.size();

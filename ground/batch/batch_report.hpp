@@ -29,6 +29,7 @@ struct ParameterEffect {
 
 struct BatchReport {
   std::string mission, vehicle, control, dispersion;  // names
+  std::string shard;  // "2/4" if these are the runs of a part of a batch; otherwise empty
   std::string folder;
   double tolerance_m = 0.0;
   std::uint64_t first_seed = 0;
@@ -44,6 +45,9 @@ struct BatchReport {
   bool completed() const { return !interrupted() && batch.failed() == 0; }
   std::string repeat_command(std::uint64_t seed) const { return repeat + std::to_string(seed); }
 };
+
+// Computes the spreads and effects from the runs.
+void summarize(BatchReport& report);
 
 // options: those from which `plan` was made.
 BatchReport report_of(const LaunchConfiguration& plan, const FlyOptions& options, Batch batch);

@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
       ground::add_gains_command(root),
       ground::add_tune_command(root),
       ground::add_set_command(root),
-      ground::add_sim_command(root),
+      ground::add_sim_command(root, runtime::version_text()),
       ground::add_identify_command(root, argv),
       ground::add_config_command(root),
       ground::add_keys_command(root),

@@ -115,9 +115,8 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
     const std::string file = plan.vehicle_file.string();
     plan.dispersion = dispersion_of(runtime::load_vehicle_uncertainty(file), plan.vehicle, file);
   } else if (!options.dispersion.empty()) {
-    plan.dispersion =
-        load_dispersion_file(runtime::configuration_file(runtime::kinds::kDispersion, options.dispersion),
-                             {plan.vehicle, plan.simulation});
+    plan.dispersion_file = runtime::configuration_file(runtime::kinds::kDispersion, options.dispersion);
+    plan.dispersion = load_dispersion_file(plan.dispersion_file, {plan.vehicle, plan.simulation});
   }
   plan.seed = options.seed;
 
@@ -164,7 +163,9 @@ std::uintmax_t LaunchConfiguration::record_bytes() const {
 }
 
 std::vector<fs::path> LaunchConfiguration::input_files() const {
-  return {mission_file, vehicle_file, control_file, simulation_file};
+  std::vector<fs::path> files = {mission_file, vehicle_file, control_file, simulation_file};
+  if (!dispersion_file.empty()) files.push_back(dispersion_file);
+  return files;
 }
 
 ExistingRecord existing_record(const FlyOptions& options) {

@@ -71,6 +71,7 @@ struct LaunchConfiguration {
   MissionFile mission;
   double planned_duration_s = 0.0;  // by the dry run
   std::filesystem::path vehicle_file, control_file, simulation_file, mission_file;
+  std::filesystem::path dispersion_file;  // empty without one
   plant::Vehicle vehicle;
   control::ControlSettings control;
   plant::SimulationSettings simulation;

@@ -1,5 +1,5 @@
 // Figures of the whole system beside their limits, measured in the same run: latency, jitter, lockstep, step
-// times, load, and the number of vehicles on this machine.
+// times, load, the number of vehicles on this machine, and the throughput of batches.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -460,6 +460,27 @@ void simulated_time(Table& table) {
     table.add({name, cpu_ns(entry), "ns", "the target", 2000.0, ""});
 }
 
+// Runs of the square with sampled vehicles per second, on one core and on 2, 4 ... of them.
+void batches(Table& table, const Options& options) {
+  table.section("(j) a batch of squares with sampled vehicles, in one process");
+  const tests::TemporaryFolder folder;
+  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+  double alone = 0.0;
+  for (unsigned jobs = 1;; jobs = std::min(2 * jobs, cores)) {
+    constexpr double kRunsPerSecond = 40.0;  // roughly, of one core
+    const auto runs = static_cast<std::size_t>(kRunsPerSecond * options.seconds * jobs);
+    const std::string out = (folder.path() / std::to_string(jobs)).string();
+    const json flown = json::parse(
+        output_of(program("swiftlet").string() + " sim batch square --dispersion kaylion --json --runs " +
+                  std::to_string(runs) + " --jobs " + std::to_string(jobs) + " --out " + out));
+    const double rate = static_cast<double>(runs) / flown.at("wall_s").get<double>();
+    if (jobs == 1) alone = rate;
+    table.add({std::to_string(jobs) + (jobs == 1 ? " core" : " cores"), rate, "runs/s",
+               "cores times one core", alone * jobs, ""});
+    if (jobs >= cores) return;
+  }
+}
+
 void missions(Table& table) {
   constexpr std::size_t kWaypoints = 1000;
   table.section("(h) a mission of 1,000 waypoints, to a vehicle that hovers");
@@ -531,6 +552,7 @@ void run(const Options& options) {
   if (wanted("planning")) planning(table);
   if (wanted("missions")) missions(table);
   if (wanted("fleet")) fleets(table, options);
+  if (wanted("batch")) batches(table, options);
   table.end();
 }
 
@@ -538,7 +560,7 @@ void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--seconds", options.seconds, "duration of each measurement in real time, s")
       .range(1.0, 3600.0);
   app.add_option("--only", options.only, "only these sections; may be repeated")
-      .one_of({"latency", "jitter", "simulation", "planning", "missions", "fleet"});
+      .one_of({"latency", "jitter", "simulation", "planning", "missions", "fleet", "batch"});
   app.add_option("--vehicles", options.vehicles,
                  "numbers of vehicles of the section fleet; may be repeated; more than the cores can serve "
                  "stop the computer for "

@@ -83,6 +83,57 @@ TEST_F(SimBatch, RepeatsAFailedRunExactly) {
   EXPECT_NE(table.find(figures), std::string::npos) << figures << " is not in\n" << table;
 }
 
+std::string content(const fs::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// Some of the runs fail, and some parameters are sampled again, so that all that is merged is in the result.
+TEST_F(SimBatch, MergedShardsAreTheBatchByteForByte) {
+  const std::vector<std::string> seven = {"--runs", "7", "--seed", "11", "--json"};
+  const ProgramResult whole = batch(kHighMass, seven);
+  ASSERT_EQ(whole.exit_code, 1) << whole.errors;
+  std::vector<std::string> merge = {"sim", "merge", "--json", "--out", (folder_.path() / "merged").string()};
+  for (const char* shard : {"3", "1", "2"}) {
+    const std::string part = (folder_.path() / shard).string();
+    std::vector<std::string> more = seven;
+    more.insert(more.end(), {"--shard", std::string(shard) + "/3", "--out", part});
+    const ProgramResult flown = run_program("swiftlet", words("batch", kHighMass, more), folder_.path());
+    EXPECT_EQ(flown.exit_code, 0) << "a failed run is no failure of a shard: " << flown.errors;
+    EXPECT_EQ(json::parse(flown.output).at("shard"), std::string(shard) + "/3");
+    EXPECT_FALSE(fs::exists(fs::path(part) / "batch.csv"));
+    merge.push_back(part);
+  }
+  const ProgramResult merged = run_program("swiftlet", merge, folder_.path());
+  EXPECT_EQ(merged.exit_code, 1) << merged.errors;
+  EXPECT_EQ(content(folder_.path() / "merged" / "batch.csv"), content(out() / "batch.csv"));
+  EXPECT_EQ(content(folder_.path() / "merged" / "batch.png"), content(out() / "batch.png"));
+  const auto without_time = [](const std::string& text) {
+    json report = json::parse(text);
+    for (const char* of_this_run : {"wall_s", "out_dir"}) EXPECT_EQ(report.erase(of_this_run), 1U);
+    return report.dump();
+  };
+  EXPECT_EQ(without_time(merged.output), without_time(whole.output));
+
+  merge.pop_back();
+  merge[4] = (folder_.path() / "incomplete").string();
+  const ProgramResult incomplete = run_program("swiftlet", merge, folder_.path());
+  EXPECT_EQ(incomplete.exit_code, 2);
+  EXPECT_NE(incomplete.errors.find("shard 2/3 is missing: 2 of 3 are given"), std::string::npos)
+      << incomplete.errors;
+  EXPECT_FALSE(fs::exists(merge[4]));
+}
+
+TEST_F(SimBatch, ACancelledShardLeavesNothingBehind) {
+  Program program("swiftlet",
+                  words("batch", kMass, {"--runs", "40000", "--shard", "1/2", "--out", out().string()}),
+                  folder_.path());
+  ASSERT_TRUE(eventually([&] { return program.errors().find("/20000 runs") != std::string::npos; }, kStuck));
+  program.signal(SIGTERM);
+  EXPECT_EQ(program.wait(kStuck), 1) << program.errors();
+  EXPECT_FALSE(fs::exists(out())) << "a scheduler starts the shard again with the same --out";
+}
+
 TEST_F(SimBatch, ReportsCompletedRunsWhenCancelled) {
   Program program("swiftlet", words("batch", kMass, {"--runs", "20000", "--json", "--out", out().string()}),
                   folder_.path());
@@ -109,6 +160,11 @@ TEST_F(SimBatch, RefusesBadInputBeforeItCreatesAFolder) {
   expect_refusal(kMass, {"--jobs", "0"}, "--jobs");
   expect_refusal(kMass, {"--seed", "-1"}, "--seed");
   expect_refusal(kMass, {"--seed", "18446744073709551615", "--runs", "2"}, "--seed");
+  expect_refusal(kMass, {"--shard", "2"}, "shard '2': must be I/N");
+  expect_refusal(kMass, {"--shard", "0/4"}, "shard '0/4': the shard must be from 1 to 4");
+  expect_refusal(kMass, {"--shard", "5/4"}, "shard '5/4': the shard must be from 1 to 4");
+  expect_refusal(kMass, {"--shard", "1/0"}, "shard '1/0': the number of shards must be from 1 to 100000");
+  expect_refusal(kMass, {"--runs", "3", "--shard", "1/4"}, "3 runs cannot be shared by 4 shards");
   expect_refusal(kMass, {"--vehicle", "nobody"}, "No vehicle 'nobody'. Available: crazyflie2, kaylion");
   const ProgramResult without_dispersion =
       run_program("swiftlet", {"sim", "batch", "square"}, folder_.path());

@@ -1,23 +1,23 @@
 #include <algorithm>
-#include <cstdio>
-#include <exception>
-#include <filesystem>
+#include <cstdint>
 #include <limits>
+#include <map>
 #include <memory>
 #include <string>
 #include <thread>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/batch/batch.hpp"
-#include "swiftlet/ground/batch/batch_plot.hpp"
 #include "swiftlet/ground/batch/batch_report.hpp"
+#include "swiftlet/ground/batch/shard.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
+#include "swiftlet/ground/cli/simulation/batch_output.hpp"
 #include "swiftlet/ground/flight/flight_outcome.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/terminal/progress_line.hpp"
+#include "swiftlet/io/format.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -27,14 +27,11 @@ constexpr std::size_t kMostJobs = 1024;
 constexpr std::size_t kBarLength = 30;
 constexpr std::size_t kStages = 5;  // progress lines in all if standard error is no terminal
 
-// Sizes of the files of a batch, somewhat above those of real ones.
-constexpr std::uintmax_t kPictureBytes = 1'000'000;
-constexpr std::uintmax_t kRunBytes = 1'500;  // a row of batch.csv and its part of batch.gp
-
 struct BatchOptions {
   FlyOptions flight;
   std::size_t runs = 100;
   std::size_t jobs = std::max(1U, std::thread::hardware_concurrency());
+  std::string shard;  // "I/N"; empty: the whole batch
 };
 
 std::string bar(const BatchProgress& progress) {
@@ -49,30 +46,36 @@ std::string bar(const BatchProgress& progress) {
   return text;
 }
 
-// Returns a sentence if a file cannot be written whole.
-std::string write_files(const std::filesystem::path& folder, const BatchReport& report, Progress& progress) {
-  std::string fault;
-  try {
-    write_batch_csv(folder / "batch.csv", report);
-  } catch (const std::exception& error) {
-    fault = error.what();
-  }
-  try {
-    const std::string no_picture = draw_batch(folder, report);
-    if (!no_picture.empty()) progress.say(no_picture);
-  } catch (const std::exception& error) {
-    if (fault.empty()) fault = error.what();
-  }
-  return fault;
+// The shard that the options ask for; all runs if they do not.
+Shard shard_of(const BatchOptions& options) {
+  if (options.shard.empty()) return {};
+  const Shard shard = parse_shard(options.shard);
+  if (shard.count > options.runs)
+    throw InputError(fmt::format("shard '{}': {} cannot be shared by {} shards", options.shard,
+                                 counted(options.runs, "run"), shard.count));
+  return shard;
+}
+
+// Writes the result of a shard for `swiftlet sim merge`. One that was cancelled leaves no file.
+int finish_shard(const ShardResult& result, bool json, ProgressLine& progress) {
+  const BatchReport& report = result.report;
+  if (!report.interrupted()) write_shard(report.folder, result);
+  print_batch(report, json, progress);
+  return report.interrupted() ? kFailed : kDone;
 }
 
 int sim_batch(const BatchOptions& options) {
+  const Shard shard = shard_of(options);
   LaunchConfiguration plan = plan_flight(options.flight);
-  if (plan.seed > std::numeric_limits<std::uint64_t>::max() - options.runs)
-    throw InputError("--seed " + std::to_string(plan.seed) + ": too large for " +
+  const std::uint64_t first_seed = plan.seed;
+  if (first_seed > std::numeric_limits<std::uint64_t>::max() - options.runs)
+    throw InputError("--seed " + std::to_string(first_seed) + ": too large for " +
                      std::to_string(options.runs) + " runs");
-  const BatchRunner runner(plan, options.runs);
-  require_space(plan.folder, kPictureBytes + kRunBytes * options.runs, "--out");
+  plan.seed += shard.first_run(options.runs);
+  const std::size_t runs = shard.run_count(options.runs);
+  const std::map<std::string, std::string> inputs = read_inputs(plan);
+  const BatchRunner runner(plan, runs);
+  require_space(plan.folder, batch_bytes(runs), "--out");
   const RecordFolder folder(plan.folder, existing_record(options.flight), "--out", plan.input_files());
   plan.folder = folder.path();
   ProgressLine progress;
@@ -80,31 +83,26 @@ int sim_batch(const BatchOptions& options) {
     progress.say(plan.mission.name + ": " + assumption);
   const Interrupts interrupts;
 
-  const BatchReport report =
+  BatchReport report =
       report_of(plan, options.flight,
                 runner.fly(
                     options.jobs, [&] { return interrupts.count() > 0; },
                     [&](const BatchProgress& now) {
                       progress.update(static_cast<int>(kStages * now.done / now.requested), bar(now));
                     }));
-  const std::string record_fault = write_files(plan.folder, report, progress);
-
-  progress.close();
-  std::printf("%s", options.flight.json ? (to_json(report).dump() + "\n").c_str() : to_text(report).c_str());
-  if (report.interrupted())
-    progress.say(fmt::format("swiftlet: batch cancelled after {} of {} runs", report.batch.runs.size(),
-                             report.batch.requested));
-  if (!record_fault.empty())
-    progress.say("swiftlet: the record " + report.folder + " is incomplete: " + record_fault);
-  return report.completed() && record_fault.empty() ? kDone : kFailed;
+  if (options.shard.empty()) return finish_batch(report, options.flight.json, progress);
+  report.shard = shard.text();
+  return finish_shard({shard, options.runs, first_seed, options.flight.program, inputs, report},
+                      options.flight.json, progress);
 }
 
 }  // namespace
 
-Command add_sim_batch_command(runtime::CommandLine sim) {
+Command add_sim_batch_command(runtime::CommandLine sim, const std::string& version) {
   const auto options = std::make_shared<BatchOptions>();
   FlyOptions& flight = options->flight;
   flight.launch_mode = LaunchMode::kInProcess;
+  flight.program = version;
   const runtime::CommandLine app = sim.add_subcommand(
       "batch", "Fly a mission many times, with sampled vehicles and simulations (Monte Carlo)");
   add_mission_options(app, flight);
@@ -114,8 +112,14 @@ Command add_sim_batch_command(runtime::CommandLine sim) {
       .show_default();
   app.add_option("--jobs", options->jobs, "number of parallel runs; default: one per core")
       .range(std::size_t{1}, kMostJobs);
-  const runtime::Option out = app.add_option(
-      "--out", flight.record, "new folder for batch.csv and batch.png; default: flights/<date>-<mission>");
+  app.add_option(
+         "--shard", options->shard,
+         "fly only part I of N of the runs, from 1; `swiftlet sim merge` joins the parts, which may be "
+         "flown on several computers")
+      .type_name("I/N");
+  const runtime::Option out = app.add_option("--out", flight.record,
+                                             "new folder for batch.csv and batch.png, or for shard.json of a "
+                                             "shard; default: flights/<date>-<mission>");
   app.add_flag("--replace", flight.replace, "delete the record that the folder of --out holds first")
       .needs(out);
   app.add_flag("--json", flight.json, "print one JSON object instead of the table");
