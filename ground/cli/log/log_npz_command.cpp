@@ -5,6 +5,7 @@
 #include "swiftlet/ground/cli/log/log_commands.hpp"
 #include "swiftlet/ground/recording/log_table.hpp"
 #include "swiftlet/ground/recording/npz_writer.hpp"
+#include "swiftlet/io/mcap/signal_arrays.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -17,31 +18,8 @@ struct Options {
   TimeRange range;
 };
 
-// Columns of one array: those of "position_ned[0]", "position_ned[1]" ... or a single one.
-struct Array {
-  std::string name;
-  std::size_t first = 0;
-  std::size_t count = 1;
-  mcap::Column::Kind kind = mcap::Column::Kind::kFloat;
-};
-
-std::vector<Array> arrays_of(const std::vector<mcap::Column>& columns) {
-  std::vector<Array> arrays;
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    const std::string& name = columns[i].name;
-    const bool indexed = name.back() == ']' && columns[i].kind != mcap::Column::Kind::kText;
-    const std::string base = indexed ? name.substr(0, name.rfind('[')) : name;
-    if (indexed && !arrays.empty() && arrays.back().name == base && name != base + "[0]") {
-      ++arrays.back().count;
-    } else {
-      arrays.push_back({base, i, 1, columns[i].kind});
-    }
-  }
-  return arrays;
-}
-
 template <class Value>
-void add_array(NpzWriter& npz, const std::string& name, const Array& array,
+void add_array(NpzWriter& npz, const std::string& name, const mcap::SignalArray& array,
                const std::vector<std::vector<mcap::Value>>& rows) {
   std::vector<Value> values;
   values.reserve(rows.size() * array.count);
@@ -66,7 +44,7 @@ void add_topic(NpzWriter& npz, const mcap::Reader& file, const mcap::Selection& 
   if (rows.empty()) return;
   const std::string prefix = topic.substr(topic.find_first_not_of('/')) + "/";
   npz.add(prefix + "log_time_ns", log_times, 1);
-  for (const Array& array : arrays_of(columns_of(file, topic))) {
+  for (const mcap::SignalArray& array : mcap::signal_arrays(columns_of(file, topic))) {
     const std::string name = prefix + array.name;
     switch (array.kind) {
       case mcap::Column::Kind::kFloat:
