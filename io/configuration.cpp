@@ -66,9 +66,9 @@ std::string find_config(const std::string& path) {
 }
 
 const std::vector<ConfigurationKind>& configuration_kinds() {
-  static const std::vector<ConfigurationKind> kinds = {kinds::kVehicle,    kinds::kControl,
-                                                       kinds::kSimulation, kinds::kMission,
-                                                       kinds::kDispersion, kinds::kRoom};
+  static const std::vector<ConfigurationKind> kinds = {kinds::kVehicle, kinds::kControl, kinds::kSimulation,
+                                                       kinds::kMission, kinds::kFleet,   kinds::kDispersion,
+                                                       kinds::kRoom};
   return kinds;
 }
 

@@ -1,4 +1,4 @@
-// Where configuration files lie: vehicles, control settings, simulations, missions, dispersions, rooms.
+// Where configuration files lie: vehicles, control settings, simulations, missions, fleets, dispersions, rooms.
 #pragma once
 
 #include <filesystem>
@@ -27,6 +27,7 @@ inline constexpr ConfigurationKind kVehicle{"vehicles", "vehicle", "VEHICLE"};
 inline constexpr ConfigurationKind kControl{"control", "control settings", "CONTROL"};
 inline constexpr ConfigurationKind kSimulation{"simulation", "simulation settings", "SIMULATION"};
 inline constexpr ConfigurationKind kMission{"missions", "mission", "MISSION"};
+inline constexpr ConfigurationKind kFleet{"fleets", "fleet", "FLEET"};
 inline constexpr ConfigurationKind kDispersion{"dispersion", "dispersion", "DISPERSION"};
 inline constexpr ConfigurationKind kRoom{"rooms", "room", "ROOM"};
 inline constexpr const char* kAnyValue = "NAME";  // the value of an option that may name a file of any kind

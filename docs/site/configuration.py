@@ -247,5 +247,6 @@ def page(root, bin_folder):
         "(`uniform`, `log_uniform` or `normal`), `min`, `max`, with `normal` also `mean` and `sigma`, `unit` (its own, or "
         f"`nominal` for multiples of the nominal value) and `source`. The parameters:\n\n{dispersion}\n"
         f"## Mission\n\nFiles in `config/missions`. [Fly a mission](../missions.md) explains them.\n\n{missions(root)}\n"
+        "## Fleet\n\nFiles in `config/fleets`. [Fly a swarm](../swarms.md) explains them.\n\n"
         "## Room\n\nFiles in `config/rooms`. [Swap the motion capture](../swap-mocap.md#the-room-file) explains them.\n"
     )

@@ -64,6 +64,9 @@ Command add_keys_command(runtime::CommandLine root);
 Command add_completion_command(runtime::CommandLine root);
 Command add_manual_command(runtime::CommandLine root);
 
+// Several vehicles in one room: `fleet check`.
+Command add_fleet_command(runtime::CommandLine root);
+
 // Controller design, mission checks and simulation.
 Command add_tune_command(runtime::CommandLine root);  // `tune plot`
 Command add_gains_command(runtime::CommandLine root);

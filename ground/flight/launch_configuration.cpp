@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <utility>
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
@@ -11,6 +12,7 @@
 #include "swiftlet/ground/command_line/installation.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
 #include "swiftlet/ground/mission/mission_check.hpp"
+#include "swiftlet/ground/mission/shifted_mission.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
@@ -65,21 +67,6 @@ double require_flyable(const LaunchConfiguration& plan, const FileOptions& readi
                                check.refusal(), help.empty() ? "" : "; " + help));
 }
 
-// Shifts the mission and its fence. The shifted fence is clamped to the fence of the limits.
-void displace(control::Mission& mission, const Eigen::Vector2d& by_ned, const control::Limits& limits) {
-  if (control::MissionBounds& bounds = mission.bounds; bounds.fenced) {
-    bounds.fence_min_ned.head<2>() += by_ned;
-    bounds.fence_max_ned.head<2>() += by_ned;
-    bounds.fence_min_ned = bounds.fence_min_ned.cwiseMax(limits.fence_min_ned);
-    bounds.fence_max_ned = bounds.fence_max_ned.cwiseMin(limits.fence_max_ned);
-  }
-  for (control::MissionItem& item : mission.items) item.position_ned.head<2>() += by_ned;
-  for (control::PolynomialSegment& segment : mission.segments) {
-    segment.x[0] += by_ned.x();
-    segment.y[0] += by_ned.y();
-  }
-}
-
 std::string absolute_path(const fs::path& path) { return fs::absolute(path).string(); }
 
 }  // namespace
@@ -123,7 +110,7 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
   plan.mission_file = runtime::configuration_file(runtime::kinds::kMission, options.mission);
   plan.mission = load_mission_file(plan.mission_file, plan.control.limits, options.reading);
   plan.start_ned = options.start_ned;
-  displace(plan.mission.mission, options.start_ned, plan.control.limits);
+  plan.mission.mission = shifted(std::move(plan.mission.mission), options.start_ned, plan.control.limits);
   if (const control::Outcome outcome = control::check(plan.mission.mission, plan.control.limits);
       !outcome.accepted)
     throw InputError(fmt::format("{}: started at {:g} m north and {:g} m east of the origin: {}",

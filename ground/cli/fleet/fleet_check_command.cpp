@@ -1,0 +1,45 @@
+#include <cstdio>
+#include <string>
+
+#include "swiftlet/ground/cli/fleet/fleet_commands.hpp"
+#include "swiftlet/ground/fleet/fleet_check.hpp"
+#include "swiftlet/io/configuration.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+struct Options {
+  std::string file;
+  bool json = false;
+};
+
+int run(const Options& options) {
+  const FleetCheck check =
+      check_fleet(load_fleet_file(runtime::configuration_file(runtime::kinds::kFleet, options.file)));
+  for (const FleetVehicle& one : check.vehicles) {
+    for (const std::string& assumption : one.mission.assumptions)
+      std::fprintf(stderr, "%s: %s: %s\n", one.member.name.c_str(), one.mission.name.c_str(),
+                   assumption.c_str());
+  }
+  std::printf("%s", options.json ? (check_json(check) + "\n").c_str() : check_table(check).c_str());
+  return check.feasible() ? kDone : kFailed;
+}
+
+}  // namespace
+
+Command add_fleet_check_command(runtime::CommandLine fleet) {
+  const auto options = std::make_shared<Options>();
+  const runtime::CommandLine app = fleet.add_subcommand(
+      "check",
+      "Check whether each vehicle of a fleet file can fly its mission, and whether all pairs stay apart");
+  app.footer(
+      "example: swiftlet fleet check swap6\nExit codes: 0 the fleet can be flown, 1 it cannot, 2 a file is "
+      "invalid.");
+  app.add_option("file", options->file, "fleet file, or the name of one in config/fleets")
+      .type_name(runtime::kinds::kFleet.value)
+      .required();
+  app.add_flag("--json", options->json, "print JSON");
+  return {app, [options] { return run(*options); }};
+}
+
+}  // namespace swiftlet::ground

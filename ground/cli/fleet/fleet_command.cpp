@@ -1,0 +1,23 @@
+// `swiftlet fleet`: flights of several vehicles from one file.
+#include <vector>
+
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/fleet/fleet_commands.hpp"
+
+namespace swiftlet::ground {
+
+Command add_fleet_command(runtime::CommandLine root) {
+  const runtime::CommandLine fleet =
+      root.add_subcommand("fleet", "Check the flight of several vehicles in one room, from a fleet file");
+  fleet.require_subcommand(1, 1);
+  fleet.footer("example: swiftlet fleet check swap6");
+  const std::vector<Command> commands = {add_fleet_check_command(fleet)};
+  return {fleet, [commands] {
+            for (const Command& command : commands) {
+              if (command.app.parsed()) return command.run();
+            }
+            return kBadInput;
+          }};
+}
+
+}  // namespace swiftlet::ground
