@@ -71,7 +71,7 @@ CommandFault CommandWatchdog::accept(const VehicleCommand& command, std::int64_t
   const bool turns_off =
       header.rotor_state == RotorState::kOff && level_of(command) == ControlLevel::kActuators;
   if (!levels_.has(level_of(command)) && !turns_off) return CommandFault::kLevel;
-  const CommandFault content = std::visit([this](const auto& one) { return check(one); }, command);
+  const CommandFault content = std::visit([&](const auto& one) { return check(one); }, command);
   if (content != CommandFault::kNone) return content;
   if (header.stamp_ns > now_ns) return CommandFault::kFuture;
   if (last_stamp_ns_ && header.stamp_ns < *last_stamp_ns_) return CommandFault::kStale;

@@ -1,0 +1,13 @@
+// The style and the scripts of the pages: the files in assets/, with the libraries dygraphs and three.js. embed.py
+// writes them into the program when it is built.
+#pragma once
+
+#include <string_view>
+
+namespace swiftlet::pages {
+
+std::string_view style();           // CSS
+std::string_view chart_scripts();   // dygraphs, and charts on it
+std::string_view flight_scripts();  // three.js, and the page of flights
+
+}  // namespace swiftlet::pages

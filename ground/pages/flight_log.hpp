@@ -1,0 +1,49 @@
+// A recorded flight of one vehicle as signals and events over time, for the page of flights.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "swiftlet/io/mcap/reader.hpp"
+
+namespace swiftlet::pages {
+
+// Signals with the same times.
+struct SignalTable {
+  std::vector<double> time_s;                          // ascending
+  std::map<std::string, std::vector<double>> signals;  // by name; NaN: no value
+};
+
+struct FlightEvent {
+  double time_s = 0.0;
+  std::string kind;  // "mode", "mission", "request", "vehicle", "estimator", "log"
+  std::string text;
+  bool warning = false;
+};
+
+struct ModeChange {
+  double time_s = 0.0;
+  std::string mode;
+};
+
+// Times are 0 at the take-off, or at the first message if there is none.
+struct FlightLog {
+  std::string name;        // of the file, with the vehicle if there are several
+  std::string vehicle;     // "kl1"
+  bool has_truth = false;  // the path is the ground truth, else the estimate
+  double start_s = 0.0;    // of the first message
+  double end_s = 0.0;
+  double wall_start_s = 0.0;  // s since 1970 at time 0; 0 for simulated time
+  // By the names that assets/flight_panels.js shows: path, reference, error, rates, ...
+  std::map<std::string, SignalTable> tables;
+  std::vector<ModeChange> modes;
+  std::vector<FlightEvent> events;                           // ascending in time
+  std::vector<std::pair<std::string, std::string>> summary;  // label and value
+};
+
+// One for each vehicle in the file. name: for the reader. Throws ConfigError for a damaged file, and for one without
+// any estimate or ground truth.
+std::vector<FlightLog> flights_in(const mcap::Reader& file, const std::string& name);
+
+}  // namespace swiftlet::pages

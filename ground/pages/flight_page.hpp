@@ -1,0 +1,14 @@
+// An HTML page of recorded flights, in one file without network access: paths in space, charts of all signals over one
+// time axis, modes and events, and a table of results. Several flights are laid over each other.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "swiftlet/ground/pages/flight_log.hpp"
+
+namespace swiftlet::pages {
+
+std::string flight_page(const std::vector<FlightLog>& flights);
+
+}  // namespace swiftlet::pages

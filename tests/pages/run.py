@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+"""Opens the HTML pages that the programs write in headless Chromium.
+
+usage: run.py BIN WORK
+
+BIN holds the programs, WORK is a folder for files, also for pictures of the pages; the browser's driver (package-lock.json) is
+installed into it with npm.
+"""
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+MISSION = """
+name: hop
+frame: ned
+tolerance_m: 0.1
+items:
+  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.5, hold_s: 0.5}
+  - {kind: waypoint, position_m: [0.5, 0.3, -0.5], speed_m_s: 0.5}
+  - {kind: land, speed_m_s: 0.5}
+"""
+CHARTS = {"Position", "Position error", "Attitude", "Gyroscope", "Rotor commands", "Supply voltage",
+          "Estimate minus ground truth, position, with 3 σ", "Innovation: pose minus estimate, position, with 3 σ of both",
+          "Delay of the loop"}
+
+
+def run(*command, **options):
+    done = subprocess.run([str(word) for word in command], text=True, capture_output=True, check=False, **options)
+    if done.returncode != 0:
+        sys.exit(f"pages: {' '.join(map(str, command))}: exit code {done.returncode}\n{done.stdout[-2000:]}{done.stderr[-3000:]}")
+    return done.stdout
+
+
+def require(holds, what):
+    if not holds:
+        sys.exit(f"pages: {what}")
+
+
+def check_flights(swiftlet, work):
+    (work / "hop.yaml").write_text(MISSION, encoding="utf-8")
+    for seed in (1, 2):
+        run(swiftlet, "fly", "hop.yaml", "--clock", "lockstep", "--localhost-only", "--seed", seed, "--mcap", "--record",
+            work / f"hop{seed}", "--replace", cwd=work)
+    run(swiftlet, "report", work / "hop1", "-o", work / "one.html", "--replace")
+    run(swiftlet, "report", work / "hop1" / "flight.mcap", work / "hop2", "-o", work / "two.html", "--replace")
+    found = json.loads(run("node", work / "flight.mjs", work / "one.html", work / "two.html", work, cwd=work))
+
+    flight = json.loads((work / "hop1" / "report.json").read_text(encoding="utf-8"))
+    rms_mm = float(found["summary"]["error 3-D, RMS"].split()[0])
+    require(abs(rms_mm / (1e3 * flight["rms_3d_m"]) - 1) < 0.03, f"the page says {rms_mm} mm, the report {flight['rms_3d_m']} m")
+    require(CHARTS <= set(found["charts"]), f"missing: {CHARTS - set(found['charts'])}")
+    require(any("mission running, item 2 of 3" in event for event in found["events"]), f"events: {found['events']}")
+    require(found["overlaid"] == ["hop1", "hop1, reference", "hop2", "hop2, reference"] and found["vehicles"] == 2,
+            f"two flights: {found['overlaid']}")
+    north = found["table"][1]
+    require(north[0] == "north" and abs(float(north[5]) - 0.5) < 0.01, f"the table of positions: {north}")
+    require(found["ready_ms"] < 2000, f"the page needs {found['ready_ms']} ms")
+    print(f"pages: {len(found['charts'])} charts of a flight, ready after {found['ready_ms']} ms: zoom, slider, texts, two flights; "
+          "light and dark, 1280 and 390 px")
+
+
+def main(programs, work):
+    work.mkdir(parents=True, exist_ok=True)
+    for file in HERE.glob("*.*js*"):
+        shutil.copy(file, work)
+    run("npm", "ci", "--omit=dev", "--no-audit", "--no-fund", "--ignore-scripts", cwd=work)
+    check_flights(programs / "swiftlet", work)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    main(pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve())

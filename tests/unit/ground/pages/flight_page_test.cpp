@@ -1,0 +1,153 @@
+#include "swiftlet/ground/pages/flight_page.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/ground/pages/flight_log.hpp"
+#include "swiftlet/ground/recording/cdr_writer.hpp"
+#include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/mcap/writer.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::pages {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kFirstNs = 500 * kMs;
+
+// A vehicle that climbs at 1 m/s behind its reference by 10 mm. Its log times are 2 s ahead of its stamps.
+class FlightFile {
+ public:
+  explicit FlightFile(const std::string& path) : file_(path, {}) {}
+  ~FlightFile() { file_.close(); }
+  FlightFile(const FlightFile&) = delete;
+  FlightFile& operator=(const FlightFile&) = delete;
+
+  void add(const std::string& topic, const std::string& definition, std::int64_t stamp_ns,
+           ground::CdrWriter payload) {
+    auto channel = channels_.find(topic);
+    if (channel == channels_.end()) {
+      const std::uint16_t schema =
+          file_.add_schema("test/msg/T" + std::to_string(channels_.size()), "ros2msg", definition);
+      channel = channels_.emplace(topic, file_.add_channel(topic, schema, "cdr", {})).first;
+    }
+    const mcap::Bytes bytes = payload.take();
+    const std::int64_t log_ns = stamp_ns + 2000 * kMs;
+    file_.write(mcap::Message{channel->second, 0, log_ns, log_ns, {bytes.data(), bytes.size()}});
+  }
+
+  void add_climb(const std::string& vehicle, int samples) {
+    for (int i = 0; i < samples; ++i) {
+      const std::int64_t stamp_ns = kFirstNs + 10 * kMs * i;
+      const double height = 0.01 * i;
+      add(vehicle + "/estimate",
+          "int64 stamp_ns\nfloat64[3] position_ned\nfloat64[3] velocity_ned\nfloat64[4] q_ned_from_frd\n"
+          "float64[3] body_rates_frd\nfloat64[15] standard_deviation\n",
+          stamp_ns, estimate(stamp_ns, height));
+      add(vehicle + "/reference",
+          "int64 stamp_ns\nuint8 mode\nfloat64[3] position_ned\nfloat64[3] velocity_ned\n"
+          "float64[4] attitude_setpoint\n",
+          stamp_ns, reference(stamp_ns, height + 0.01));
+    }
+  }
+
+  void add_mode(const std::string& vehicle, std::int64_t stamp_ns, std::uint8_t mode,
+                const std::string& reason) {
+    ground::CdrWriter payload;
+    payload.put(stamp_ns).put(mode).text(reason);
+    add(vehicle + "/control_status", "int64 stamp_ns\nuint8 mode\nstring reason\n", stamp_ns,
+        std::move(payload));
+  }
+
+ private:
+  static ground::CdrWriter estimate(std::int64_t stamp_ns, double height) {
+    ground::CdrWriter payload;
+    payload.put(stamp_ns);
+    for (const double value : {0.0, 0.0, -height, 0.0, 0.0, -1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0})
+      payload.put(value);
+    for (int i = 0; i < 15; ++i) payload.put(1e-3);
+    return payload;
+  }
+  static ground::CdrWriter reference(std::int64_t stamp_ns, double height) {
+    ground::CdrWriter payload;
+    payload.put(stamp_ns).put(std::uint8_t{2});
+    for (const double value : {0.0, 0.0, -height, 0.0, 0.0, -1.0, 1.0, 0.0, 0.0, 0.0}) payload.put(value);
+    return payload;
+  }
+
+  mcap::Writer file_;
+  std::map<std::string, std::uint16_t> channels_;
+};
+
+std::string value_of(const FlightLog& flight, const std::string& label) {
+  for (const auto& [name, value] : flight.summary) {
+    if (name == label) return value;
+  }
+  return "";
+}
+
+class FlightPage : public testing::Test {
+ protected:
+  std::vector<FlightLog> flights() const { return flights_in(mcap::Reader(path_), "test"); }
+
+  tests::TemporaryFolder folder_;
+  const std::string path_ = folder_.path() / "flight.mcap";
+};
+
+TEST_F(FlightPage, HasErrorsAgainstTheReferenceOverTheTimeSinceTakeOff) {
+  {
+    FlightFile file(path_);
+    file.add_climb("/kl1", 200);
+    file.add_mode("/kl1", kFirstNs, 0, "started");
+    file.add_mode("/kl1", kFirstNs + 100 * kMs, 2, "requested");
+  }
+  const FlightLog flight = flights().at(0);
+  EXPECT_EQ(flight.name, "test");
+  EXPECT_EQ(flight.vehicle, "kl1");
+  EXPECT_FALSE(flight.has_truth);
+  EXPECT_NEAR(flight.start_s, -0.1, 1e-9);
+  EXPECT_NEAR(flight.end_s, 1.89, 1e-9);
+  const SignalTable& reference = flight.tables.at("reference");
+  ASSERT_EQ(reference.time_s.size(), 200U);
+  EXPECT_NEAR(reference.signals.at("error_down")[50], 10.0, 1e-9);
+  EXPECT_EQ(value_of(flight, "error 3-D, RMS"), "10.00 mm");
+  EXPECT_NEAR(flight.tables.at("estimate").signals.at("bound_down")[7], 3.0, 1e-9);
+  ASSERT_EQ(flight.modes.size(), 2U);
+  EXPECT_EQ(flight.modes[1].mode, "taking off");
+  EXPECT_NEAR(flight.modes[1].time_s, 0.0, 1e-9);
+  EXPECT_EQ(flight.events[1].text, "taking off: requested");
+}
+
+TEST_F(FlightPage, HoldsEachVehicleAndEscapesTexts) {
+  {
+    FlightFile file(path_);
+    file.add_climb("/a", 20);
+    file.add_climb("/b", 20);
+    file.add_mode("/b", kFirstNs, 9, "</script><b>");
+  }
+  const std::vector<FlightLog> both = flights();
+  ASSERT_EQ(both.size(), 2U);
+  EXPECT_EQ(both[1].name, "test b");
+  const std::string page = flight_page(both);
+  EXPECT_NE(page.find("<title>Flights test a, test b</title>"), std::string::npos);
+  EXPECT_EQ(page.find("</script><b>"), std::string::npos);
+  EXPECT_NE(page.find("<td>stopped: &lt;/script&gt;&lt;b&gt;</td>"), std::string::npos);
+  EXPECT_EQ(page.find("<script src"), std::string::npos) << "loads another file";
+}
+
+TEST_F(FlightPage, SaysWhatIsMissing) {
+  {
+    FlightFile file(path_);
+    file.add_mode("/kl1", kFirstNs, 0, "started");
+  }
+  try {
+    flights();
+    FAIL() << "a file without a flight was accepted";
+  } catch (const runtime::ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("holds no flight"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace swiftlet::pages
