@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Writes the IDL types as ROS 2 message definitions, for recorded flights.
+"""Writes the IDL types as ROS 2 message definitions, for recorded flights and as the files of a ROS 2 package.
 
 usage: ros2msg.py OUTPUT.cpp FILE.idl...
+       ros2msg.py --package FOLDER FILE.idl...
 
 OUTPUT.cpp defines schema_of() of services/messages/schemas.hpp for each type. A definition holds the types that it
-uses behind separator lines, as ros2msg schemas in MCAP files do.
+uses behind separator lines, as ros2msg schemas in MCAP files do. With --package, FOLDER/msg gets a file for each type.
 """
 import re
 import sys
@@ -124,10 +125,22 @@ def definition(package, messages, name):
     return "\n".join(parts) + "\n"
 
 
-def main(output, files):
+def parse_all(files):
+    """The package of the files, and their messages by name."""
     parsed = [parse(Path(file)) for file in files]
-    messages = {message.name: message for _, message in parsed}
-    package = parsed[0][0]
+    return parsed[0][0], {message.name: message for _, message in parsed}
+
+
+def write_package(folder, files):
+    package, messages = parse_all(files)
+    (folder / "msg").mkdir(parents=True, exist_ok=True)
+    for name, message in messages.items():
+        head = f"# Written from idl/{package}/msg/{name}.idl by idl/ros2msg.py."
+        (folder / "msg" / f"{name}.msg").write_text("\n".join([head, *message.lines]) + "\n")
+
+
+def main(output, files):
+    package, messages = parse_all(files)
     out = ['#include "swiftlet/services/messages/schemas.hpp"', "", f"namespace {package}::msg {{",
            *(f"class {name};" for name in sorted(messages)), f"}}  // namespace {package}::msg", "",
            "namespace swiftlet::comms {", ""]
@@ -145,4 +158,7 @@ def main(output, files):
 if __name__ == "__main__":
     if len(sys.argv) < 3:
         sys.exit(__doc__)
+    if sys.argv[1] == "--package":
+        write_package(Path(sys.argv[2]), sys.argv[3:])
+        sys.exit()
     main(sys.argv[1], sys.argv[2:])

@@ -71,6 +71,10 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
     // on no multicast address. For the peers (port 0) the middleware tries maxInitialPeersRange ports.
     builtin.metatrafficUnicastLocatorList.push_back(loopback_locator(ports.first));
     builtin.initialPeersList.push_back(loopback_locator(0));
+    // Samples too are received on one port, the first free one. Without this Fast DDS 2.9 announces, from the first
+    // change of the user data on, also the port of the first process of the host, and others send there.
+    if (settings.transport != Transport::kSharedMemory)
+      qos.wire_protocol().default_unicast_locator_list.push_back(loopback_locator(0));
   } else {
     set_network(settings, announced_ports, qos, udp);
   }

@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""Lets programs of another DDS vendor, in C with Eclipse Cyclone DDS, fly and hear vehicles of the project's own processes.
+
+usage: run.py BIN WORK
+
+BIN holds the programs. WORK is a folder for the build of the C programs and for logs.
+"""
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import time
+
+sys.dont_write_bytecode = True
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+sys.path.insert(0, str(ROOT / "tests" / "docs"))
+sys.path.insert(0, str(ROOT / "docs" / "site"))
+from manual_text import fences  # noqa: E402
+from run_commands import lock_domain  # noqa: E402
+
+PATIENCE_S = 60
+DEBIAN_PYTHON = "/usr/bin/python3"  # with Debian's python3-rosidl
+PAGE = ROOT / "docs" / "interoperability.md"
+HEARD_IN_FLIGHT = {
+    "imu", "actuator_command", "controller_state", "mocap_pose", "rotor_speeds", "battery", "estimate", "reference", "ground_truth",
+    "control_status", "mission_status", "vehicle_info", "flown_mission", "flown_trajectory", "command_ack"}
+SENT_IN_FLIGHT = {"command", "mission", "trajectory", "setpoint", "simulation_clock", "ground_link"}
+# By vehicle: the level at which it is commanded, and the topics that such a vehicle adds.
+LEVELS = {"kl1": ("rates", {"rates_setpoint", "clock_request", "clock_reply", "clock_status", "control_settings"}),
+          "kl2": ("attitude", {"attitude_setpoint"}),
+          "kl3": ("trajectory", {"trajectory_setpoint"})}
+
+
+class Processes:
+    """Processes that end with this object."""
+
+    def __init__(self, programs, work):
+        self.programs, self.work, self.running = programs, work, []
+        self.domain, self.lock = lock_domain()
+
+    def start(self, name, *words, log=None):
+        path = self.work / f"{log or name}.log"
+        self.running.append(subprocess.Popen(
+            [self.programs / name, *map(str, words), "--domain", str(self.domain), "--localhost-only"], cwd=self.work,
+            stdout=path.open("w"), stderr=subprocess.STDOUT))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        for process in self.running:
+            process.send_signal(signal.SIGTERM)
+        for process in self.running:
+            process.wait(PATIENCE_S)
+        os.close(self.lock)
+
+
+class Interop:
+    def __init__(self, programs, work):
+        self.programs, self.work = programs, work
+        work.mkdir(parents=True, exist_ok=True)
+        os.environ["SWIFTLET_CONFIG_DIR"] = str(ROOT / "config")
+        (os.environ["CYCLONEDDS_URI"],) = (fence.text for fence in fences(PAGE.read_text(), PAGE) if fence.words == "file: cyclonedds.xml")
+        self.build = work / "cyclonedds"
+        for command in (["cmake", "-S", HERE, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release"],
+                        ["cmake", "--build", self.build]):
+            done = subprocess.run(command, capture_output=True, text=True, check=False)
+            if done.returncode != 0:
+                sys.exit(f"interop: {done.stdout}{done.stderr}")
+
+    def peer(self, program, domain, *words):
+        return subprocess.Popen([self.build / program, str(domain), *map(str, words)], text=True, stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT)
+
+    def finish(self, peer, what):
+        output = peer.communicate(timeout=2 * PATIENCE_S)[0]
+        if peer.returncode != 0:
+            logs = "".join(f"--- {log.name}\n{log.read_text()[-2000:]}" for log in sorted(self.work.glob("*.log")))
+            sys.exit(f"interop: {what}: exit code {peer.returncode}\n{output}{logs}")
+        return output
+
+    def fly(self):
+        """The flight of fly.c, in lockstep. Returns the topics that were decoded."""
+        started = time.monotonic()
+        with Processes(self.programs, self.work) as processes:
+            processes.start("swiftlet-plant", "--clock", "lockstep", "--paused")
+            processes.start("swiftlet-mocap", "--clock", "lockstep")
+            processes.start("swiftlet-control", "--clock", "lockstep")
+            output = self.finish(self.peer("fly", processes.domain, "kl1", PATIENCE_S), "the flight")
+        print("".join(f"interop: {line}\n" for line in output.splitlines()), end="")
+        heard = set(re.findall(r"^decoded (\w+) \d+$", output, re.MULTILINE))
+        if heard != HEARD_IN_FLIGHT | SENT_IN_FLIGHT:
+            sys.exit(f"interop: other topics were decoded than expected: {sorted(heard ^ (HEARD_IN_FLIGHT | SENT_IN_FLIGHT))}")
+        print(f"interop: a flight in {time.monotonic() - started:.1f} s")
+        return heard
+
+    def listen(self):
+        """Vehicles at other levels, and a motion capture with a clock of its own. Returns the topics that were decoded."""
+        vehicles = ",".join(LEVELS)
+        with Processes(self.programs, self.work) as processes:
+            listeners = {vehicle: self.peer("listen", processes.domain, vehicle, PATIENCE_S, *sorted(topics))
+                         for vehicle, (_, topics) in LEVELS.items()}
+            processes.start("swiftlet-plant", "--vehicle-name", vehicles, "--level", "rates,attitude,trajectory", "--no-realtime")
+            processes.start("swiftlet-mocap", "--vehicle-name", vehicles, "--frame-clock", "host", "--no-realtime")
+            for vehicle, (level, _) in LEVELS.items():
+                processes.start("swiftlet-control", "--vehicle-name", vehicle, "--level", level, "--no-realtime",
+                                log=f"swiftlet-control-{vehicle}")
+            processes.start("swiftlet", "set", "control", "motor_lag")
+            output = "".join(self.finish(listener, f"listening to {vehicle}") for vehicle, listener in listeners.items())
+        return set(output.split())
+
+
+def main(programs, work):
+    interop = Interop(programs, work)
+    topics = set(re.findall(r'TOPIC\("(\w+)"', (HERE / "topics.c").read_text()))
+    missing = topics - interop.fly() - interop.listen()
+    if missing:
+        sys.exit(f"interop: never decoded: {', '.join(sorted(missing))}")
+    print(f"interop: Cyclone DDS decoded all {len(topics)} topics", flush=True)
+    package = subprocess.run([DEBIAN_PYTHON, "-B", HERE / "ros2_package.py", "--rosidl"], text=True, stdout=subprocess.PIPE, check=True)
+    print(package.stdout.splitlines()[-1])  # rosidl names each file
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    main(pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve())
