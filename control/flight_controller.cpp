@@ -1,43 +1,21 @@
 #include "swiftlet/control/flight_controller.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "swiftlet/control/allocation/allocator.hpp"
-#include "swiftlet/control/attitude/attitude_controller.hpp"
-#include "swiftlet/control/attitude/attitude_error.hpp"
 #include "swiftlet/control/design/control_design.hpp"
-#include "swiftlet/control/design/control_gains.hpp"
-#include "swiftlet/control/estimation/disturbance_observer.hpp"
-#include "swiftlet/control/estimation/poses_ahead.hpp"
-#include "swiftlet/control/estimation/rotor_observer.hpp"
-#include "swiftlet/control/estimation/takeoff_consistency.hpp"
-#include "swiftlet/control/level_commands.hpp"
-#include "swiftlet/control/position/position_controller.hpp"
-#include "swiftlet/control/position/thrust_attitude_map.hpp"
-#include "swiftlet/control/supervision/supervisor.hpp"
-#include "swiftlet/math/euler.hpp"
+#include "swiftlet/control/flight_controller_impl.hpp"
 
 namespace swiftlet::control {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kFirstStep_s = 0.002;  // assumed for the first sample
-constexpr double kMaxStep_s = 0.1;
-constexpr int kUnusableToFault = 200;  // unusable IMU samples in a row to a fault, whatever their stamps
 // Fraction of the weight: above this specific force that the rotors do not explain, something else carries
 // the vehicle, on its legs or on its side.
 constexpr double kStandingLift = 0.5;
-constexpr double kDescentGain = 4.0;   // 1/s, vertical speed error to acceleration, level descent
-constexpr double kBrakeGain = 2.0;     // 1/s, the same for the horizontal speed
-constexpr double kDescentLimit = 2.0;  // m/s^2, of that acceleration
-
-double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 ControlDesign flyable_design(const plant::Vehicle& vehicle, const ControlSettings& settings) {
   ControlDesign gains = design(vehicle, settings);
@@ -47,396 +25,6 @@ ControlDesign flyable_design(const plant::Vehicle& vehicle, const ControlSetting
 }
 
 }  // namespace
-
-struct FlightController::Impl {
-  Impl(const plant::Vehicle& vehicle_in, const ControlSettings& settings_in, const ControlDesign& design_in);
-
-  // The stages of a step, in order.
-  void restart_if_clock_went_back(const plant::ImuSample& sample);
-  bool predict(const plant::ImuSample& sample);
-  void count_unusable(bool usable, std::int64_t stamp_ns);
-  double store_sample(const plant::ImuSample& sample);
-  SupervisorInputs inputs() const;
-  void observe(const ControlSetpoint& setpoint, double dt_s);
-  AttitudeDemand outer_loop(const ControlSetpoint& setpoint, double dt_s);
-  Wrench inner_loop(const AttitudeDemand& demand) const;
-  void command_vehicle(const ControlSetpoint& setpoint, const AttitudeDemand& demand);
-  void idle_rotors(plant::RotorState rotor_state);
-  void send_idle();
-  void report(const SupervisorInputs& inputs);
-  const plant::VehicleCommand& stamp_command(const plant::ImuSample& sample);
-
-  void allocate(const AttitudeDemand& demand, const Wrench& wrench);
-  void command_level(const ControlSetpoint& setpoint, const AttitudeDemand& demand);
-
-  // Changes of gains.
-  void begin_gain_change(const Request& request, const Outcome& outcome);
-  void begin_gain_changes(const ClientInputs& clients);
-  void update_gains();
-
-  // The outer loop for each control mode.
-  AttitudeDemand follow_reference(bool integrate, double dt_s);
-  AttitudeDemand spool_up(double lift_fraction) const;
-  AttitudeDemand descend_level(double speed) const;
-  AttitudeDemand follow_direct_setpoint(const ControlSetpoint& setpoint) const;
-
-  bool controls_position() const { return level != plant::ControlLevel::kTrajectory; }
-
-  plant::Vehicle vehicle;
-  ControlSettings settings;
-  double rotor_lag_s;
-  double max_tilt_tangent;
-  Estimator estimator;
-  PosesAhead poses_ahead;
-  RotorObserver rotors;
-  DisturbanceObserver disturbance;
-  TakeoffConsistencyMonitor takeoff_monitor;
-  PositionController position;
-  AttitudeController attitude;
-  Allocator allocator;
-  Supervisor supervisor;
-
-  GainChange gain_change;
-  ControlGains gains;              // in force
-  bool gains_are_constant = true;  // and set in the control laws
-  std::int64_t saturated_ns = -1;  // of the last saturated command; -1: none
-
-  std::int64_t last_stamp_ns = 0;
-  int unusable_samples = 0;            // in a row
-  std::int64_t unusable_since_ns = 0;  // the last stamp before them, or the one after time went back
-  double unusable_s = 0.0;
-  std::uint32_t resets_seen = 0;  // resets of the estimate that the supervisor has processed
-  double imu_gap_s = 0.0;         // between the last two usable samples
-  Vector3d specific_force_frd = Vector3d::Zero();
-  bool has_battery = false;
-  std::int64_t battery_stamp_ns = 0;
-  double supply_voltage_v;
-  Allocator::Supply supply;
-  VehicleFault vehicle_fault{};
-  std::int64_t vehicle_fault_since_ns = 0;  // of the first step with it
-  plant::ControlLevel level = plant::ControlLevel::kActuators;
-  plant::ControlLevels accepted_levels = plant::ControlLevel::kActuators;
-  plant::ActuatorCommand command;  // at other levels without throttles
-  double thrust_n = 0.0;           // collective thrust of the command, at other levels
-  plant::VehicleCommand sent;      // the command at the level
-  Reference reference;
-  Heading heading;  // of the reference's yaw
-  AttitudeSetpoint attitude_setpoint;
-  Status status;
-};
-
-FlightController::Impl::Impl(const plant::Vehicle& vehicle_in, const ControlSettings& settings_in,
-                             const ControlDesign& design_in)
-    : vehicle(vehicle_in),
-      settings(settings_in),
-      rotor_lag_s(design_in.rotor_lag_s),
-      max_tilt_tangent(std::tan(settings_in.limits.max_tilt_rad)),
-      estimator(settings_in.estimator),
-      poses_ahead(settings_in.estimator.detectors.recovery.longest_wait_s),
-      rotors(vehicle_in, settings_in.estimator.rotor_speed_bandwidth),
-      disturbance(settings_in.disturbance),
-      takeoff_monitor(settings_in.estimator.detectors.takeoff_consistency),
-      position(settings_in.position, settings_in.limits, design_in),
-      attitude(vehicle_in, settings_in.attitude, design_in),
-      allocator(vehicle_in),
-      supervisor({settings_in.limits, settings_in.arming, settings_in.failsafe}),
-      supply_voltage_v(allocator.plausible_supply().assumed),
-      supply(allocator.supply_at(supply_voltage_v)) {
-  command.rotor_count = vehicle.rotor_count();
-  sent = command;
-  gains = control_gains(design_in, settings_in);
-  gain_change.from = gain_change.to = gains;
-  gain_change.name = settings_name(settings_in.name);
-}
-
-// A restarted vehicle counts its time from 0 again. This is accepted while the rotors are off.
-void FlightController::Impl::restart_if_clock_went_back(const plant::ImuSample& sample) {
-  const bool rotors_off = command.rotor_state == plant::RotorState::kOff;
-  if (sample.stamp_ns >= last_stamp_ns || !rotors_off) return;
-  estimator = Estimator(settings.estimator);
-  poses_ahead.clear();
-  rotors = RotorObserver(vehicle, settings.estimator.rotor_speed_bandwidth);
-  resets_seen = 0;
-  last_stamp_ns = 0;
-  vehicle_fault_since_ns = 0;
-  saturated_ns = -1;
-  has_battery = false;
-}
-
-// Propagates the estimate to the sample, and fuses the poses that waited for it. Returns false for a sample that is not
-// usable.
-bool FlightController::Impl::predict(const plant::ImuSample& sample) {
-  if (!estimator.predict(sample)) return false;
-  while (const auto pose = poses_ahead.take(sample.stamp_ns)) estimator.correct(*pose, command.rotor_state);
-  return true;
-}
-
-// For how long no sample was usable, by the stamps. The count of samples covers a clock that stands still. A
-// clock that goes far back is that of a restarted vehicle, which must not receive this flight's commands.
-void FlightController::Impl::count_unusable(bool usable, std::int64_t stamp_ns) {
-  unusable_samples = usable ? 0 : unusable_samples + 1;
-  if (unusable_samples == 1) unusable_since_ns = std::min(stamp_ns, last_stamp_ns);
-  unusable_s = usable ? 0.0 : seconds(stamp_ns - unusable_since_ns);
-  const bool started_again = seconds(last_stamp_ns - stamp_ns) > settings.failsafe.imu_timeout_s;
-  if (unusable_samples >= kUnusableToFault || started_again)
-    unusable_s = std::numeric_limits<double>::infinity();
-}
-
-SupervisorInputs FlightController::Impl::inputs() const {
-  SupervisorInputs inputs;
-  const Estimate& estimate = estimator.estimate();
-  inputs.stamp_ns = estimate.stamp_ns;
-  inputs.estimate = &estimate;
-  inputs.has_estimate = estimator.initialised();
-  inputs.pose_age_s = estimator.pose_age_s();
-  inputs.pose_jumped = estimate.resets != resets_seen;
-  inputs.has_battery = has_battery;
-  inputs.supply_voltage_v = supply_voltage_v;
-  inputs.battery_age_s = seconds(estimate.stamp_ns - battery_stamp_ns);
-  inputs.vertical_specific_force_residual =
-      -(specific_force_frd.z() - estimate.accelerometer_bias.z()) - rotors.thrust_n() / vehicle.mass_kg;
-  inputs.takeoff_inconsistent = takeoff_monitor.contradicted();
-  inputs.specific_force_frd = specific_force_frd;
-  inputs.rotor_speed = *std::max_element(rotors.speeds().begin(), rotors.speeds().end());
-  inputs.imu_unusable_s = unusable_s;
-  inputs.imu_gap_s = imu_gap_s;
-  inputs.level = level;
-  inputs.accepted_levels = accepted_levels;
-  if (level != plant::ControlLevel::kActuators && vehicle_fault[0] != '\0') {
-    inputs.vehicle_fault = vehicle_fault.data();
-    inputs.vehicle_fault_s = seconds(last_stamp_ns - vehicle_fault_since_ns);
-  }
-  inputs.gains = &gain_change.to;
-  inputs.gains_progress = gain_change.progress(last_stamp_ns);
-  inputs.gains_changing_s = gain_change.remaining_s(last_stamp_ns);
-  if (saturated_ns >= 0) inputs.unsaturated_s = seconds(last_stamp_ns - saturated_ns);
-  return inputs;
-}
-
-// Stores a usable sample and runs the rotor model up to it. Returns the time since the last sample, s.
-double FlightController::Impl::store_sample(const plant::ImuSample& sample) {
-  if (!has_battery && last_stamp_ns == 0) battery_stamp_ns = sample.stamp_ns;  // starts the battery time-out
-  imu_gap_s = last_stamp_ns == 0 ? kFirstStep_s : seconds(sample.stamp_ns - last_stamp_ns);
-  const double dt_s = std::min(imu_gap_s, kMaxStep_s);
-  last_stamp_ns = sample.stamp_ns;
-  specific_force_frd = sample.specific_force_frd;
-  if (level == plant::ControlLevel::kActuators) {
-    rotors.step(dt_s, command, supply_voltage_v);
-  } else {
-    rotors.step(dt_s, thrust_n);
-  }
-  return dt_s;
-}
-
-// The supervisor has accepted the request: the gains change from those of this step on.
-void FlightController::Impl::begin_gain_change(const Request& request, const Outcome& outcome) {
-  if (request.kind != RequestKind::kSettings || !outcome.accepted) return;
-  gain_change = *request.gains;
-  gain_change.from = gains;
-  gain_change.start_ns = last_stamp_ns;
-  gains_are_constant = false;
-}
-
-void FlightController::Impl::begin_gain_changes(const ClientInputs& clients) {
-  for (std::size_t i = 0; i < clients.request_count; ++i)
-    begin_gain_change(*clients.requests[i].request, *clients.requests[i].outcome);
-}
-
-// Sets the gains of this step in the control laws. With the rotors off they change at once.
-void FlightController::Impl::update_gains() {
-  if (gains_are_constant) return;
-  if (rotors_off(supervisor.mode())) gain_change.duration_s = 0.0;
-  gains = gain_change.at(last_stamp_ns);
-  position.set_gains(gains);
-  attitude.set_gains(gains);
-  disturbance.set({gains.disturbance_bandwidth, gains.disturbance_limit});
-  gains_are_constant = gain_change.progress(last_stamp_ns) >= 1.0;
-  if (gains_are_constant) gain_change.duration_s = 0.0;  // has ended, also for a clock that starts again
-}
-
-// Updates the monitor and the observer that run in flight, in every control mode.
-void FlightController::Impl::observe(const ControlSetpoint& setpoint, double dt_s) {
-  const Estimate& estimate = estimator.estimate();
-  switch (setpoint.control_mode) {
-    case ControlMode::kOff:
-    case ControlMode::kIdle:
-      position.reset();
-      disturbance.reset();
-      return;
-    case ControlMode::kSpoolUp:
-      takeoff_monitor.begin(estimate.accelerometer_bias, estimate.position_ned.z());
-      return;
-    case ControlMode::kLevelDescent:
-      return;
-    case ControlMode::kFly:
-    case ControlMode::kAttitude:
-    case ControlMode::kBodyRates:
-      takeoff_monitor.step(dt_s, specific_force_frd, estimate.q_ned_from_frd, estimate.position_ned.z());
-      if (!setpoint.integrate || !controls_position()) return;
-      disturbance.step(dt_s, specific_force_frd - estimate.accelerometer_bias, estimate.q_ned_from_frd,
-                       rotors.thrust_n() / vehicle.mass_kg);
-      return;
-  }
-}
-
-AttitudeDemand FlightController::Impl::outer_loop(const ControlSetpoint& setpoint, double dt_s) {
-  switch (setpoint.control_mode) {
-    case ControlMode::kSpoolUp:
-      return spool_up(setpoint.lift_fraction);
-    case ControlMode::kLevelDescent:
-      return descend_level(setpoint.descent_speed);
-    case ControlMode::kAttitude:
-    case ControlMode::kBodyRates:
-      return follow_direct_setpoint(setpoint);
-    default:
-      return follow_reference(setpoint.integrate, dt_s);
-  }
-}
-
-// Eq. (48), then the map from its acceleration to thrust and attitude.
-AttitudeDemand FlightController::Impl::follow_reference(bool integrate, double dt_s) {
-  const Estimate& estimate = estimator.estimate();
-  const PositionCommand wanted = position.step(estimate.position_ned, estimate.velocity_ned, reference, dt_s,
-                                               !integrate || !controls_position());
-  const ThrustAttitude outer = thrust_attitude(
-      vehicle.mass_kg, wanted.acceleration_ned - disturbance.acceleration_ned(), max_tilt_tangent);
-  if (heading.yaw_rad != reference.yaw_rad) heading = reference.yaw_rad;
-  AttitudeDemand demand;
-  demand.thrust_n = outer.thrust_n;
-  demand.attitude.body_z_ned = outer.body_z_ned;
-  demand.attitude.heading = heading;
-  if (settings.attitude.feed_forward) {
-    const ReferenceMotion on_reference = reference_motion(vehicle.mass_kg, reference, heading);
-    demand.attitude.body_rates = on_reference.body_rates;
-    demand.attitude.body_accelerations = on_reference.body_accelerations;
-    demand.thrust_n += rotor_lag_s * on_reference.thrust_rate;  // leads the rotor lag
-  }
-  return demand;
-}
-
-AttitudeDemand FlightController::Impl::spool_up(double lift_fraction) const {
-  AttitudeDemand upright;
-  upright.thrust_n = lift_fraction * vehicle.mass_kg * plant::kGravity;
-  upright.attitude.heading = reference.yaw_rad;
-  return upright;
-}
-
-AttitudeDemand FlightController::Impl::descend_level(double speed) const {
-  const Estimate& estimate = estimator.estimate();
-  Vector3d acceleration_ned = -kBrakeGain * estimate.velocity_ned;
-  acceleration_ned.z() = kDescentGain * (speed - estimate.velocity_ned.z());
-  acceleration_ned = acceleration_ned.cwiseMax(-kDescentLimit).cwiseMin(kDescentLimit);
-  const ThrustAttitude outer = thrust_attitude(vehicle.mass_kg, acceleration_ned, max_tilt_tangent);
-  AttitudeDemand braking;
-  braking.thrust_n = outer.thrust_n;
-  braking.attitude.body_z_ned = outer.body_z_ned;
-  braking.attitude.heading = euler_angles(estimate.q_ned_from_frd).heading;
-  return braking;
-}
-
-// The attitude of the setpoint, or its body rates at the present attitude.
-AttitudeDemand FlightController::Impl::follow_direct_setpoint(const ControlSetpoint& setpoint) const {
-  AttitudeDemand demand;
-  demand.rates_only = setpoint.control_mode == ControlMode::kBodyRates;
-  const Eigen::Quaterniond& q =
-      demand.rates_only ? estimator.estimate().q_ned_from_frd : setpoint.q_ned_from_frd;
-  demand.thrust_n = setpoint.specific_thrust * vehicle.mass_kg;
-  demand.attitude.body_z_ned = body_z(q);
-  demand.attitude.heading = euler_angles(q).heading;
-  demand.attitude.body_rates = setpoint.body_rates_frd;
-  return demand;
-}
-
-// Eq. (35)-(40). Uses the part of the thrust along the present body axis, and none while upside down.
-Wrench FlightController::Impl::inner_loop(const AttitudeDemand& demand) const {
-  const Estimate& estimate = estimator.estimate();
-  Wrench wrench;
-  if (demand.rates_only) {
-    wrench.thrust_n = demand.thrust_n;
-    wrench.moment_frd =
-        attitude.moments_for_rates(estimate.body_rates_frd, rotors.moment_frd(), demand.attitude.body_rates);
-    return wrench;
-  }
-  wrench.thrust_n = thrust_along_body(demand, estimate);
-  wrench.moment_frd = attitude.moments(estimate.q_ned_from_frd, estimate.body_rates_frd, rotors.moment_frd(),
-                                       demand.attitude);
-  return wrench;
-}
-
-void FlightController::Impl::command_vehicle(const ControlSetpoint& setpoint, const AttitudeDemand& demand) {
-  command.rotor_state = plant::RotorState::kRunning;
-  if (level == plant::ControlLevel::kActuators) {
-    allocate(demand, inner_loop(demand));
-  } else {
-    command_level(setpoint, demand);
-  }
-}
-
-void FlightController::Impl::command_level(const ControlSetpoint& setpoint, const AttitudeDemand& demand) {
-  const Estimate& estimate = estimator.estimate();
-  command.throttle = plant::PerRotor{};
-  thrust_n = std::max(demand.rates_only ? demand.thrust_n : thrust_along_body(demand, estimate), 0.0);
-  attitude_setpoint = {demand.attitude.body_z_ned, demand.attitude.heading.yaw_rad, thrust_n,
-                       Vector3d::Zero()};
-  status.saturated = false;  // not known
-  if (level == plant::ControlLevel::kRates) {
-    sent = rates_command(demand, thrust_n, estimate, attitude, settings.limits.max_body_rate);
-  } else if (level == plant::ControlLevel::kAttitude) {
-    sent = attitude_command(demand, thrust_n, estimate);
-  } else {
-    sent = trajectory_command(setpoint, estimate);
-  }
-}
-
-void FlightController::Impl::allocate(const AttitudeDemand& demand, const Wrench& wrench) {
-  const Allocation allocation = allocator.allocate(wrench, supply);
-  command.throttle = allocation.throttle;
-  attitude_setpoint = {demand.attitude.body_z_ned, demand.attitude.heading.yaw_rad, wrench.thrust_n,
-                       wrench.moment_frd};
-  status.saturated = allocation.saturated;
-}
-
-// Rotors off, or running at throttle 0.
-void FlightController::Impl::idle_rotors(plant::RotorState rotor_state) {
-  command.rotor_state = rotor_state;
-  command.throttle = plant::PerRotor{};
-  attitude_setpoint = AttitudeSetpoint();
-  status.saturated = false;
-  send_idle();
-}
-
-void FlightController::Impl::send_idle() {
-  if (level == plant::ControlLevel::kActuators) return;
-  thrust_n = 0.0;
-  sent = idle_command(level, estimator.estimate());
-}
-
-void FlightController::Impl::report(const SupervisorInputs& inputs) {
-  status.mode = supervisor.mode();
-  status.reason = supervisor.reason();
-  status.has_pose = inputs.has_estimate && inputs.pose_age_s <= settings.failsafe.mocap_timeout_s;
-  status.pose_age_s = inputs.pose_age_s;
-  status.airborne = supervisor.airborne();
-  status.level = level;
-  status.ground_links = supervisor.ground_links();
-  status.supply_voltage_v = supply_voltage_v;
-  status.mission = supervisor.mission();
-  status.settings = gain_change.name;
-  status.gains_progress = gain_change.progress(last_stamp_ns);
-}
-
-const plant::VehicleCommand& FlightController::Impl::stamp_command(const plant::ImuSample& sample) {
-  command.stamp_ns = sample.stamp_ns;
-  command.imu_sequence = sample.sequence;
-  command.mocap_sequence = estimator.pose_sequence();
-  ++command.sequence;
-  if (level == plant::ControlLevel::kActuators) {
-    sent = command;
-  } else {
-    plant::header_of(sent) = command;
-  }
-  return sent;
-}
 
 FlightController::FlightController(const plant::Vehicle& vehicle, const ControlSettings& settings)
     : impl_(std::make_unique<Impl>(vehicle, settings, flyable_design(vehicle, settings))) {}
@@ -452,35 +40,27 @@ const plant::VehicleCommand& FlightController::on_imu(const plant::ImuSample& sa
 
 const plant::VehicleCommand& FlightController::on_imu(const plant::ImuSample& sample, ClientInputs& clients) {
   Impl& c = *impl_;
-  // Estimate.
-  c.restart_if_clock_went_back(sample);
-  const bool usable = c.predict(sample);
-  c.count_unusable(usable, sample.stamp_ns);
-  if (!usable && c.unusable_s < c.settings.failsafe.imu_timeout_s) {
-    answer(clients);
-    return c.stamp_command(sample);
-  }
-  const double dt_s = usable ? c.store_sample(sample) : 0.0;
+  c.restart_if_clock_went_back(sample.stamp_ns);
+  c.brings_odometry = false;
+  return c.step(sample, c.predict(sample), clients);
+}
 
-  // Supervision decides the mode, guidance generates the reference.
-  const SupervisorInputs inputs = c.inputs();
-  const ControlSetpoint setpoint = c.supervisor.step(inputs, clients);
-  c.resets_seen = inputs.estimate->resets;
-  c.reference = setpoint.reference;
-  c.begin_gain_changes(clients);
-  c.update_gains();
+const plant::VehicleCommand& FlightController::on_odometry(const plant::OdometrySample& sample) {
+  ClientInputs none;
+  return on_odometry(sample, none);
+}
 
-  // The control laws and the command.
-  c.observe(setpoint, dt_s);
-  if (setpoint.control_mode == ControlMode::kOff || setpoint.control_mode == ControlMode::kIdle) {
-    c.idle_rotors(setpoint.control_mode == ControlMode::kOff ? plant::RotorState::kOff
-                                                             : plant::RotorState::kRunning);
-  } else {
-    c.command_vehicle(setpoint, c.outer_loop(setpoint, dt_s));
-  }
-  if (c.status.saturated) c.saturated_ns = sample.stamp_ns;
-  c.report(inputs);
-  return c.stamp_command(sample);
+const plant::VehicleCommand& FlightController::on_odometry(const plant::OdometrySample& sample,
+                                                           ClientInputs& clients) {
+  Impl& c = *impl_;
+  c.restart_if_clock_went_back(sample.stamp_ns);
+  c.brings_odometry = true;
+  const std::optional<plant::ImuSample> motion = c.predict(sample);
+  if (motion) return c.step(*motion, true, clients);
+  plant::ImuSample unusable;
+  unusable.stamp_ns = sample.stamp_ns;
+  unusable.sequence = sample.sequence;
+  return c.step(unusable, false, clients);
 }
 
 void FlightController::set_vehicle_fault(const VehicleFault& fault) {
@@ -556,7 +136,7 @@ void FlightController::adopt(const FlightState& state, const Mission* mission, c
 bool FlightController::detects_airborne() const {
   const Impl& l = *impl_;
   const Vector3d lift_frd(0.0, 0.0, -l.rotors.thrust_n() / l.vehicle.mass_kg);
-  const Vector3d unexplained = l.specific_force_frd - l.estimator.estimate().accelerometer_bias - lift_frd;
+  const Vector3d unexplained = l.specific_force_frd - l.estimate().accelerometer_bias - lift_frd;
   return unexplained.norm() < kStandingLift * plant::kGravity;
 }
 
@@ -564,8 +144,11 @@ bool FlightController::engage_in_flight() {
   return impl_->supervisor.engage_in_flight(impl_->inputs()).accepted;
 }
 
-const Estimate& FlightController::estimate() const { return impl_->estimator.estimate(); }
-ErrorState FlightController::estimate_deviation() const { return impl_->estimator.standard_deviation(); }
+const Estimate& FlightController::estimate() const { return impl_->estimate(); }
+ErrorState FlightController::estimate_deviation() const {
+  return impl_->brings_odometry ? impl_->estimate_source.standard_deviation(impl_->estimator)
+                                : impl_->estimator.standard_deviation();
+}
 const Reference& FlightController::reference() const { return impl_->reference; }
 const AttitudeSetpoint& FlightController::attitude_setpoint() const { return impl_->attitude_setpoint; }
 const Status& FlightController::status() const { return impl_->status; }

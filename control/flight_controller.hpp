@@ -46,6 +46,12 @@ class FlightController {
   const plant::VehicleCommand& on_imu(const plant::ImuSample& sample);
   const plant::VehicleCommand& on_imu(const plant::ImuSample& sample, ClientInputs& clients);
 
+  // The same with the vehicle's own estimate in place of the IMU, of a vehicle that brings it. By which estimate it is flown is
+  // a setting; poses correct that of motion capture as with an IMU. Needs a level above actuators: at that one, arming is
+  // refused. Attitudes and trajectories are sent in the frame of the vehicle's estimate.
+  const plant::VehicleCommand& on_odometry(const plant::OdometrySample& sample);
+  const plant::VehicleCommand& on_odometry(const plant::OdometrySample& sample, ClientInputs& clients);
+
   // The levels that the vehicle accepts, and the one at which it is to be commanded; nullopt: the lowest of them.
   // Without a call the vehicle is commanded at level actuators. Rotors that turn on commands of an accepted level
   // keep it. At a level that the vehicle does not accept, arming is refused.

@@ -56,6 +56,21 @@ plant::TrajectorySetpoint trajectory_command(const ControlSetpoint& setpoint, co
   return wanted;
 }
 
+plant::VehicleCommand in_vehicle_frame(const plant::VehicleCommand& command, const EstimateSource& source) {
+  const double turn_rad = source.heading_to_vehicle_rad();
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(turn_rad, Vector3d::UnitZ()));
+  plant::VehicleCommand out = command;
+  if (auto* attitude = std::get_if<plant::AttitudeSetpoint>(&out))
+    attitude->q_ned_from_frd = turn * attitude->q_ned_from_frd;
+  if (auto* trajectory = std::get_if<plant::TrajectorySetpoint>(&out)) {
+    trajectory->position_ned = source.position_in_vehicle(trajectory->position_ned);
+    trajectory->velocity_ned = turn * trajectory->velocity_ned;
+    trajectory->acceleration_ned = turn * trajectory->acceleration_ned;
+    trajectory->yaw_rad = wrap_angle(trajectory->yaw_rad + turn_rad);
+  }
+  return out;
+}
+
 plant::VehicleCommand idle_command(plant::ControlLevel level, const Estimate& estimate) {
   const Heading now = euler_angles(estimate.q_ned_from_frd).heading;
   if (level == plant::ControlLevel::kRates) return plant::RatesSetpoint();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "swiftlet/control/attitude/attitude_controller.hpp"
+#include "swiftlet/control/estimation/estimate_source.hpp"
 #include "swiftlet/control/estimation/estimator.hpp"
 #include "swiftlet/control/supervision/supervisor_inputs.hpp"
 #include "swiftlet/plant/model/control_level.hpp"
@@ -33,6 +34,9 @@ plant::AttitudeSetpoint attitude_command(const AttitudeDemand& demand, double th
 // The reference of the setpoint. Without a position, and while the thrust rises at take-off, velocity and acceleration
 // alone.
 plant::TrajectorySetpoint trajectory_command(const ControlSetpoint& setpoint, const Estimate& estimate);
+
+// The same command in the frame of the vehicle's own estimate: attitude, position and all horizontal vectors.
+plant::VehicleCommand in_vehicle_frame(const plant::VehicleCommand& command, const EstimateSource& source);
 
 // Without thrust: rotors off or idling. At level trajectory, free fall asks for no thrust.
 plant::VehicleCommand idle_command(plant::ControlLevel level, const Estimate& estimate);

@@ -22,6 +22,7 @@ ClosedLoop::ClosedLoop(const plant::Vehicle& plant_vehicle, const plant::Vehicle
       pose_path(simulation, seed, plant::streams::kRadioPoses),
       firmware(plant_vehicle, simulation),
       controller(control_vehicle, settings) {
+  if (simulation.odometry.source != plant::OdometrySource::kNone) odometry.emplace(simulation, seed);
   controller.set_levels(simulation.control_levels, std::nullopt);
   collect();
   answer();
@@ -36,9 +37,14 @@ void ClosedLoop::step() {
 }
 
 void ClosedLoop::collect() {
+  std::optional<plant::OdometrySample> own;
   if (plant.imu()) firmware.on_imu(*plant.imu());
+  if (plant.imu() && odometry) {
+    own = odometry->sample(*plant.imu(), plant.state(), firmware.estimator());
+    firmware.on_odometry(*own);
+  }
   if (plant.battery()) firmware.on_battery(*plant.battery());
-  telemetry_path.collect(plant, firmware.obeyed());
+  telemetry_path.collect(plant, firmware.obeyed(), own);
 }
 
 void ClosedLoop::answer() {
@@ -61,7 +67,7 @@ void ClosedLoop::answer(const plant::TelemetryPacket& packet) {
   if (pose_) controller.on_pose(*pose_);
   if (packet.battery) controller.on_battery(*packet.battery);
   if (packet.rotor_speeds) controller.on_rotor_speeds(*packet.rotor_speeds);
-  sent = controller.on_imu(packet.imu);
+  sent = packet.odometry ? controller.on_odometry(*packet.odometry) : controller.on_imu(packet.imu);
   answered = packet.imu;
   if (sensors != nullptr) record_sensors(packet);
   pose_.reset();

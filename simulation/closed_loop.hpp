@@ -17,6 +17,7 @@
 #include "swiftlet/plant/simulation/links/radio.hpp"
 #include "swiftlet/plant/simulation/links/telemetry_path.hpp"
 #include "swiftlet/plant/simulation/mocap.hpp"
+#include "swiftlet/plant/simulation/odometry.hpp"
 #include "swiftlet/plant/simulation/plant_simulation.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
 #include "swiftlet/recording/sensor_record.hpp"
@@ -53,6 +54,7 @@ class ClosedLoop {
   plant::CommandPath command_path;
   plant::RadioLine<plant::PoseSample> pose_path;  // to the vehicle
   plant::Firmware firmware;
+  std::optional<plant::Odometry> odometry;  // of a vehicle that brings it in place of IMU samples
   control::FlightController controller;
   plant::VehicleCommand sent;      // the controller's last command
   plant::ActuatorCommand command;  // the same, as Firmware::as_actuators()

@@ -70,10 +70,19 @@ double Estimator::pose_age_s() const {
   return initialised_ ? seconds(now_.stamp_ns - pose_stamp_ns_) : std::numeric_limits<double>::infinity();
 }
 
-bool Estimator::predict(const plant::ImuSample& sample) {
-  if (!sample.specific_force_frd.allFinite() || !sample.body_rates_frd.allFinite()) return false;
-  if (sample.stamp_ns <= last_imu_.stamp_ns) return false;
+bool Estimator::is_usable(const plant::ImuSample& sample) const {
+  return sample.specific_force_frd.allFinite() && sample.body_rates_frd.allFinite() &&
+         sample.stamp_ns > last_imu_.stamp_ns;
+}
 
+bool Estimator::predict(const plant::ImuSample& sample) {
+  const plant::ImuSample& before = last_imu_.stamp_ns == 0 ? sample : last_imu_;
+  return predict(sample, {0.5 * (before.specific_force_frd + sample.specific_force_frd),
+                          0.5 * (before.body_rates_frd + sample.body_rates_frd)});
+}
+
+bool Estimator::predict(const plant::ImuSample& sample, const MeanMotion& mean) {
+  if (!is_usable(sample)) return false;
   const bool first = last_imu_.stamp_ns == 0;
   const double dt =
       first ? 0.0 : std::min(seconds(sample.stamp_ns - last_imu_.stamp_ns), detectors_.imu_silence.longest_s);
@@ -82,14 +91,12 @@ bool Estimator::predict(const plant::ImuSample& sample) {
     silence_end_ns_ = sample.stamp_ns;
     pose_imu_test_.begin();
   }
-  const plant::ImuSample& before = first ? sample : last_imu_;
   now_.stamp_ns = sample.stamp_ns;
   now_.body_rates_frd = sample.body_rates_frd - now_.gyro_bias;
 
-  // Sola's Eq. (260a)-(260c), v <- v + (R a + g) dt, q <- q rotation(w dt), with the mean of the two samples
-  const Vector3d mean_rates = 0.5 * (before.body_rates_frd + sample.body_rates_frd) - now_.gyro_bias;
-  const Vector3d mean_force =
-      0.5 * (before.specific_force_frd + sample.specific_force_frd) - now_.accelerometer_bias;
+  // Sola's Eq. (260a)-(260c), v <- v + (R a + g) dt, q <- q rotation(w dt), with the means between the two samples
+  const Vector3d mean_rates = mean.body_rates_frd - now_.gyro_bias;
+  const Vector3d mean_force = mean.specific_force_frd - now_.accelerometer_bias;
   const Quaterniond half_turn = plant::rotation(0.5 * dt * mean_rates);
   const Quaterniond q_mid = path_.q_ned_from_frd * half_turn;
   const Vector3d acceleration = q_mid * mean_force + Vector3d(0.0, 0.0, plant::kGravity);

@@ -53,6 +53,12 @@ struct Estimate {
   Eigen::Vector3d reset_rotation_ned = Eigen::Vector3d::Zero();  // rad, a rotation vector
 };
 
+// Means of the motion between two samples.
+struct MeanMotion {
+  Eigen::Vector3d specific_force_frd = Eigen::Vector3d::Zero();  // m/s^2
+  Eigen::Vector3d body_rates_frd = Eigen::Vector3d::Zero();      // rad/s
+};
+
 class Estimator {
  public:
   explicit Estimator(const EstimatorSettings& settings);
@@ -61,6 +67,8 @@ class Estimator {
   // finite or not newer than the last. A gap in the samples is bridged with the mean rates and specific
   // force of the samples around it, and the motion that it may hide is added to the covariance.
   bool predict(const plant::ImuSample& sample);
+  // The same with known means since the last sample, in place of those of its end points.
+  bool predict(const plant::ImuSample& sample, const MeanMotion& mean);
 
   // Fuses a pose. Returns false for a refused one: pose_fault then has the reason, and nothing else of the
   // estimate changes. A pose with the stamp of the last one is a duplicate and is ignored.
@@ -116,6 +124,7 @@ class Estimator {
   // History entries are corrected when they are read: of most, only the stamp ever is.
   static constexpr std::uint64_t kCorrections = 32;
   const StateSnapshot& history_at(std::uint64_t number) const { return history_[number % kHistory]; }
+  bool is_usable(const plant::ImuSample& sample) const;
   StateSnapshot snapshot_at(std::uint64_t number) const;
   void start_at(const plant::PoseSample& pose);
   void publish_path();

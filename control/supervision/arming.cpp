@@ -18,6 +18,10 @@ using ArmingCheck = Outcome (*)(const SupervisorContext&);
 Outcome pose_available(const SupervisorContext& context) {
   const SupervisorInputs& inputs = context.inputs;
   const double limit_s = context.settings.failsafe.mocap_timeout_s;
+  if (inputs.estimate_of_vehicle) {
+    if (inputs.has_estimate && inputs.pose_age_s <= limit_s) return accept();
+    return refuse("the vehicle's own estimate, by which it is to be flown, has no position");
+  }
   if (!inputs.has_estimate) return refuse("no mocap pose received");
   if (inputs.pose_age_s > limit_s)
     return refuse("the last mocap pose is %.2f s old, the limit is %.2f s", inputs.pose_age_s, limit_s);
@@ -109,14 +113,21 @@ Outcome level_accepted(const SupervisorContext& context) {
                 plant::to_string(inputs.level), inputs.accepted_levels.names().data());
 }
 
+Outcome samples_fit_level(const SupervisorContext& context) {
+  const SupervisorInputs& inputs = context.inputs;
+  if (!inputs.brings_odometry || inputs.level != plant::ControlLevel::kActuators) return accept();
+  return refuse("level actuators needs imu, but the vehicle brings vehicle_odometry");
+}
+
 Outcome no_vehicle_fault(const SupervisorContext& context) {
   if (context.inputs.vehicle_fault[0] == '\0') return accept();
   return refuse("the vehicle reports: %s", context.inputs.vehicle_fault);
 }
 
 constexpr ArmingCheck kChecks[] = {
-    level_accepted, no_vehicle_fault, pose_available, pose_accepted, imu_usable, battery_available,
-    imu_at_rest,    not_turning,      rotors_still,   level,         not_moving, inside_fence};
+    level_accepted, samples_fit_level, no_vehicle_fault, pose_available, pose_accepted,
+    imu_usable,     battery_available, imu_at_rest,      not_turning,    rotors_still,
+    level,          not_moving,        inside_fence};
 
 // Appends "; sentence" if it fits.
 void append(const char* sentence, Outcome& outcome) {

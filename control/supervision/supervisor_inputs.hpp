@@ -14,8 +14,10 @@ namespace swiftlet::control {
 struct SupervisorInputs {
   std::int64_t stamp_ns = 0;
   const Estimate* estimate = nullptr;
-  bool has_estimate = false;  // a pose has initialised the estimator
-  double pose_age_s = 0.0;
+  bool has_estimate = false;         // a pose has initialised the estimator
+  double pose_age_s = 0.0;           // of the vehicle's own position, if it is flown by its own estimate
+  bool brings_odometry = false;      // the vehicle, in place of IMU samples
+  bool estimate_of_vehicle = false;  // it is flown by its own estimate
   bool pose_jumped = false;  // the estimate was reset to poses that disagreed for long, since the last step
   bool takeoff_inconsistent =
       false;  // after lift-off the poses do not follow the motion (estimation/takeoff_consistency.hpp)

@@ -80,6 +80,14 @@ struct MissionProgress {
   int item_count = 0;
 };
 
+// Of a vehicle that brings an estimate of its own.
+struct OdometryStatus {
+  bool in_force = false;     // the vehicle is flown by it
+  double distance_m = -1.0;  // from the estimate of motion capture; -1: one of both is missing
+  double angle_rad = -1.0;   // likewise
+  std::uint32_t resets = 0;  // jumps of it that were followed
+};
+
 struct Status {
   Mode mode = Mode::kDisarmed;
   Reason reason = Reason::kStarted;  // why the mode was entered
@@ -90,6 +98,7 @@ struct Status {
   double supply_voltage_v = 0.0;
   bool saturated = false;                                       // the rotors' limits cut the last command
   plant::ControlLevel level = plant::ControlLevel::kActuators;  // of the commands
+  OdometryStatus odometry;
   MissionProgress mission;
   SettingsName settings{};      // name of the control settings in force, or that the gains change to
   double gains_progress = 1.0;  // 0 .. 1, of the change of gains

@@ -61,6 +61,10 @@ void check_estimator(const EstimatorSettings& estimator, RuleChecker& check) {
   check.above("estimator.mocap_position_m", estimator.mocap_position_sigma, 0.0);
   check.above("estimator.mocap_orientation_rad", estimator.mocap_orientation_sigma, 0.0);
   check.above("estimator.gate_chi_square", estimator.gate_chi_square, 0.0);
+  const OdometrySettings& odometry = estimator.odometry;
+  check.between("estimator.odometry.glide_speed_m_s", odometry.glide_speed, 0.01, 1.0);
+  check.between("estimator.odometry.glide_yaw_rate_rad_s", odometry.glide_yaw_rate, 0.01, 1.0);
+  check.between("estimator.odometry.glide_acceleration_m_s2", odometry.glide_acceleration, 0.1, 10.0);
   check.above("estimator.outlier_position_m", estimator.outlier_position_m, 0.0);
   check.above("estimator.outlier_orientation_rad", estimator.outlier_orientation_rad, 0.0);
   check.above("estimator.max_speed_m_s", estimator.max_speed, 0.0);

@@ -144,6 +144,18 @@ struct DetectorSettings {
   RecoverySettings recovery;
 };
 
+// By which estimate a vehicle is flown that brings one of its own (vehicle_odometry): that of motion capture, its own, or its
+// own while motion capture is lost.
+enum class OdometryUse : std::uint8_t { kMocap, kVehicle, kBoth };
+
+// Estimates are changed without a jump: the difference vanishes no faster than this (estimation/estimate_source.hpp).
+struct OdometrySettings {
+  OdometryUse use = OdometryUse::kMocap;
+  double glide_speed = 0.2;         // m/s, of the position
+  double glide_yaw_rate = 0.2;      // rad/s, of the heading
+  double glide_acceleration = 1.0;  // m/s^2, of the velocity
+};
+
 // The estimator's sensor model. Noise densities are as in data sheets; standard deviations are per axis.
 struct EstimatorSettings {
   double accelerometer_noise_density = 4.0e-3;  // m/s^2/sqrt(Hz)
@@ -167,6 +179,7 @@ struct EstimatorSettings {
   double max_body_rate = 6.0;            // rad/s
   double start_speed = 1.0;              // m/s, standard deviation at the first pose
   double rotor_speed_bandwidth = 112.0;  // rad/s, correction by measured rotor speeds
+  OdometrySettings odometry;
   DetectorSettings detectors;
 };
 

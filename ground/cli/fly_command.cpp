@@ -32,7 +32,8 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::size_t kMostVehicles = 50;  // flown and tested
+constexpr const char* kPx4Vehicle = "px4";  // --vehicle
+constexpr std::size_t kMostVehicles = 50;   // flown and tested
 
 void check(const FlyOptions& options, std::size_t vehicles) {
   const bool lockstep = options.clock == runtime::Clock::kLockstep;
@@ -144,8 +145,19 @@ std::vector<std::string> vehicles_of(const FlyOptions& options) {
                                                       : options.network.vehicle);
 }
 
-// PX4 runs in the domain of its agent, 0 unless told, and is commanded above level actuators.
+// `--vehicle px4` is PX4's first instance, with the default vehicle file. PX4 runs in the domain of its agent, 0 unless told,
+// and is commanded above level actuators.
 FlyOptions with_px4(FlyOptions options) {
+  if (options.vehicle == kPx4Vehicle) {
+    const bool simulates = options.clock == runtime::Clock::kLockstep || options.speed || options.sensors ||
+                           options.imu_rate_hz > 0 || options.odometry != plant::OdometrySource::kNone;
+    if (simulates)
+      throw InputError(
+          "--vehicle px4: PX4 is no simulation of swiftlet-plant, as --clock lockstep, --speed, --sensors, "
+          "--imu-rate and --odometry need");
+    options.vehicle = FlyOptions().vehicle;
+    options.px4_instance = options.px4_instance.value_or(0);
+  }
   if (!options.px4_instance) return options;
   options.domain = std::max(options.domain, 0);
   if (options.level == plant::ControlLevel::kActuators) options.level = plant::ControlLevel::kAttitude;
@@ -268,11 +280,12 @@ Command add_fly_command(runtime::CommandLine root, const std::string& version) {
   app.add_flag("--trace", options->trace,
                "lockstep only: write trace.csv, which holds every sample and command bit for bit");
   for (const char* launch_option :
-       {"--vehicle", "--simulation", "--seed", "--imu-rate", "--level", "--radio-delay", "--radio-jitter",
-        "--radio-loss", "--clock", "--speed"}) {
+       {"--vehicle", "--simulation", "--seed", "--imu-rate", "--level", "--odometry", "--radio-delay",
+        "--radio-jitter", "--radio-loss", "--clock", "--speed"}) {
     attach.excludes(app.option(launch_option));
   }
-  for (const char* of_simulation : {"--imu-rate", "--clock", "--speed", "--spacing", "--sensors"})
+  for (const char* of_simulation :
+       {"--imu-rate", "--odometry", "--clock", "--speed", "--spacing", "--sensors"})
     px4.excludes(app.option(of_simulation));
   // Processes that it starts are on this host.
   for (const char* network_option :
@@ -284,7 +297,8 @@ Command add_fly_command(runtime::CommandLine root, const std::string& version) {
       "Ctrl-C ends the flight at once.\nexample: swiftlet fly square --record /tmp/square --json | jq "
       ".rms_3d_m\nexample: swiftlet fly square,zigzag --vehicle-name kl1,kl2\nexample: swiftlet fly hop.yaml "
       "--vehicles 16 "
-      "--clock lockstep --spacing 0.4 --per-row 4\nexample: swiftlet fly square --px4 0 --level trajectory");
+      "--clock lockstep --spacing 0.4 --per-row 4\nexample: swiftlet fly square --vehicle px4 --level "
+      "trajectory");
   return {app, [options] { return fly(*options); }};
 }
 

@@ -49,6 +49,16 @@ void add_level_option(runtime::CommandLine app, plant::ControlLevel& level) {
       .show_default("actuators");
 }
 
+void add_odometry_option(runtime::CommandLine app, plant::OdometrySource& odometry) {
+  app.add_choice(
+         "--odometry", odometry,
+         {{"mocap", plant::OdometrySource::kMocap}, {"own", plant::OdometrySource::kOwnSensors}},
+         "the simulated vehicle brings an estimate of its own in place of its IMU: mocap, of an "
+         "on-board estimator on motion capture, or own, of sensors of its own, which drifts; needs another "
+         "--level than actuators")
+      .show_default("imu");
+}
+
 void add_radio_options(runtime::CommandLine app, FlyOptions& options) {
   app.add_option("--radio-delay", options.radio_delay_s,
                  "radio between vehicle and control: delay one way, s; default: that of the simulation file")
@@ -115,6 +125,7 @@ void add_file_options(runtime::CommandLine app, FileOptions& options) {
 void add_fly_options(runtime::CommandLine app, FlyOptions& options) {
   add_mission_options(app, options);
   add_level_option(app, options.level);
+  add_odometry_option(app, options.odometry);
   add_radio_options(app, options);
   const runtime::Option record = app.add_option(
       "--record", options.record,

@@ -137,6 +137,13 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Comma
   json["airborne"] = control.airborne();
   json["has_pose"] = control.has_pose();
   json["pose_age_s"] = pose_age_s(view, now);
+  json["odometry"] = nullptr;
+  if (!odometry_text(control).empty())
+    json["odometry"] = {
+        {"in_force", control.estimate_source() == msg::ControlStatus_Constants::ESTIMATE_OF_VEHICLE},
+        {"distance_m", control.odometry_distance_m()},
+        {"angle_rad", control.odometry_angle_rad()},
+        {"resets", control.odometry_resets()}};
   json["position_ned_m"] = nullptr;
   json["velocity_ned_m_s"] = nullptr;
   json["attitude_rad"] = nullptr;
@@ -295,6 +302,8 @@ void print(const View& view, const Rates& rates, const CommandOptions& options) 
     if (estimate.resets() > 0) std::printf(", %u resets", estimate.resets());
   }
   std::printf("\n");
+  const std::string odometry = odometry_text(control);
+  if (!odometry.empty()) std::printf("  odometry  %s\n", odometry.c_str());
   print_battery(view);
   if (mission.state() != msg::MissionStatus_Constants::NONE) {
     std::printf("  mission   %s, item %u of %u\n", mission_state_name(mission.state()),

@@ -85,6 +85,10 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
   plan.imu_rate_option_hz = options.imu_rate_hz;
   if (options.imu_rate_hz > 0) plan.simulation.imu.rate_hz = options.imu_rate_hz;
   plan.simulation.control_levels = options.level;
+  plan.simulation.odometry.source = options.odometry;
+  if (options.odometry != plant::OdometrySource::kNone && options.level == plant::ControlLevel::kActuators)
+    throw InputError(
+        "--odometry: needs --level rates, attitude or trajectory: level actuators needs the IMU");
   plant::RadioSettings& radio = plan.simulation.radio;
   radio.delay_s = options.radio_delay_s.value_or(radio.delay_s);
   radio.jitter_s = options.radio_jitter_s.value_or(radio.jitter_s);
@@ -232,6 +236,10 @@ std::vector<ProcessSettings> processes(const Fleet& fleet, const comms::NodeSett
     plant.insert(plant.end(), {"--imu-rate", std::to_string(first.imu_rate_option_hz)});
   }
   plant.insert(plant.end(), {"--level", level, clock[0], clock[1]});
+  if (first.simulation.odometry.source != plant::OdometrySource::kNone) {
+    const bool fuses_mocap = first.simulation.odometry.source == plant::OdometrySource::kMocap;
+    plant.insert(plant.end(), {"--odometry", fuses_mocap ? "mocap" : "own"});
+  }
   const plant::RadioSettings& radio = first.simulation.radio;
   if (radio.on()) {
     plant.insert(plant.end(), {"--radio-delay", runtime::exact(radio.delay_s), "--radio-jitter",

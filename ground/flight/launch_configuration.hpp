@@ -45,6 +45,7 @@ struct FlyOptions {
   std::uint64_t seed = 1;
   int imu_rate_hz = 0;                                              // 0: as in the simulation file
   plant::ControlLevel level = plant::ControlLevel::kActuators;      // at which the vehicle is commanded
+  plant::OdometrySource odometry = plant::OdometrySource::kNone;    // brought by the simulated vehicle
   std::optional<double> radio_delay_s, radio_jitter_s, radio_loss;  // unset: as in the simulation file
   comms::NodeSettings network;
   // m, initial position; the mission is shifted by it.

@@ -31,7 +31,7 @@ std::int64_t wall_now_ns() {
 // Samples come for each sample of the IMU: each such topic has a socket of its own.
 bool is_fast(comms::Qos qos, const std::string& topic) {
   return qos == comms::Qos::kOwnedStream || topic == comms::topics::kImu.name ||
-         topic == comms::topics::kRotorSpeeds.name;
+         topic == comms::topics::kVehicleOdometry.name || topic == comms::topics::kRotorSpeeds.name;
 }
 
 std::optional<std::int64_t> stamp_of(const comms::RawSample& sample, int offset) {
@@ -145,7 +145,9 @@ void FlightRecorder::receive(Channel& channel, const comms::RawSample& sample) {
                         {sample.payload, sample.size}};
   Vehicle& vehicle = channel.vehicle;
   const auto stamp_ns = stamp_of(sample, channel.stamp_offset);
-  if (stamp_ns && channel.name == comms::topics::kImu.name)
+  const bool is_motion =
+      channel.name == comms::topics::kImu.name || channel.name == comms::topics::kVehicleOdometry.name;
+  if (stamp_ns && is_motion)
     vehicle.least_age_ns = std::min(vehicle.least_age_ns.load(), message.log_time_ns - *stamp_ns);
   if (settings_.clock == RecordClock::kVehicle) {
     if (stamp_ns && *stamp_ns > vehicle.newest_stamp_ns) vehicle.newest_stamp_ns = *stamp_ns;

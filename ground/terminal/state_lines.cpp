@@ -40,6 +40,19 @@ double heading_deg(const Eigen::Quaterniond& q_ned_from_frd) {
   return yaw_deg < 0.0 ? yaw_deg + 360.0 : yaw_deg;
 }
 
+std::string odometry_text(const comms::msg::ControlStatus& control) {
+  const bool in_force = control.estimate_source() == comms::msg::ControlStatus_Constants::ESTIMATE_OF_VEHICLE;
+  const bool compared = control.odometry_angle_rad() >= 0.0;
+  if (!in_force && !compared && control.odometry_resets() == 0) return {};
+  constexpr double kDegrees = 57.29577951308232;
+  std::string text = compared
+                         ? fmt::format("{:.3f} m and {:.1f} degrees from motion capture",
+                                       control.odometry_distance_m(), kDegrees * control.odometry_angle_rad())
+                         : "no estimate of motion capture to compare with";
+  if (control.odometry_resets() > 0) text += fmt::format(", {} jumps", control.odometry_resets());
+  return text + (in_force ? ", flown by it" : ", flown by that of motion capture");
+}
+
 std::string attitude_text(const comms::msg::Estimate& estimate) {
   const Eigen::Quaterniond q_ned_from_frd = comms::wire::quaternion(estimate.q_ned_from_frd());
   const control::EulerAngles angles = control::euler_angles(q_ned_from_frd);

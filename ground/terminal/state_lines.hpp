@@ -26,4 +26,7 @@ double heading_deg(const Eigen::Quaterniond& q_ned_from_frd);
 // east, 0 to 360.
 std::string attitude_text(const comms::msg::Estimate& estimate);
 
+// How far the vehicle's own estimate is from that of motion capture, and which of both flies; empty for a vehicle without one.
+std::string odometry_text(const comms::msg::ControlStatus& control);
+
 }  // namespace swiftlet::ground

@@ -221,6 +221,8 @@ void add_timing(const View& view, const WatchFacts& facts, Clock::time_point now
   add(lines, fmt::format("{:<11} estimate {:.0f} Hz, poses {:.0f} Hz, battery {:.0f} Hz", "rates",
                          facts.estimate_hz, facts.pose_hz, facts.battery_hz));
   add(lines, fmt::format("{:<11} {:.3f} s old", "pose", pose_age_s(view, now)));
+  const std::string odometry = odometry_text(control);
+  if (!odometry.empty()) add(lines, fmt::format("{:<11} {}", "odometry", odometry));
   if (view.vehicle.seen()) {
     const msg::VehicleInfo& vehicle = view.vehicle.message;
     add(lines, fmt::format("{:<11} sense to actuate, us: p50 {:.0f}, p99 {:.0f}, max {:.0f}", "latency",

@@ -1,6 +1,7 @@
 #include "swiftlet/ground/vehicle_check/standing_vehicle.hpp"
 
 #include "swiftlet/ground/vehicle_check/description.hpp"
+#include "swiftlet/ground/vehicle_check/odometry.hpp"
 #include "swiftlet/ground/vehicle_check/rest.hpp"
 #include "swiftlet/ground/vehicle_check/streams.hpp"
 #include "swiftlet/ground/vehicle_check/supply.hpp"
@@ -12,8 +13,9 @@ CheckResults check_standing_vehicle(const VehicleRecording& recording, const pla
   if (runs_in_lockstep(recording))
     return {
         missing("imu.lockstep", "the simulated vehicle runs in lockstep: start it in real time to check it")};
-  CheckResults results = check_imu_stream(recording);
-  const CheckResults imu = check_imu_at_rest(recording);
+  const bool odometry = brings_odometry(recording);
+  CheckResults results = odometry ? check_odometry_stream(recording) : check_imu_stream(recording);
+  const CheckResults imu = odometry ? check_odometry_at_rest(recording) : check_imu_at_rest(recording);
   append(results, imu);
   append(results, check_battery_stream(recording));
   append(results, check_supply(recording, vehicle != nullptr

@@ -55,6 +55,10 @@ double longest(const SampleTimes& samples, std::int64_t SampleTime::*time) {
 
 }  // namespace
 
+SampleTimes times_of(const TopicRecord<OdometryReport>& topic) {
+  return times_of(
+      topic, [](const OdometryReport& report) -> const plant::OdometrySample& { return report.odometry; });
+}
 SampleTimes times_of(const TopicRecord<ImuReport>& topic) {
   return times_of(topic, [](const ImuReport& report) -> const plant::ImuSample& { return report.imu; });
 }

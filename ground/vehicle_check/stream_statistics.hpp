@@ -17,6 +17,7 @@ struct SampleTime {
 using SampleTimes = std::vector<SampleTime>;
 
 SampleTimes times_of(const TopicRecord<ImuReport>& topic);
+SampleTimes times_of(const TopicRecord<OdometryReport>& topic);
 SampleTimes times_of(const TopicRecord<plant::BatterySample>& topic);
 SampleTimes times_of(const TopicRecord<plant::PoseSample>& topic);
 SampleTimes times_of(const TopicRecord<plant::RotorSpeedSample>& topic);

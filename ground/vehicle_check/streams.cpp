@@ -17,6 +17,7 @@ constexpr double kClockTolerance = 0.05;     // of the rate of the stamps
 constexpr double kSlowestSimulation = 0.01;  // speeds of a simulated vehicle
 constexpr double kFastestSimulation = 100.0;
 constexpr double kRateTolerance = 0.05;
+constexpr double kLeastOdometryRate_hz = 95.0;
 constexpr double kImuRates[] = {500.0, 1000.0};
 constexpr double kMostLost = 0.05;
 constexpr double kImuGap_s = 0.1;      // imu_timeout_s of the control settings
@@ -230,7 +231,8 @@ CheckResults check_stream(const StreamLimits& limits, const TopicRecord<Sample>&
              fmt::format("at least {:g} Hz", limits.least_rate_hz),
              rate_hz >= limits.least_rate_hz ? "" : fmt::format("too slow: {:.1f} Hz", rate_hz)));
   results.push_back(check_gap(limits.topic, longest_interval_by_arrivals_s(samples), limits.longest_gap_s));
-  results.push_back(check_age(limits, samples, times_of(recording.imu)));
+  const SampleTimes imu = times_of(recording.imu);
+  results.push_back(check_age(limits, samples, imu.empty() ? times_of(recording.odometry) : imu));
   return results;
 }
 
@@ -259,6 +261,25 @@ CheckResults check_imu_stream(const VehicleRecording& recording) {
   results.push_back(keeps_clock ? check_delivery(delivery_delay_p99_s(samples))
                                 : skipped("imu.delivery", "the stamps do not follow the computer's clock"));
   results.push_back(check_imu_age(recording, samples, keeps_clock));
+  return results;
+}
+
+CheckResults check_odometry_stream(const VehicleRecording& recording) {
+  const std::string topic = "vehicle_odometry";
+  CheckResults results = {check_received(topic, recording.odometry, recording.duration_s())};
+  const SampleTimes samples = times_of(recording.odometry);
+  if (samples.size() < kFewest) return results;
+  const SequenceCounts counts = count_sequence(samples);
+  const bool simulated = recording.description && recording.description->simulated;
+  results.push_back(check_sequence(topic, counts));
+  results.push_back(check_stamps(topic, counts));
+  results.push_back(check_clock(topic, clock_rate(samples), simulated));
+  const double rate_hz = rate_by_arrivals(samples);
+  results.push_back(
+      judged(check_name(topic, "rate"), figure(rate_hz, "Hz", 1),
+             fmt::format("at least {:g} Hz", kLeastOdometryRate_hz),
+             rate_hz >= kLeastOdometryRate_hz ? "" : fmt::format("too slow: {:.1f} Hz", rate_hz)));
+  results.push_back(check_gap(topic, longest_interval_by_arrivals_s(samples), kImuGap_s));
   return results;
 }
 

@@ -8,6 +8,8 @@
 namespace swiftlet::ground {
 
 CheckResults check_imu_stream(const VehicleRecording& recording);
+// Of a vehicle that brings vehicle_odometry in place of imu.
+CheckResults check_odometry_stream(const VehicleRecording& recording);
 CheckResults check_battery_stream(const VehicleRecording& recording);
 // Optional for a vehicle: skipped if nobody publishes it.
 CheckResults check_rotor_speed_stream(const VehicleRecording& recording);

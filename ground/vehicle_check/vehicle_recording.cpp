@@ -21,6 +21,7 @@ VehicleRecording part_of(const VehicleRecording& recording, std::int64_t begin_n
   part.end_ns = end_ns;
   const auto received = [](const auto& entry) { return entry.received_ns; };
   keep(part.imu.samples, begin_ns, end_ns, received);
+  keep(part.odometry.samples, begin_ns, end_ns, received);
   keep(part.battery.samples, begin_ns, end_ns, received);
   keep(part.mocap.samples, begin_ns, end_ns, received);
   keep(part.rotor_speeds.samples, begin_ns, end_ns, received);
@@ -30,9 +31,12 @@ VehicleRecording part_of(const VehicleRecording& recording, std::int64_t begin_n
 }
 
 bool runs_in_lockstep(const VehicleRecording& recording) {
+  const auto in_lockstep = [](const auto& samples) {
+    return std::any_of(samples.begin(), samples.end(),
+                       [](const auto& received) { return received.sample.lockstep; });
+  };
   return recording.description && recording.description->simulated &&
-         std::any_of(recording.imu.samples.begin(), recording.imu.samples.end(),
-                     [](const auto& received) { return received.sample.lockstep; });
+         (in_lockstep(recording.imu.samples) || in_lockstep(recording.odometry.samples));
 }
 
 }  // namespace swiftlet::ground

@@ -33,6 +33,13 @@ struct ImuReport {
   bool lockstep = false;  // it names the samples that belong to it, as in lockstep only
 };
 
+// The vehicle's own estimate, in place of an IMU sample.
+struct OdometryReport {
+  plant::OdometrySample odometry;
+  plant::ObeyedCommand obeyed;
+  bool lockstep = false;
+};
+
 struct VehicleDescription {
   std::string name;
   bool simulated = false;
@@ -54,6 +61,7 @@ struct VehicleRecording {
   std::int64_t begin_ns = 0;  // computer's clock
   std::int64_t end_ns = 0;
   TopicRecord<ImuReport> imu;
+  TopicRecord<OdometryReport> odometry;
   TopicRecord<plant::BatterySample> battery;
   TopicRecord<plant::PoseSample> mocap;
   TopicRecord<plant::RotorSpeedSample> rotor_speeds;

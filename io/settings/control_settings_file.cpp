@@ -120,6 +120,18 @@ control::DetectorSettings read_detectors(const ConfigNode& node) {
   return detectors;
 }
 
+control::OdometrySettings read_odometry(const ConfigNode& node) {
+  control::OdometrySettings odometry;
+  odometry.use = node.at("estimate")
+                     .choice<control::OdometryUse>({{"mocap", control::OdometryUse::kMocap},
+                                                    {"vehicle", control::OdometryUse::kVehicle},
+                                                    {"both", control::OdometryUse::kBoth}});
+  odometry.glide_speed = node.at("glide_speed_m_s").number();
+  odometry.glide_yaw_rate = node.at("glide_yaw_rate_rad_s").number();
+  odometry.glide_acceleration = node.at("glide_acceleration_m_s2").number();
+  return odometry;
+}
+
 control::EstimatorSettings read_estimator(const ConfigNode& node) {
   control::EstimatorSettings estimator;
   estimator.accelerometer_noise_density = node.at("accelerometer_noise_m_s2_per_sqrt_hz").number();
@@ -139,6 +151,7 @@ control::EstimatorSettings read_estimator(const ConfigNode& node) {
   estimator.max_body_rate = node.at("max_body_rate_rad_s").number();
   estimator.start_speed = node.at("start_speed_m_s").number();
   estimator.rotor_speed_bandwidth = node.at("rotor_speed_bandwidth_rad_s").number();
+  if (const auto odometry = node.find("odometry")) estimator.odometry = read_odometry(*odometry);
   estimator.detectors = read_detectors(node.at("detectors"));
   return estimator;
 }

@@ -116,6 +116,14 @@ plant::GpsSettings read_gps(const ConfigNode& node) {
   return gps;
 }
 
+plant::OdometrySettings read_odometry(const ConfigNode& node) {
+  plant::OdometrySettings odometry;
+  odometry.position_drift_m = node.at("position_drift_m").number();
+  odometry.heading_drift_rad = node.at("heading_drift_rad").number();
+  odometry.drift_time_constant_s = node.at("drift_time_constant_s").number();
+  return odometry;
+}
+
 plant::FaultKind read_fault_kind(const ConfigNode& node) {
   using Kind = plant::FaultKind;
   const auto named = [](Kind kind) { return std::make_pair(plant::to_string(kind), kind); };
@@ -124,7 +132,8 @@ plant::FaultKind read_fault_kind(const ConfigNode& node) {
                             named(Kind::kImuStop), named(Kind::kImuNan), named(Kind::kImuStuck),
                             named(Kind::kImuBias), named(Kind::kBatteryStop), named(Kind::kRotorSpeedsStop),
                             named(Kind::kBatteryDrop), named(Kind::kRotorThrust), named(Kind::kPush),
-                            named(Kind::kWind), named(Kind::kCommandsStop), named(Kind::kCommandsDelay)});
+                            named(Kind::kWind), named(Kind::kCommandsStop), named(Kind::kCommandsDelay),
+                            named(Kind::kOdometryJump)});
 }
 
 plant::Fault read_fault(const ConfigNode& node) {
@@ -139,6 +148,7 @@ plant::Fault read_fault(const ConfigNode& node) {
       fault.rotation_frd = node.at("rotation_frd_rad").vector3();
       break;
     case Kind::kMocapSwap:
+    case Kind::kOdometryJump:
       fault.position_ned = node.at("position_ned_m").vector3();
       fault.yaw_rad = node.at("yaw_rad").number();
       break;
@@ -199,6 +209,7 @@ plant::SimulationSettings parse_simulation_settings(std::string_view text, const
     settings.barometer = read_barometer(root.at("barometer"));
     settings.magnetometer = read_magnetometer(root.at("magnetometer"));
     settings.gps = read_gps(root.at("gps"));
+    if (const auto odometry = root.find("odometry")) settings.odometry = read_odometry(*odometry);
     settings.faults = read_faults(root);
   });
   reject_violations(root, plant::validate(settings));

@@ -24,6 +24,25 @@ struct ImuSample {
   Eigen::Vector3d body_rates_frd = Eigen::Vector3d::Zero();      // rad/s: p, q, r
 };
 
+// The vehicle's own estimate of its motion, of a vehicle that brings it in place of raw IMU samples. Its NED frame may differ
+// from that of motion capture.
+struct OdometrySample {
+  std::int64_t stamp_ns = 0;
+  std::uint64_t sequence = 0;
+  bool position_valid = false;                             // false: the position below is not known
+  Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();  // m
+  bool velocity_valid = false;
+  Eigen::Vector3d velocity_ned = Eigen::Vector3d::Zero();  // m/s
+  Eigen::Quaterniond q_ned_from_frd = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d body_rates_frd = Eigen::Vector3d::Zero();  // rad/s: p, q, r, bias removed
+  // Standard deviations of the errors, each axis; 0: not known.
+  Eigen::Vector3d position_deviation = Eigen::Vector3d::Zero();  // m
+  Eigen::Vector3d velocity_deviation = Eigen::Vector3d::Zero();  // m/s
+  Eigen::Vector3d rotation_deviation = Eigen::Vector3d::Zero();  // rad
+  std::uint32_t resets = 0;  // counts up with each jump of position, velocity or attitude that is no motion
+  bool fuses_mocap = false;  // its position is that of motion capture, not of sensors of its own
+};
+
 struct PoseSample {
   std::int64_t stamp_ns = 0;  // exposure of the frame, not its arrival
   std::uint64_t sequence = 0;

@@ -42,6 +42,9 @@ void check_navigation_sensors(const SimulationSettings& settings, RuleChecker& c
   check_axes("gps.position_noise_ned_m", settings.gps.position_noise_ned, 0.0, 100.0, check);
   check_axes("gps.position_drift_ned_m", settings.gps.position_drift_ned, 0.0, 100.0, check);
   check.between("gps.drift_time_constant_s", settings.gps.drift_time_constant_s, 0.1, 1.0e4);
+  check.between("odometry.position_drift_m", settings.odometry.position_drift_m, 0.0, 10.0);
+  check.between("odometry.heading_drift_rad", settings.odometry.heading_drift_rad, 0.0, 1.0);
+  check.between("odometry.drift_time_constant_s", settings.odometry.drift_time_constant_s, 1.0, 1.0e4);
   check_axes("gps.velocity_noise_ned_m_s", settings.gps.velocity_noise_ned, 0.0, 100.0, check);
 }
 

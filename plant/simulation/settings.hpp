@@ -118,6 +118,18 @@ struct GpsSettings {
   Eigen::Vector3d velocity_noise_ned{0.05, 0.05, 0.1};  // m/s, standard deviation of a sample
 };
 
+// What the vehicle brings in place of IMU samples: nothing, the estimate of its on-board estimator, or that of position
+// sensors of its own (odometry.hpp).
+enum class OdometrySource : std::uint8_t { kNone, kMocap, kOwnSensors };
+
+struct OdometrySettings {
+  OdometrySource source = OdometrySource::kNone;  // not a key of the file (`--odometry`)
+  // Of its own sensors: standard deviations of errors that change smoothly.
+  double position_drift_m = 0.1;  // each axis
+  double heading_drift_rad = 0.02;
+  double drift_time_constant_s = 20.0;  // of these errors
+};
+
 struct SimulationSettings {
   std::string name = "default";
   std::int64_t step_ns = 1'000'000;  // integration step
@@ -136,6 +148,7 @@ struct SimulationSettings {
   BarometerSettings barometer;
   MagnetometerSettings magnetometer;
   GpsSettings gps;
+  OdometrySettings odometry;
   std::vector<Fault> faults;  // injected faults, in any order
 };
 

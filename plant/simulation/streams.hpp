@@ -22,6 +22,7 @@ constexpr std::uint64_t kBarometer = 30;
 constexpr std::uint64_t kMagnetometer = 31;
 constexpr std::uint64_t kGpsNoise = 32;
 constexpr std::uint64_t kGpsDrift = 33;
+constexpr std::uint64_t kOdometry = 34;
 constexpr std::uint64_t kRadioTelemetry = 40;
 constexpr std::uint64_t kRadioCommands = 41;
 constexpr std::uint64_t kRadioPoses = 42;

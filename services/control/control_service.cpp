@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <random>
 #include <utility>
 
@@ -72,7 +71,6 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
   std::function<void(const msg::MocapPose&)> take_pose;
   std::function<void(const msg::Battery&)> take_battery;
   std::function<void(const msg::RotorSpeeds&)> take_rotor_speeds;
-  std::function<void(const msg::Imu&)> take_imu;
   // In real time no other topic may delay IMU and poses. In lockstep threads of their own only cost wake-ups.
   const Delivery delivery = clock == runtime::Clock::kLockstep ? Delivery::kShared : Delivery::kOwnThread;
   if (clock == runtime::Clock::kLockstep) {
@@ -80,12 +78,10 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
     take_battery = deliver_in_lockstep<msg::Battery>(loop_.battery, battery_faults_, Stream::kBattery);
     take_rotor_speeds =
         deliver_in_lockstep<msg::RotorSpeeds>(loop_.rotor_speeds, rotor_speed_faults_, Stream::kRotorSpeeds);
-    take_imu = [this](const msg::Imu& message) { on_imu_in_lockstep(message); };
   } else {
     take_pose = deliver<msg::MocapPose>(loop_.pose, pose_faults_);
     take_battery = deliver<msg::Battery>(loop_.battery, battery_faults_);
     take_rotor_speeds = deliver<msg::RotorSpeeds>(loop_.rotor_speeds, rotor_speed_faults_);
-    take_imu = [this](const msg::Imu& message) { on_imu(message); };
     telemetry_.watch_imu();
   }
 
@@ -142,13 +138,28 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
         topics::kControllerState, [this](const auto& message) { on_controller_state(message); },
         Delivery::kOwnThread));
   }
-  sensors_.push_back({"IMU samples", node.subscribe<msg::Imu>(
-                                         topics::kImu,
-                                         [this, take_imu](const auto& message) {
-                                           note(imu_arrivals_, message);
-                                           take_imu(message);
-                                         },
-                                         delivery, comms::kSourceSilence)});
+  subscribe_motion(node, topics::kVehicleOdometry, "vehicle_odometry samples",
+                   AnsweredSamples::Kind::kOdometry);
+  subscribe_motion(node, topics::kImu, "IMU samples", AnsweredSamples::Kind::kImu);
+}
+
+// The samples that are answered: of the IMU, or the vehicle's own estimates in place of them.
+template <class Message>
+void ControlService::subscribe_motion(comms::Node& node, const comms::Topic<Message>& topic,
+                                      const char* samples, AnsweredSamples::Kind kind) {
+  const bool lockstep = clock_ == runtime::Clock::kLockstep;
+  const auto take = [this, kind, lockstep](const Message& message) {
+    const std::unique_lock<std::mutex> lock(step_mutex_, std::try_to_lock);
+    if (!lock.owns_lock() || !answered_samples_.admit(kind, runtime::monotonic_ns())) return;
+    note(imu_arrivals_, message);
+    if (lockstep) {
+      on_sample_in_lockstep(vehicle_sample(message));
+    } else {
+      on_sample(vehicle_sample(message));
+    }
+  };
+  const Delivery delivery = lockstep ? Delivery::kShared : Delivery::kOwnThread;
+  sensors_.push_back({samples, node.subscribe<Message>(topic, take, delivery, comms::kSourceSilence)});
 }
 
 template <class Message>
@@ -177,14 +188,14 @@ std::function<void(const Message&)> ControlService::deliver_in_lockstep(runtime:
     const std::lock_guard<std::mutex> lock(gate_mutex_);
     if (!gate_.is_new(stream, message.sequence_number())) return;
     take(message);
-    if (const auto imu = gate_.take()) answer(*imu, take_role_in_lockstep(*imu));
+    if (const auto sample = gate_.take()) answer(*sample, take_role_in_lockstep(*sample));
   };
 }
 
-// The hot path: from the IMU sample to its command.
-void ControlService::on_imu(const msg::Imu& message) {
+// The hot path: from the sample to its command.
+void ControlService::on_sample(const VehicleSample& sample) {
   imu_thread_.enter(realtime_);
-  answer(message, take_role(message));
+  answer(sample, take_role(sample));
 }
 
 // The inner loop uses the other controllers' states from the next IMU sample on.
@@ -207,27 +218,26 @@ void ControlService::on_controller_state(const msg::ControllerState& message) {
                     other.active ? Role::kActive : Role::kStandby, now_ns});
 }
 
-Role ControlService::take_role(const msg::Imu& message) {
+Role ControlService::take_role(const VehicleSample& sample) {
   const Role before = failover_.role();
   heartbeats_.consume_all([this](const Heartbeat& beat) { failover_.heard(beat); });
   const std::int64_t now_ns = runtime::monotonic_ns();
-  const Role role = failover_.sample(message.stamp_ns(), comms::obeyed_command(message), now_ns);
+  const Role role = failover_.sample(sample.stamp_ns(), sample.obeyed, now_ns);
   const bool active = role == Role::kActive;
   command_server_.set_active(active);
   active_.store(active, std::memory_order_relaxed);
   wanted_strength_.store(active ? failover_.term() : failover_.next_term(), std::memory_order_relaxed);
   if (role != before) {
     if (!active) stepped_down_ns_.store(now_ns, std::memory_order_relaxed);
-    const bool flew = message.commands() == msg::Imu_Constants::COMMANDS_OBEYED;
+    const bool flew = sample.obeyed.reported && sample.obeyed.any;
     if (active && flew && !failover_.continues()) loop_.attempt_restart_in_air();
   }
   return role;
 }
 
 // A lockstep controller is active from the first sample on. Another term in a sample reveals a rival.
-Role ControlService::take_role_in_lockstep(const msg::Imu& message) {
-  const plant::ObeyedCommand obeyed = comms::obeyed_command(message);
-  if (obeyed.any && obeyed.term != failover_.next_term()) {
+Role ControlService::take_role_in_lockstep(const VehicleSample& sample) {
+  if (sample.obeyed.any && sample.obeyed.term != failover_.next_term()) {
     rival_.store(true, std::memory_order_relaxed);
     wake_.post();
     return Role::kStandby;
@@ -235,17 +245,17 @@ Role ControlService::take_role_in_lockstep(const msg::Imu& message) {
   return Role::kActive;
 }
 
-// While simulated time stands still, the plant repeats an IMU sample that was answered before: the pending
+// While simulated time stands still, the plant repeats a sample that was answered before: the pending
 // requests are answered, and the same command is published again.
-void ControlService::on_imu_in_lockstep(const msg::Imu& message) {
+void ControlService::on_sample_in_lockstep(const VehicleSample& sample) {
   const std::lock_guard<std::mutex> lock(gate_mutex_);
   if (!levels_known_.load(std::memory_order_acquire)) return;  // the plant sends the sample again
-  if (!gate_.offer(message)) {
+  if (!gate_.offer(sample)) {
     loop_.answer_requests();
     commands_.publish(last_answer_);
     if (loop_.finish(runtime::monotonic_ns())) wake_.post();
-  } else if (const auto imu = gate_.take()) {
-    answer(*imu, take_role_in_lockstep(*imu));
+  } else if (const auto complete = gate_.take()) {
+    answer(*complete, take_role_in_lockstep(*complete));
   }
 }
 
@@ -257,21 +267,16 @@ void ControlService::on_ground_link(const msg::GroundLink& message) {
   loop_.ground_heartbeats.push(heartbeat);
 }
 
-void ControlService::answer(const msg::Imu& message, Role role) {
+void ControlService::answer(const VehicleSample& sample, Role role) {
   const std::int64_t arrived_ns = runtime::monotonic_ns();
-  plant::ImuSample sample;
-  if (comms::from_message(message, sample)) {
-    // The controller counts unusable samples and acts on them: it must see them as NaN.
-    sample.stamp_ns = message.stamp_ns();
-    sample.sequence = message.sequence_number();
-    sample.specific_force_frd.setConstant(std::numeric_limits<double>::quiet_NaN());
-  }
-  last_answer_ = loop_.step(sample, arrived_ns, role, failover_.followed_term());
+  last_answer_ = std::visit(
+      [&](const auto& motion) { return loop_.step(motion, arrived_ns, role, failover_.followed_term()); },
+      sample.motion);
   plant::header_of(last_answer_).term =
       clock_ == runtime::Clock::kLockstep ? failover_.next_term() : failover_.term();
   if (role == Role::kActive && !loop_.detecting_airborne()) commands_.publish(last_answer_);
   if (loop_.finish(runtime::monotonic_ns(), failover_.loop_delay().figures())) wake_.post();
-  if (loop_.report_due()) report(message.stamp_ns());
+  if (loop_.report_due()) report(sample.stamp_ns());
 }
 
 void ControlService::report(std::int64_t stamp_ns) {
@@ -358,6 +363,8 @@ std::string ControlService::source_conflict() const {
     return std::string(sensor->samples) + " of " + conflict->ignored.to_string() + " are ignored: those of " +
            conflict->used.to_string() + " are used";
   }
+  if (const char* const ignored = answered_samples_.ignored(runtime::monotonic_ns()))
+    return std::string(ignored) + " is ignored: the vehicle brings both imu and vehicle_odometry";
   return {};
 }
 

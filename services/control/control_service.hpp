@@ -60,13 +60,16 @@ class ControlService {
 
  private:
   void subscribe(comms::Node& node, runtime::Clock clock);
-  void on_imu(const comms::msg::Imu& message);
-  void on_imu_in_lockstep(const comms::msg::Imu& message);
+  template <class Message>
+  void subscribe_motion(comms::Node& node, const comms::Topic<Message>& topic, const char* samples,
+                        AnsweredSamples::Kind kind);
+  void on_sample(const VehicleSample& sample);
+  void on_sample_in_lockstep(const VehicleSample& sample);
   void on_ground_link(const comms::msg::GroundLink& message);
   void on_controller_state(const comms::msg::ControllerState& message);
-  Role take_role(const comms::msg::Imu& message);
-  Role take_role_in_lockstep(const comms::msg::Imu& message);
-  void answer(const comms::msg::Imu& message, Role role);
+  Role take_role(const VehicleSample& sample);
+  Role take_role_in_lockstep(const VehicleSample& sample);
+  void answer(const VehicleSample& sample, Role role);
   void report(std::int64_t stamp_ns);
   void activate_if_isolated();
   void update_strength();
@@ -107,6 +110,9 @@ class ControlService {
       0};                                  // by vehicle_info, as ControlLevels::bits(); 0: not known yet
   std::uint8_t adopted_levels_ = 0;        // used by the thread of run() only
   std::atomic<bool> levels_known_{false};  // the inner loop has them, or will at its next step
+  AnsweredSamples answered_samples_;
+  std::mutex
+      step_mutex_;  // of the threads of IMU samples and of the vehicle's estimates; one of both is refused
   Arrivals imu_arrivals_, pose_arrivals_, battery_arrivals_;
   boost::lockfree::spsc_queue<Heartbeat, boost::lockfree::capacity<64>> heartbeats_;
   std::atomic<bool> active_{false};

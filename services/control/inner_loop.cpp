@@ -17,6 +17,24 @@ InnerLoop::InnerLoop(const plant::Vehicle& vehicle, const control::ControlSettin
 
 plant::VehicleCommand InnerLoop::step(const plant::ImuSample& sample, std::int64_t now_ns, Role role,
                                       std::uint32_t followed_term) {
+  Clients clients;
+  begin_step(sample.stamp_ns, now_ns, role, followed_term, clients);
+  const plant::VehicleCommand command = controller_.on_imu(sample, clients.inputs);
+  end_step(command, clients, sample.stamp_ns, sample.sequence, now_ns);
+  return command;
+}
+
+plant::VehicleCommand InnerLoop::step(const plant::OdometrySample& sample, std::int64_t now_ns, Role role,
+                                      std::uint32_t followed_term) {
+  Clients clients;
+  begin_step(sample.stamp_ns, now_ns, role, followed_term, clients);
+  const plant::VehicleCommand command = controller_.on_odometry(sample, clients.inputs);
+  end_step(command, clients, sample.stamp_ns, sample.sequence, now_ns);
+  return command;
+}
+
+void InnerLoop::begin_step(std::int64_t stamp_ns, std::int64_t now_ns, Role role, std::uint32_t followed_term,
+                           Clients& clients) {
   last_arrival_ns_.store(now_ns, std::memory_order_relaxed);
   role_ = role;
   take_samples();
@@ -25,19 +43,20 @@ plant::VehicleCommand InnerLoop::step(const plant::ImuSample& sample, std::int64
   if (vehicle_fault.take(fault)) controller_.set_vehicle_fault(fault);
   take_heartbeats();
   if (role == Role::kStandby) follow(followed_term);
-  if (detecting_airborne()) detect_airborne(sample);
-  Clients clients;
+  if (detecting_airborne()) detect_airborne(stamp_ns);
   take_setpoint(clients);
   take_requests(clients);
-  const plant::VehicleCommand command = controller_.on_imu(sample, clients.inputs);
+}
+
+void InnerLoop::end_step(const plant::VehicleCommand& command, const Clients& clients, std::int64_t stamp_ns,
+                         std::uint64_t sequence, std::int64_t now_ns) {
   level_.store(plant::level_of(command), std::memory_order_relaxed);
-  return_outcomes(clients, sample.stamp_ns);
+  return_outcomes(clients, stamp_ns);
   rotors_running_ = plant::header_of(command).rotor_state == plant::RotorState::kRunning;
-  stamp_ns_ = sample.stamp_ns;
+  stamp_ns_ = stamp_ns;
   last_imu_sequence_ = imu_sequence_;
-  imu_sequence_ = sample.sequence;
-  timing_.arrived(sample.sequence, sample.stamp_ns, now_ns, rotors_running_);
-  return command;
+  imu_sequence_ = sequence;
+  timing_.arrived(sequence, stamp_ns, now_ns, rotors_running_);
 }
 
 void InnerLoop::take_samples() {
@@ -78,13 +97,13 @@ void InnerLoop::follow(std::uint32_t term) {
 }
 
 // Uses the state before this sample; therefore the first call only begins the detection.
-void InnerLoop::detect_airborne(const plant::ImuSample& sample) {
-  if (detecting_since_ns_ == kDetectFromNow || sample.stamp_ns < detecting_since_ns_) {
-    detecting_since_ns_ = sample.stamp_ns;
+void InnerLoop::detect_airborne(std::int64_t stamp_ns) {
+  if (detecting_since_ns_ == kDetectFromNow || stamp_ns < detecting_since_ns_) {
+    detecting_since_ns_ = stamp_ns;
     rotor_samples_ = 0;
     return;
   }
-  const bool over = sample.stamp_ns - detecting_since_ns_ > kAirborneDetectionNs;
+  const bool over = stamp_ns - detecting_since_ns_ > kAirborneDetectionNs;
   const bool rotors_known = rotor_samples_ >= kRotorSamples || over;
   if (!rotors_known) return;
   const bool stands = !controller_.detects_airborne();

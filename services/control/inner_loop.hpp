@@ -90,6 +90,9 @@ class InnerLoop {
   // state of term followed_term; its command must not be sent. loop_delay: for telemetry.
   plant::VehicleCommand step(const plant::ImuSample& sample, std::int64_t now_ns, Role role = Role::kActive,
                              std::uint32_t followed_term = 0);
+  // The same for the vehicle's own estimate, in place of the IMU sample.
+  plant::VehicleCommand step(const plant::OdometrySample& sample, std::int64_t now_ns,
+                             Role role = Role::kActive, std::uint32_t followed_term = 0);
   bool finish(std::int64_t now_ns, const LoopDelay::Figures& loop_delay = {});
 
   // In-air restart, if there is no controller state to continue from: from the next step on detects whether
@@ -124,6 +127,11 @@ class InnerLoop {
     std::size_t request_count = 0;
   };
 
+  // What comes before and after the controller's step.
+  void begin_step(std::int64_t stamp_ns, std::int64_t now_ns, Role role, std::uint32_t followed_term,
+                  Clients& clients);
+  void end_step(const plant::VehicleCommand& command, const Clients& clients, std::int64_t stamp_ns,
+                std::uint64_t sequence, std::int64_t now_ns);
   void take_samples();
   void take_levels();
   void take_requests(Clients& clients);
@@ -131,7 +139,7 @@ class InnerLoop {
   void return_outcomes(const Clients& clients, std::int64_t stamp_ns);
   void count(const control::Outcome& setpoint_outcome);
   void follow(std::uint32_t term);
-  void detect_airborne(const plant::ImuSample& sample);
+  void detect_airborne(std::int64_t stamp_ns);
   void take_heartbeats();
   bool status_changed() const;
 

@@ -132,6 +132,11 @@ void Telemetry::take(const Snapshot& snapshot) {
       spdlog::warn("mocap lost: the last pose is {:.2f} s old", now.pose_age_s);
     }
   }
+  if (now.odometry.in_force != before.odometry.in_force)
+    spdlog::info("flown by the {}",
+                 now.odometry.in_force ? "vehicle's own estimate" : "estimate of motion capture");
+  if (now.odometry.resets != before.odometry.resets)
+    spdlog::warn("the vehicle's own estimate has jumped, {} times in all", now.odometry.resets);
   if (now.level != before.level)
     spdlog::info("commands the vehicle at level {}", plant::to_string(now.level));
   if (now.ground_links != before.ground_links)
@@ -219,6 +224,11 @@ void Telemetry::publish_status() {
   message.delay_near_margin(delay.near_margin);
   message.realtime_scheduling(realtime_);
   message.control_level(plant::ControlLevels(status.level).bits());
+  message.estimate_source(status.odometry.in_force ? comms::msg::ControlStatus_Constants::ESTIMATE_OF_VEHICLE
+                                                   : comms::msg::ControlStatus_Constants::ESTIMATE_OF_MOCAP);
+  message.odometry_distance_m(status.odometry.distance_m);
+  message.odometry_angle_rad(status.odometry.angle_rad);
+  message.odometry_resets(status.odometry.resets);
   message.controller(controller_);
   message.settings() = status.settings.data();
   message.gains_progress(status.gains_progress);

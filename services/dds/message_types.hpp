@@ -27,6 +27,7 @@
 #include "swiftlet_msgs/msg/TrajectoryPubSubTypes.h"
 #include "swiftlet_msgs/msg/TrajectorySetpointPubSubTypes.h"
 #include "swiftlet_msgs/msg/VehicleInfoPubSubTypes.h"
+#include "swiftlet_msgs/msg/VehicleOdometryPubSubTypes.h"
 
 #include "swiftlet/services/messages/topics.hpp"
 
@@ -36,7 +37,7 @@
   X(ActuatorCommand) X(AttitudeSetpoint) X(Battery) X(ClockReply) X(ClockRequest) X(ClockStatus) X(Command) X(CommandAck) X(ControllerState) X(ControlSettings) X(ControlStatus) \
   X(Estimate) X(GroundLink) X(GroundTruth) X(Imu) X(Mission) X(MissionStatus) \
   X(MocapPose) X(RatesSetpoint) X(Reference) X(RotorSpeeds) X(Setpoint)   \
-  X(SimulationClock) X(Trajectory) X(TrajectorySetpoint) X(VehicleInfo)
+  X(SimulationClock) X(Trajectory) X(TrajectorySetpoint) X(VehicleInfo) X(VehicleOdometry)
 // clang-format on
 
 namespace swiftlet::comms {

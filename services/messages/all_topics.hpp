@@ -9,6 +9,7 @@ namespace swiftlet::comms {
 template <class Use>
 void for_each_topic(const Use& use) {
   use(topics::kImu);
+  use(topics::kVehicleOdometry);
   use(topics::kActuatorCommand);
   use(topics::kRatesSetpoint);
   use(topics::kAttitudeSetpoint);

@@ -99,19 +99,6 @@ msg::Imu to_message(const plant::ImuSample& in) {
   return out;
 }
 
-plant::ObeyedCommand obeyed_command(const msg::Imu& in) {
-  const bool reported = in.commands() != msg::Imu_Constants::COMMANDS_UNREPORTED;
-  return {reported, in.commands() == msg::Imu_Constants::COMMANDS_OBEYED, in.command_term(),
-          in.command_stamp_ns()};
-}
-
-void set_obeyed_command(const plant::ObeyedCommand& obeyed, msg::Imu& in) {
-  using namespace msg::Imu_Constants;
-  in.commands(!obeyed.reported ? COMMANDS_UNREPORTED : obeyed.any ? COMMANDS_OBEYED : COMMANDS_NONE);
-  in.command_term(obeyed.term);
-  in.command_stamp_ns(obeyed.stamp_ns);
-}
-
 Fault from_message(const msg::MocapPose& in, plant::PoseSample& out) {
   Check check;
   check.time(in.stamp_ns());

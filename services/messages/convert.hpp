@@ -44,6 +44,8 @@ struct ControllerReport {
 // allocate.
 Fault from_message(const msg::Imu& in, plant::ImuSample& out);
 plant::ObeyedCommand obeyed_command(const msg::Imu& in);
+Fault from_message(const msg::VehicleOdometry& in, plant::OdometrySample& out);
+plant::ObeyedCommand obeyed_command(const msg::VehicleOdometry& in);
 Fault from_message(const msg::MocapPose& in,
                    plant::PoseSample& out);  // ignores the pose of an untracked sample
 Fault from_message(const msg::Battery& in, plant::BatterySample& out);
@@ -63,6 +65,8 @@ Fault from_message(const msg::ControlSettings& in, control::SettingsRequest& out
 
 msg::Imu to_message(const plant::ImuSample& in);
 void set_obeyed_command(const plant::ObeyedCommand& obeyed, msg::Imu& in);  // into an IMU sample
+msg::VehicleOdometry to_message(const plant::OdometrySample& in);
+void set_obeyed_command(const plant::ObeyedCommand& obeyed, msg::VehicleOdometry& in);
 msg::MocapPose to_message(const plant::PoseSample& in);
 msg::Battery to_message(const plant::BatterySample& in);
 msg::RotorSpeeds to_message(const plant::RotorSpeedSample& in);

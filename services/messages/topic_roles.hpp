@@ -20,6 +20,7 @@ struct WrittenTopic {
 };
 inline constexpr WrittenTopic kWrittenTopics[] = {
     {"imu", roles::kVehicle},
+    {"vehicle_odometry", roles::kVehicle},
     {"rotor_speeds", roles::kVehicle},
     {"battery", roles::kVehicle},
     {"ground_truth", roles::kVehicle},

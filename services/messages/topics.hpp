@@ -28,6 +28,7 @@
 #include "swiftlet_msgs/msg/Trajectory.h"
 #include "swiftlet_msgs/msg/TrajectorySetpoint.h"
 #include "swiftlet_msgs/msg/VehicleInfo.h"
+#include "swiftlet_msgs/msg/VehicleOdometry.h"
 
 #include "swiftlet/services/messages/qos.hpp"
 
@@ -45,6 +46,7 @@ struct Topic {
 
 namespace topics {
 inline constexpr Topic<msg::Imu> kImu{"imu", Qos::kStream};
+inline constexpr Topic<msg::VehicleOdometry> kVehicleOdometry{"vehicle_odometry", Qos::kStream};
 inline constexpr Topic<msg::ActuatorCommand> kActuatorCommand{"actuator_command", Qos::kOwnedStream, 50};
 inline constexpr Topic<msg::RatesSetpoint> kRatesSetpoint{"rates_setpoint", Qos::kOwnedStream, 50};
 inline constexpr Topic<msg::AttitudeSetpoint> kAttitudeSetpoint{"attitude_setpoint", Qos::kOwnedStream, 50};

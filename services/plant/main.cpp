@@ -47,6 +47,7 @@ struct Options {
   double spacing_m = 1.0;
   int per_row = 0;  // 0: all in one row
   std::string levels = "actuators";
+  plant::OdometrySource odometry = plant::OdometrySource::kNone;
   int imu_rate = 0;  // Hz; 0: as in the simulation file
   std::optional<double> rotor_speed_rate_hz;
   std::optional<double> radio_delay_s, radio_jitter_s, radio_loss;
@@ -141,6 +142,13 @@ void add_options(runtime::CommandLine app, Options& options) {
          "trajectory. At all but actuators it flies by loops of its own, as flight-control firmware does")
       .check(fault_of_levels, "LEVELS")
       .show_default();
+  app.add_choice(
+         "--odometry", options.odometry,
+         {{"mocap", plant::OdometrySource::kMocap}, {"own", plant::OdometrySource::kOwnSensors}},
+         "Bring vehicle_odometry in place of imu: mocap, the estimate of an on-board estimator on IMU and "
+         "motion capture, or own, one of position sensors of its own, which drifts as the simulation file "
+         "says")
+      .show_default("imu");
   app.add_option("--imu-rate", options.imu_rate,
                  "IMU rate, Hz, 500 or 1000; default: as in the simulation file")
       .one_of({"500", "1000"});
@@ -198,6 +206,8 @@ void check_autopilot(const Options& options, std::size_t vehicles) {
     throw std::invalid_argument("--truth-only: needs real time, in lockstep --speed 1");
   if (plant::control_levels_from(options.levels) != plant::ControlLevels(plant::ControlLevel::kActuators))
     throw std::invalid_argument("--level: an autopilot commands throttles, level actuators");
+  if (options.odometry != plant::OdometrySource::kNone)
+    throw std::invalid_argument("--odometry: an autopilot has an estimator of its own");
   if (!autopilot.device.empty() && options.clock == runtime::Clock::kLockstep)
     throw std::invalid_argument("--autopilot-device: needs --clock realtime; a board keeps its own time");
   if (!autopilot.device.empty() && vehicles > 1)
@@ -223,6 +233,7 @@ PlantSettings load(const Options& options) {
   settings.simulation = runtime::load_simulation_settings(
       runtime::configuration_file(runtime::kinds::kSimulation, options.simulation));
   settings.simulation.control_levels = plant::control_levels_from(options.levels).value();
+  settings.simulation.odometry.source = options.odometry;
   if (options.imu_rate != 0) settings.simulation.imu.rate_hz = options.imu_rate;
   if (options.rotor_speed_rate_hz) settings.simulation.rotor_speed_rate_hz = *options.rotor_speed_rate_hz;
   plant::RadioSettings& radio = settings.simulation.radio;

@@ -14,6 +14,7 @@ using comms::topics::kBattery;
 using comms::topics::kGroundTruth;
 using comms::topics::kImu;
 using comms::topics::kRotorSpeeds;
+using comms::topics::kVehicleOdometry;
 
 constexpr std::int64_t kReportPeriodNs = 50'000'000;
 
@@ -53,9 +54,14 @@ SimulatedVehicle::SimulatedVehicle(const plant::Vehicle& vehicle, const plant::S
       firmware_(vehicle, settings),
       answers_(plant::period_ns(settings.imu.rate_hz)),
       ground_truth_(node.publish(kGroundTruth)) {
+  if (settings.odometry.source != plant::OdometrySource::kNone) odometry_.emplace(settings, seed);
   inform_firmware();
   if (truth_only) return;
-  imu_ = node.publish(kImu);
+  if (odometry_) {
+    vehicle_odometry_ = node.publish(kVehicleOdometry);
+  } else {
+    imu_ = node.publish(kImu);
+  }
   rotor_speeds_ = node.publish(kRotorSpeeds);
   battery_ = node.publish(kBattery);
 }
@@ -113,30 +119,45 @@ void SimulatedVehicle::step() {
 }
 
 void SimulatedVehicle::inform_firmware() {
+  odometry_sample_.reset();
   if (simulation_.imu()) firmware_.on_imu(*simulation_.imu());
+  if (simulation_.imu() && odometry_) {
+    odometry_sample_ = odometry_->sample(*simulation_.imu(), simulation_.state(), firmware_.estimator());
+    firmware_.on_odometry(*odometry_sample_);
+  }
   if (simulation_.battery()) firmware_.on_battery(*simulation_.battery());
-  if (telemetry_path_.has_radio()) telemetry_path_.collect(simulation_, firmware_.obeyed());
+  if (telemetry_path_.has_radio()) telemetry_path_.collect(simulation_, firmware_.obeyed(), odometry_sample_);
 }
 
-void SimulatedVehicle::prepare_imu(const plant::ImuSample& sample, const plant::ObeyedCommand& obeyed) {
-  imu_message_ = comms::to_message(sample);
-  comms::set_obeyed_command(obeyed, imu_message_);
-  if (report_.rotors_running) answers_.written(sample.sequence, runtime::monotonic_ns());
+// Without a radio, the samples of this stamp are those that arrive.
+plant::TelemetryPacket SimulatedVehicle::present_samples() const {
+  return {*simulation_.imu(), odometry_sample_, firmware_.obeyed(), {}, {}};
+}
+
+void SimulatedVehicle::prepare_imu(const plant::TelemetryPacket& packet) {
+  if (packet.odometry) {
+    odometry_message_ = comms::to_message(*packet.odometry);
+    comms::set_obeyed_command(packet.obeyed, odometry_message_);
+  } else {
+    imu_message_ = comms::to_message(packet.imu);
+    comms::set_obeyed_command(packet.obeyed, imu_message_);
+  }
+  if (report_.rotors_running) answers_.written(packet.imu.sequence, runtime::monotonic_ns());
 }
 
 void SimulatedVehicle::publish_samples(bool truth_needed) {
   if (telemetry_path_.has_radio()) {
     while (const auto packet = telemetry_path_.take(simulation_.stamp_ns())) {
-      prepare_imu(packet->imu, packet->obeyed);
-      imu_.publish(imu_message_);
+      prepare_imu(*packet);
+      publish_imu_again();
       publish_slow_samples(packet->battery, packet->rotor_speeds);
     }
     if (truth_needed) publish_truth();
     return;
   }
   if (simulation_.imu()) {
-    prepare_imu(*simulation_.imu(), firmware_.obeyed());
-    imu_.publish(imu_message_);
+    prepare_imu(present_samples());
+    publish_imu_again();
   }
   if (truth_needed) publish_truth();
   publish_slow_samples(simulation_.battery(), simulation_.rotor_speeds());
@@ -152,7 +173,7 @@ void SimulatedVehicle::publish_samples_in_order(std::uint64_t mocap_sequence, bo
     if (simulation_.imu_due()) go_on_in_order();  // time waits for answers at these stamps only
   } else {
     publish_slow_samples(simulation_.battery(), simulation_.rotor_speeds());
-    if (simulation_.imu()) publish_imu_in_order(*simulation_.imu(), firmware_.obeyed());
+    if (simulation_.imu()) publish_imu_in_order(present_samples());
   }
   if (truth_needed && !frame_due) publish_truth();
 }
@@ -163,20 +184,29 @@ void SimulatedVehicle::go_on_in_order() {
   const auto packet = telemetry_path_.take(simulation_.stamp_ns());
   if (!packet) return;
   publish_slow_samples(packet->battery, packet->rotor_speeds);
-  publish_imu_in_order(packet->imu, packet->obeyed);
+  publish_imu_in_order(*packet);
 }
 
-void SimulatedVehicle::publish_imu_in_order(const plant::ImuSample& sample,
-                                            const plant::ObeyedCommand& obeyed) {
-  prepare_imu(sample, obeyed);
-  imu_message_.mocap_sequence_number(mocap_sequence_);
-  imu_message_.battery_sequence_number(battery_message_.sequence_number());
-  imu_message_.rotor_speeds_sequence_number(rotor_speeds_message_.sequence_number());
-  awaited_ = sample.sequence;
-  imu_.publish(imu_message_);
+void SimulatedVehicle::publish_imu_in_order(const plant::TelemetryPacket& packet) {
+  prepare_imu(packet);
+  const auto name_others = [this](auto& message) {
+    message.mocap_sequence_number(mocap_sequence_);
+    message.battery_sequence_number(battery_message_.sequence_number());
+    message.rotor_speeds_sequence_number(rotor_speeds_message_.sequence_number());
+  };
+  name_others(imu_message_);
+  name_others(odometry_message_);
+  awaited_ = packet.imu.sequence;
+  publish_imu_again();
 }
 
-void SimulatedVehicle::publish_imu_again() { imu_.publish(imu_message_); }
+void SimulatedVehicle::publish_imu_again() {
+  if (odometry_) {
+    vehicle_odometry_.publish(odometry_message_);
+  } else {
+    imu_.publish(imu_message_);
+  }
+}
 
 void SimulatedVehicle::publish_again() {
   if (rotor_speeds_message_.sequence_number() > 0) rotor_speeds_.publish(rotor_speeds_message_);

@@ -11,6 +11,7 @@
 #include "swiftlet/plant/simulation/links/command_path.hpp"
 #include "swiftlet/plant/simulation/links/radio.hpp"
 #include "swiftlet/plant/simulation/links/telemetry_path.hpp"
+#include "swiftlet/plant/simulation/odometry.hpp"
 #include "swiftlet/plant/simulation/plant_simulation.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/messages/convert.hpp"
@@ -99,8 +100,9 @@ class SimulatedVehicle {
 
  private:
   bool accept(const plant::VehicleCommand& command);
-  void prepare_imu(const plant::ImuSample& sample, const plant::ObeyedCommand& obeyed);
-  void publish_imu_in_order(const plant::ImuSample& sample, const plant::ObeyedCommand& obeyed);
+  void prepare_imu(const plant::TelemetryPacket& packet);
+  void publish_imu_in_order(const plant::TelemetryPacket& packet);
+  plant::TelemetryPacket present_samples() const;
   void inform_firmware();
   void refuse(const comms::Fault& fault);
   void publish_truth();
@@ -112,8 +114,11 @@ class SimulatedVehicle {
   plant::CommandPath command_path_;
   plant::RadioLine<plant::PoseSample> pose_path_;
   plant::Firmware firmware_;
+  std::optional<plant::Odometry> odometry_;  // of a vehicle that brings it in place of IMU samples
+  std::optional<plant::OdometrySample> odometry_sample_;  // of the present IMU sample
   // The newest samples; sequence number 0 before the first.
   comms::msg::Imu imu_message_;
+  comms::msg::VehicleOdometry odometry_message_;
   comms::msg::Battery battery_message_;
   comms::msg::RotorSpeeds rotor_speeds_message_;
   comms::msg::GroundTruth truth_message_;
@@ -126,7 +131,8 @@ class SimulatedVehicle {
   AnswerLatencies answers_;
   runtime::LatestValue<PlantReport> reports_;
 
-  comms::Publisher<comms::msg::Imu> imu_;
+  comms::Publisher<comms::msg::Imu> imu_;  // or, in its place:
+  comms::Publisher<comms::msg::VehicleOdometry> vehicle_odometry_;
   comms::Publisher<comms::msg::GroundTruth> ground_truth_;
   comms::Publisher<comms::msg::RotorSpeeds> rotor_speeds_;
   comms::Publisher<comms::msg::Battery> battery_;

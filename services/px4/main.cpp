@@ -69,6 +69,11 @@ void add_options(runtime::CommandLine app, Options& options) {
           },
           "LEVELS")
       .show_default();
+  app.add_choice(
+         "--samples", bridge.samples, {{"imu", Samples::kImu}, {"odometry", Samples::kOdometry}},
+         "What control is sent: imu, PX4's sensor_combined, or odometry: PX4's own estimate, its "
+         "vehicle_odometry, in its place; by which estimate control then flies is a setting of its file")
+      .show_default("imu");
   app.add_option("--hover-throttle", bridge.hover_throttle,
                  "PX4's throttle of hover to begin with, its MPC_THR_HOVER; otherwise that of the vehicle "
                  "file. It is "

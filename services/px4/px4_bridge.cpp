@@ -48,7 +48,6 @@ Px4Bridge::Px4Bridge(const comms::Participant& participant, const std::string& n
       vision_(settings.vision),
       participant_(participant),
       node_(participant, name, [this](const std::string& fault) { fail(fault); }),
-      imu_(node_.publish(topics::kImu)),
       battery_(node_.publish(topics::kBattery)),
       vehicle_info_(node_.publish(topics::kVehicleInfo)),
       modes_(node_.publish(topics_.offboard_control_mode.get())),
@@ -58,6 +57,11 @@ Px4Bridge::Px4Bridge(const comms::Participant& participant, const std::string& n
       poses_(node_.publish(topics_.visual_odometry.get())),
       commands_(node_.publish(topics_.command.get())),
       clock_server_(node_, [] { return runtime::monotonic_ns(); }) {
+  if (settings.samples == Samples::kImu) {
+    imu_ = node_.publish(topics::kImu);
+  } else {
+    vehicle_odometry_ = node_.publish(topics::kVehicleOdometry);
+  }
   info_.name() = settings.vehicle.name;
   info_.rotor_count(static_cast<std::uint8_t>(settings.vehicle.rotor_count()));
   info_.mass_kg(settings.vehicle.mass_kg);
@@ -88,14 +92,6 @@ void Px4Bridge::subscribe() {
     const std::lock_guard<std::mutex> lock(mutex_);
     session_.on_ack(message);
   }));
-  add(node_.subscribe<msg::VehicleOdometry>(topics_.odometry.get(), [this](const auto& message) {
-    plant::PoseSample pose;
-    const comms::Fault fault = from_px4(message, pose);
-    if (fault) return odometry_faults_.note(fault);
-    const std::lock_guard<std::mutex> lock(mutex_);
-    estimate_ = pose;
-    estimated_ns_ = runtime::monotonic_ns();
-  }));
   add(node_.subscribe<comms::msg::MocapPose>(
       topics::kMocapPose, [this](const auto& message) { on_pose(message); }, Delivery::kOwnThread,
       comms::kSourceSilence));
@@ -121,6 +117,8 @@ void Px4Bridge::subscribe() {
           on_setpoint<comms::msg::TrajectorySetpoint, plant::TrajectorySetpoint>(message);
         },
         Delivery::kOwnThread));
+  add(node_.subscribe<msg::VehicleOdometry>(
+      topics_.odometry.get(), [this](const auto& message) { on_odometry(message); }, Delivery::kOwnThread));
   add(node_.subscribe<msg::SensorCombined>(
       topics_.sensors.get(), [this](const auto& message) { on_sensors(message); }, Delivery::kOwnThread));
 }
@@ -135,16 +133,36 @@ void Px4Bridge::on_sensors(const msg::SensorCombined& message) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (version_.state == VersionState::kUnknown) return;
+    const bool flies = session_.phase() == Phase::kFlying && !landed_;
+    if (thrust_n_ > 0.0 || !flies) scale_.learn(thrust_n_, -sample.specific_force_frd.z(), flies, now_ns);
+    if (settings_.samples != Samples::kImu) return;
     sampled_ns_ = now_ns;
     sample.stamp_ns = clock_.to_host(message.timestamp(), now_ns);
-    sample.sequence = ++imu_samples_;
+    sample.sequence = ++samples_;
     obeyed = watchdog_.obeyed();
-    const bool flies = session_.phase() == Phase::kFlying && !landed_;
-    if (thrust_n_ > 0.0) scale_.learn(thrust_n_, -sample.specific_force_frd.z(), flies, sample.stamp_ns);
   }
   comms::msg::Imu out = comms::to_message(sample);
   comms::set_obeyed_command(obeyed, out);
   imu_.publish(out);
+}
+
+void Px4Bridge::on_odometry(const msg::VehicleOdometry& message) {
+  const std::int64_t now_ns = runtime::monotonic_ns();
+  if (settings_.samples == Samples::kOdometry) odometry_thread_.enter(settings_.realtime);
+  comms::msg::VehicleOdometry out;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const comms::Fault fault = from_px4(message, estimate_);
+    if (fault) return odometry_faults_.note(fault);
+    if (estimate_.position_valid) estimated_ns_ = now_ns;
+    if (settings_.samples != Samples::kOdometry || version_.state == VersionState::kUnknown) return;
+    sampled_ns_ = now_ns;
+    estimate_.stamp_ns = clock_.to_host(message.timestamp(), now_ns);
+    estimate_.sequence = ++samples_;
+    out = comms::to_message(estimate_);
+    comms::set_obeyed_command(watchdog_.obeyed(), out);
+  }
+  vehicle_odometry_.publish(out);
 }
 
 void Px4Bridge::on_battery(const msg::BatteryStatus& message) {
@@ -225,14 +243,14 @@ std::string Px4Bridge::arming_fault(std::int64_t now_ns) const {
   const std::optional<plant::PoseSample>& pose = vision_.last();
   if (!pose || now_ns - pose->stamp_ns > kPoseTimeoutNs)
     return "PX4 must not be armed: no pose of motion capture";
-  if (!estimate_ || now_ns - estimated_ns_ > kPoseTimeoutNs)
+  if (estimated_ns_ == 0 || now_ns - estimated_ns_ > kPoseTimeoutNs)
     return "PX4 must not be armed: it publishes no vehicle_odometry";
-  const double distance_m = (estimate_->position_ned - pose->position_ned).norm();
+  const double distance_m = (estimate_.position_ned - pose->position_ned).norm();
   if (distance_m > kGreatestDistance_m)
     return fmt::format(
         "PX4 must not be armed: its position is {:.1f} m from that of motion capture, limit {:g} m",
         distance_m, kGreatestDistance_m);
-  const double angle_rad = estimate_->q_ned_from_frd.angularDistance(pose->q_ned_from_frd);
+  const double angle_rad = estimate_.q_ned_from_frd.angularDistance(pose->q_ned_from_frd);
   if (angle_rad > kGreatestAngle_rad)
     return fmt::format(
         "PX4 must not be armed: its attitude is {:.1f} rad from that of motion capture, limit {:g} rad",
@@ -326,10 +344,9 @@ void Px4Bridge::log_changes() {
 void Px4Bridge::log_end() {
   const std::lock_guard<std::mutex> lock(mutex_);
   spdlog::info(
-      "ended: {} IMU samples, {} setpoints, {} commands refused, {} poses to PX4, {} resets, throttle of "
+      "ended: {} samples, {} setpoints, {} commands refused, {} poses to PX4, {} resets, throttle of "
       "hover {:.3f}",
-      imu_samples_, setpoints_, refused_commands_, vision_.passed(), vision_.resets(),
-      scale_.hover_throttle());
+      samples_, setpoints_, refused_commands_, vision_.passed(), vision_.resets(), scale_.hover_throttle());
 }
 
 }  // namespace swiftlet::px4

@@ -1,6 +1,6 @@
 // swiftlet-px4's vehicle: joins one PX4 to the topics of a vehicle.
 //
-//   sensor_combined, battery_status --> imu, battery --> control
+//   sensor_combined or vehicle_odometry, battery_status --> imu or vehicle_odometry, battery --> control
 //   offboard_control_mode, setpoint <-- rates_setpoint, attitude_setpoint or trajectory_setpoint <-- control
 //   vehicle_visual_odometry         <-- mocap_pose
 //   vehicle_command, its ack, vehicle_status <--> OffboardSession --> vehicle_info
@@ -33,10 +33,14 @@
 
 namespace swiftlet::px4 {
 
+// What control is sent of PX4: its IMU, or its own estimate.
+enum class Samples { kImu, kOdometry };
+
 struct BridgeSettings {
   plant::Vehicle vehicle;
   int instance = 0;
   plant::ControlLevels levels;
+  Samples samples = Samples::kImu;
   double control_silence_s = 0.2;
   std::optional<double> hover_throttle;
   VisionSettings vision;
@@ -57,6 +61,7 @@ class Px4Bridge final : public runtime::HostedVehicle {
   void subscribe();
   // Each in the thread that receives.
   void on_sensors(const msg::SensorCombined& message);
+  void on_odometry(const msg::VehicleOdometry& message);
   void on_battery(const msg::BatteryStatus& message);
   void on_status(const msg::VehicleStatus& message);
   template <class Message, class Command>
@@ -76,12 +81,12 @@ class Px4Bridge final : public runtime::HostedVehicle {
   OffboardSession session_;
   plant::CommandWatchdog watchdog_;
   ThrustScale scale_;
-  Px4Clock clock_;
+  Px4Clock clock_;  // of the samples that control is sent
   Vision vision_;
   Version version_;
   std::optional<msg::VehicleStatus> status_;
   std::optional<msg::FailsafeFlags> flags_;
-  std::optional<plant::PoseSample> estimate_;  // PX4's
+  plant::OdometrySample estimate_;  // PX4's
   bool landed_ = true;
   bool rotors_wanted_ = false;
   std::int64_t commanded_ns_ = 0;
@@ -91,7 +96,7 @@ class Px4Bridge final : public runtime::HostedVehicle {
   std::int64_t estimated_ns_ = 0;
   double thrust_n_ = 0.0;
   plant::ControlLevel level_ = plant::ControlLevel::kActuators;
-  std::uint64_t imu_samples_ = 0;
+  std::uint64_t samples_ = 0;  // of the IMU, or of PX4's estimate
   std::uint64_t battery_samples_ = 0;
   std::uint64_t refused_commands_ = 0;
   std::uint64_t setpoints_ = 0;
@@ -102,7 +107,7 @@ class Px4Bridge final : public runtime::HostedVehicle {
   comms::ThrottledWarning battery_faults_{"battery_status"};
   comms::ThrottledWarning status_faults_{"vehicle_status_v1"};
   comms::ThrottledWarning odometry_faults_{"vehicle_odometry"};
-  runtime::RealtimeThread sensor_thread_, command_thread_, pose_thread_;
+  runtime::RealtimeThread sensor_thread_, odometry_thread_, command_thread_, pose_thread_;
 
   // Of the main thread.
   Phase logged_phase_ = Phase::kDisconnected;
@@ -115,7 +120,8 @@ class Px4Bridge final : public runtime::HostedVehicle {
 
   comms::Participant participant_;
   comms::Node node_;
-  comms::Publisher<comms::msg::Imu> imu_;
+  comms::Publisher<comms::msg::Imu> imu_;  // or, in its place:
+  comms::Publisher<comms::msg::VehicleOdometry> vehicle_odometry_;
   comms::Publisher<comms::msg::Battery> battery_;
   comms::Publisher<comms::msg::VehicleInfo> vehicle_info_;
   comms::Publisher<msg::OffboardControlMode> modes_;

@@ -28,7 +28,7 @@ constexpr float kCustomMode = 1.0F;        // param1 of DO_SET_MODE
 constexpr float kMainModeOffboard = 6.0F;  // param2
 constexpr float kForced = 21196.0F;        // param2 of ARM_DISARM: without a check
 
-constexpr std::uint8_t kPoseFrameNed = 1;
+constexpr std::uint8_t kFrameNed = 1;
 constexpr std::uint8_t kVelocityFrameUnknown = 0;
 constexpr std::int8_t kBestQuality = 100;
 
@@ -37,6 +37,7 @@ constexpr double kGreatestForce = 400.0;  // m/s^2
 constexpr double kGreatestRate = 60.0;    // rad/s
 constexpr double kGreatestVoltage_v = 100.0;
 constexpr double kGreatestDistance_m = 1e5;
+constexpr double kGreatestSpeed = 200.0;  // m/s
 constexpr std::uint8_t kGreatestNavState = 30;
 
 std::array<float, 3> floats(const Vector3d& in) {
@@ -48,6 +49,14 @@ std::array<float, 4> floats(const Quaterniond& in) {
           static_cast<float>(sign * in.y()), static_cast<float>(sign * in.z())};
 }
 Vector3d vector(const std::array<float, 3>& in) { return {in[0], in[1], in[2]}; }
+bool is_known(const std::array<float, 3>& in) {
+  return std::all_of(in.begin(), in.end(), [](float value) { return std::isfinite(value); });
+}
+// Standard deviations; 0: not known.
+Vector3d deviation(const std::array<float, 3>& variance) {
+  return is_known(variance) ? Vector3d(vector(variance).cwiseMax(0.0).cwiseSqrt())
+                            : Vector3d(Vector3d::Zero());
+}
 
 std::array<float, 3> thrust_body(double thrust_n, const ThrustScale& scale) {
   return {0.0F, 0.0F, -static_cast<float>(scale.throttle(thrust_n))};
@@ -118,7 +127,7 @@ msg::VehicleOdometry to_px4(const plant::PoseSample& pose, const PoseDeviation& 
   msg::VehicleOdometry message;
   message.timestamp(stamp_us);
   message.timestamp_sample(stamp_us);
-  message.pose_frame(kPoseFrameNed);
+  message.pose_frame(kFrameNed);
   message.position(floats(pose.position_ned));
   message.q(floats(pose.q_ned_from_frd));
   message.velocity_frame(kVelocityFrameUnknown);
@@ -180,16 +189,33 @@ Fault from_px4(const msg::BatteryStatus& message, plant::BatterySample& sample) 
   return {};
 }
 
-Fault from_px4(const msg::VehicleOdometry& message, plant::PoseSample& pose) {
+Fault from_px4(const msg::VehicleOdometry& message, plant::OdometrySample& odometry) {
   Check check;
-  for (const float value : message.position())
-    check.within("position", value, -kGreatestDistance_m, kGreatestDistance_m);
+  const bool has_position = is_known(message.position());
+  const bool has_velocity = is_known(message.velocity()) && message.velocity_frame() == kFrameNed;
+  if (has_position)
+    for (const float value : message.position())
+      check.within("position", value, -kGreatestDistance_m, kGreatestDistance_m);
+  if (has_velocity)
+    for (const float value : message.velocity())
+      check.within("velocity", value, -kGreatestSpeed, kGreatestSpeed);
+  for (const float value : message.angular_velocity())
+    check.within("angular_velocity", value, -kGreatestRate, kGreatestRate);
+  check.at_most("pose_frame", message.pose_frame(), kFrameNed);
   const std::array<float, 4>& q = message.q();
   check.unit("q", {q[0], q[1], q[2], q[3]});
   if (!check.ok()) return check.fault();
-  pose.tracked = true;
-  pose.position_ned = vector(message.position());
-  pose.q_ned_from_frd = Quaterniond(q[0], q[1], q[2], q[3]).normalized();
+  odometry.position_valid = has_position;
+  if (has_position) odometry.position_ned = vector(message.position());
+  odometry.velocity_valid = has_velocity;
+  if (has_velocity) odometry.velocity_ned = vector(message.velocity());
+  odometry.q_ned_from_frd = Quaterniond(q[0], q[1], q[2], q[3]).normalized();
+  odometry.body_rates_frd = vector(message.angular_velocity());
+  odometry.position_deviation = deviation(message.position_variance());
+  odometry.velocity_deviation = deviation(message.velocity_variance());
+  odometry.rotation_deviation = deviation(message.orientation_variance());
+  odometry.resets += static_cast<std::uint8_t>(message.reset_counter() - odometry.resets);
+  odometry.fuses_mocap = true;
   return {};
 }
 

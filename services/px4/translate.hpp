@@ -40,8 +40,9 @@ bool is_for_us(const msg::VehicleCommandAck& ack);
 // Fill all but stamp and sequence. Return a fault: the sample is not sensible.
 comms::Fault from_px4(const msg::SensorCombined& message, plant::ImuSample& sample);
 comms::Fault from_px4(const msg::BatteryStatus& message, plant::BatterySample& sample);
-// PX4's own estimate of the pose, in its local frame.
-comms::Fault from_px4(const msg::VehicleOdometry& message, plant::PoseSample& pose);
+// PX4's own estimate, in its local frame. What it does not know is NaN there. Of its reset counter, which wraps at 256, odometry.resets
+// counts the changes on from the value that it has.
+comms::Fault from_px4(const msg::VehicleOdometry& message, plant::OdometrySample& odometry);
 comms::Fault check(const msg::VehicleStatus& message);
 
 }  // namespace swiftlet::px4

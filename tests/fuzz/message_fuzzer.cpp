@@ -52,8 +52,8 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   using namespace swiftlet::tests;
-  check_selected<Imu, MocapPose, Battery, RotorSpeeds, ActuatorCommand, RatesSetpoint, AttitudeSetpoint,
-                 TrajectorySetpoint, GroundTruth, Setpoint, ControllerState, GroundLink, Command,
-                 ControlSettings, Mission, Trajectory>(static_cast<char>(*data), data + 1, size - 1);
+  check_selected<Imu, VehicleOdometry, MocapPose, Battery, RotorSpeeds, ActuatorCommand, RatesSetpoint,
+                 AttitudeSetpoint, TrajectorySetpoint, GroundTruth, Setpoint, ControllerState, GroundLink,
+                 Command, ControlSettings, Mission, Trajectory>(static_cast<char>(*data), data + 1, size - 1);
   return 0;
 }

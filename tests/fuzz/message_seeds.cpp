@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
   const std::filesystem::path folder = argv[1];
   std::filesystem::create_directories(folder);
   write<Imu>(folder, "imu", to_message(imu_sample()));
+  write<VehicleOdometry>(folder, "vehicle_odometry", to_message(odometry_sample()));
   write<MocapPose>(folder, "mocap_pose", to_message(pose_sample()));
   write<Battery>(folder, "battery", to_message(battery_sample()));
   write<RotorSpeeds>(folder, "rotor_speeds", to_message(rotor_speed_sample()));

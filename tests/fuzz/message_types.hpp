@@ -17,6 +17,7 @@
 #include "swiftlet_msgs/msg/SetpointPubSubTypes.h"
 #include "swiftlet_msgs/msg/TrajectoryPubSubTypes.h"
 #include "swiftlet_msgs/msg/TrajectorySetpointPubSubTypes.h"
+#include "swiftlet_msgs/msg/VehicleOdometryPubSubTypes.h"
 
 #include "swiftlet/services/messages/convert.hpp"
 #include "tests/support/serialization.hpp"
@@ -31,6 +32,7 @@ struct MessageType {
 };
 
 using Imu = MessageType<'i', comms::msg::ImuPubSubType, plant::ImuSample>;
+using VehicleOdometry = MessageType<'o', comms::msg::VehicleOdometryPubSubType, plant::OdometrySample>;
 using MocapPose = MessageType<'p', comms::msg::MocapPosePubSubType, plant::PoseSample>;
 using Battery = MessageType<'b', comms::msg::BatteryPubSubType, plant::BatterySample>;
 using RotorSpeeds = MessageType<'r', comms::msg::RotorSpeedsPubSubType, plant::RotorSpeedSample>;

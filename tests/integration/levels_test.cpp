@@ -90,6 +90,52 @@ INSTANTIATE_TEST_SUITE_P(All, RadioInLockstep,
 INSTANTIATE_TEST_SUITE_P(All, LevelsInLockstep, testing::ValuesIn(plant::kControlLevels),
                          [](const auto& level) { return std::string(plant::to_string(level.param)); });
 
+class OdometryInLockstep : public testing::TestWithParam<const char*> {
+ protected:
+  // The default simulation, in which the vehicle's own estimate jumps in flight, and motion capture is lost for 2 s if it may be.
+  std::string simulation() const {
+    std::string text = contents(SWIFTLET_SOURCE_DIR "/config/simulation/default.yaml");
+    text +=
+        "\nfaults:\n  - {kind: odometry_jump, at_s: 4, for_s: 100, position_ned_m: [0.4, -0.3, 0.1], "
+        "yaw_rad: 0.2}\n";
+    if (std::string(GetParam()) != "mocap") text += "  - {kind: mocap_stop, at_s: 5, for_s: 2}\n";
+    return folder_.write("simulation.yaml", text);
+  }
+  std::string control() const {
+    std::string text = contents(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
+    const std::string before = "odometry: {estimate: mocap";
+    const std::size_t at = text.find(before);
+    EXPECT_NE(at, std::string::npos);
+    return folder_.write("control.yaml",
+                         text.replace(at, before.size(), std::string("odometry: {estimate: ") + GetParam()));
+  }
+  std::string trace(std::vector<std::string> words, const std::string& name) const {
+    const std::filesystem::path record = folder_.path() / name;
+    words.insert(words.end(), {mission_, "--level", "attitude", "--odometry", "own", "--trace", "--control",
+                               control(), "--simulation", simulation(), "--record", record.string()});
+    const ProgramResult result = run_program("swiftlet", words, folder_.path(), kStuck);
+    EXPECT_EQ(result.exit_code, 0) << result.errors << result.output;
+    return contents(record / "trace.csv");
+  }
+
+  TemporaryFolder folder_;
+  std::string mission_ = folder_.write("hover.yaml",
+                                       "name: hover\nframe: ned\ntolerance_m: 1\nitems:\n"
+                                       "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.5, hold_s: 5}\n"
+                                       "  - {kind: land, speed_m_s: 0.5}\n");
+};
+
+// GIVEN a vehicle that brings an estimate of its own, which jumps in flight, in place of IMU samples, and each setting of which
+// estimate flies WHEN motion capture is lost THEN the mission is flown to its end, over DDS as in one process to the last bit.
+TEST_P(OdometryInLockstep, EqualsTheFlightInOneProcess) {
+  const std::string in_process = trace({"sim", "fly"}, "process");
+  EXPECT_GT(in_process.size(), 1'000'000U);
+  EXPECT_TRUE(trace({"fly", "--clock", "lockstep"}, "dds") == in_process);
+}
+
+INSTANTIATE_TEST_SUITE_P(Settings, OdometryInLockstep, testing::Values("mocap", "vehicle", "both"),
+                         [](const auto& setting) { return std::string(setting.param); });
+
 class LevelsWithStandby : public testing::TestWithParam<ControlLevel> {
  protected:
   TemporaryFolder folder_;

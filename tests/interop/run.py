@@ -31,7 +31,8 @@ SENT_IN_FLIGHT = {"command", "mission", "trajectory", "setpoint", "simulation_cl
 # By vehicle: the level at which it is commanded, and the topics that such a vehicle adds.
 LEVELS = {"kl1": ("rates", {"rates_setpoint", "clock_request", "clock_reply", "clock_status", "control_settings"}),
           "kl2": ("attitude", {"attitude_setpoint"}),
-          "kl3": ("trajectory", {"trajectory_setpoint"})}
+          "kl3": ("trajectory", {"trajectory_setpoint"}),
+          "kl4": ("attitude", {"vehicle_odometry"})}
 
 
 class Processes:
@@ -99,11 +100,13 @@ class Interop:
 
     def listen(self):
         """Vehicles at other levels, and a motion capture with a clock of its own. Returns the topics that were decoded."""
-        vehicles = ",".join(LEVELS)
+        vehicles = "kl1,kl2,kl3"
         with Processes(self.programs, self.work) as processes:
             listeners = {vehicle: self.peer("listen", processes.domain, vehicle, PATIENCE_S, *sorted(topics))
                          for vehicle, (_, topics) in LEVELS.items()}
             processes.start("swiftlet-plant", "--vehicle-name", vehicles, "--level", "rates,attitude,trajectory", "--no-realtime")
+            processes.start("swiftlet-plant", "--vehicle-name", "kl4", "--level", "attitude", "--odometry", "own", "--no-realtime",
+                            log="swiftlet-plant-kl4")
             processes.start("swiftlet-mocap", "--vehicle-name", vehicles, "--frame-clock", "host", "--no-realtime")
             for vehicle, (level, _) in LEVELS.items():
                 processes.start("swiftlet-control", "--vehicle-name", vehicle, "--level", level, "--no-realtime",

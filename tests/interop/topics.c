@@ -12,6 +12,7 @@
 
 const topic_t topics[] = {
     TOPIC("imu", Imu, STREAM),
+    TOPIC("vehicle_odometry", VehicleOdometry, STREAM),
     TOPIC("actuator_command", ActuatorCommand, OWNED_STREAM),
     TOPIC("rates_setpoint", RatesSetpoint, OWNED_STREAM),
     TOPIC("attitude_setpoint", AttitudeSetpoint, OWNED_STREAM),

@@ -10,17 +10,17 @@ using namespace std::chrono_literals;
 constexpr auto kWaitStep = 50ms;
 constexpr int kAttempts = 3;
 
-bool wait_for_imu(SampleRecorder& recorder, const StandingRequest& request) {
-  for (auto waited = 0ms; waited < request.timeout && !recorder.hears_imu(); waited += kWaitStep)
+bool wait_for_vehicle(SampleRecorder& recorder, const StandingRequest& request) {
+  for (auto waited = 0ms; waited < request.timeout && !recorder.hears_vehicle(); waited += kWaitStep)
     if (!recorder.record(kWaitStep, request.cancelled)) break;
-  return recorder.hears_imu();
+  return recorder.hears_vehicle();
 }
 
 }  // namespace
 
 StandingExamination examine_standing(SampleRecorder& recorder, const StandingRequest& request) {
   StandingExamination examination;
-  const int attempts = wait_for_imu(recorder, request) ? kAttempts : 1;
+  const int attempts = wait_for_vehicle(recorder, request) ? kAttempts : 1;
   for (int attempt = 0; attempt < attempts; ++attempt) {
     recorder.restart();
     recorder.record(request.time, request.cancelled);

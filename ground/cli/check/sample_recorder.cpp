@@ -34,6 +34,12 @@ comms::Fault convert(const msg::Imu& message, ImuReport& out) {
   out.lockstep = message.mocap_sequence_number() > 0 || message.battery_sequence_number() > 0;
   return fault;
 }
+comms::Fault convert(const msg::VehicleOdometry& message, OdometryReport& out) {
+  const comms::Fault fault = comms::from_message(message, out.odometry);
+  out.obeyed = comms::obeyed_command(message);
+  out.lockstep = message.mocap_sequence_number() > 0 || message.battery_sequence_number() > 0;
+  return fault;
+}
 template <class Message, class Sample>
 comms::Fault convert(const Message& message, Sample& out) {
   return comms::from_message(message, out);
@@ -64,6 +70,7 @@ SampleRecorder::SampleRecorder(const comms::NodeSettings& settings)
         comms::Delivery::kOwnThread, comms::kSourceSilence);
   };
   imu_ = subscribe(topics::kImu, recording_.imu);
+  odometry_ = subscribe(topics::kVehicleOdometry, recording_.odometry);
   battery_ = subscribe(topics::kBattery, recording_.battery);
   mocap_ = subscribe(topics::kMocapPose, recording_.mocap);
   rotor_speeds_ = subscribe(topics::kRotorSpeeds, recording_.rotor_speeds);
@@ -128,6 +135,7 @@ void SampleRecorder::restart() {
     record.invalid = 0;
   };
   forget(recording_.imu);
+  forget(recording_.odometry);
   forget(recording_.battery);
   forget(recording_.mocap);
   forget(recording_.rotor_speeds);
@@ -165,13 +173,17 @@ VehicleRecording SampleRecorder::recording() const {
   }
   recording.end_ns = runtime::monotonic_ns();
   add_state(recording.imu, imu_);
+  add_state(recording.odometry, odometry_);
   add_state(recording.battery, battery_);
   add_state(recording.mocap, mocap_);
   add_state(recording.rotor_speeds, rotor_speeds_);
   return recording;
 }
 
-bool SampleRecorder::hears_imu() const { return newest_imu().has_value(); }
+bool SampleRecorder::hears_vehicle() const {
+  const std::lock_guard lock(mutex_);
+  return !recording_.imu.samples.empty() || !recording_.odometry.samples.empty();
+}
 
 std::optional<Received<plant::PoseSample>> SampleRecorder::newest_tracked_pose() const {
   const std::lock_guard lock(mutex_);

@@ -31,7 +31,7 @@ class SampleRecorder {
   // Everything since restart().
   VehicleRecording recording() const;
 
-  bool hears_imu() const;
+  bool hears_vehicle() const;  // its IMU, or its own estimate
   std::optional<Received<plant::PoseSample>> newest_tracked_pose() const;
   std::optional<ImuReport> newest_imu() const;
   std::int64_t imu_silence_ns() const;  // since the newest sample, or since restart()
@@ -64,8 +64,8 @@ class SampleRecorder {
   std::optional<comms::Publisher<comms::msg::ClockRequest>>
       clock_;  // not with security: ground may not write it
   // Last: their callbacks use all members above.
-  comms::Subscription imu_, battery_, mocap_, rotor_speeds_, info_, clock_replies_, controller_states_,
-      actuator_commands_;
+  comms::Subscription imu_, odometry_, battery_, mocap_, rotor_speeds_, info_, clock_replies_,
+      controller_states_, actuator_commands_;
 };
 
 }  // namespace swiftlet::ground

@@ -20,7 +20,8 @@ Firmware::Firmware(const Vehicle& vehicle, const SimulationSettings& settings)
     : rotor_count_(vehicle.rotor_count()),
       weight_n_(vehicle.mass_kg * kGravity),
       nominal_step_s_(1.0 / settings.imu.rate_hz),
-      needs_poses_(settings.control_levels.has(ControlLevel::kAttitude) ||
+      needs_poses_(settings.odometry.source == OdometrySource::kMocap ||
+                   settings.control_levels.has(ControlLevel::kAttitude) ||
                    settings.control_levels.has(ControlLevel::kTrajectory)),
       watchdog_(vehicle.rotor_count(), std::llround(settings.command_timeout_s * 1e9),
                 settings.control_levels, std::llround(settings.command_hold_s * 1e9)),
@@ -30,7 +31,18 @@ Firmware::Firmware(const Vehicle& vehicle, const SimulationSettings& settings)
       mixer_(vehicle),
       supply_voltage_v_(open_circuit_voltage(vehicle.battery, settings.supply.initial_state_of_charge)) {}
 
-void Firmware::on_imu(const ImuSample& sample) { new_imu_ = sample; }
+void Firmware::on_imu(const ImuSample& sample) {
+  dt_s_ = last_stamp_ns_ < 0 ? nominal_step_s_
+                             : std::clamp(1e-9 * static_cast<double>(sample.stamp_ns - last_stamp_ns_), 1e-4,
+                                          kLongestStep_s);
+  last_stamp_ns_ = sample.stamp_ns;
+  new_imu_ = sample;
+  if (is_finite(sample) && needs_poses_) estimator_.predict(sample, dt_s_);
+}
+
+bool Firmware::is_finite(const ImuSample& sample) const {
+  return sample.body_rates_frd.allFinite() && sample.specific_force_frd.allFinite();
+}
 
 void Firmware::on_battery(const BatterySample& sample) { supply_voltage_v_ = sample.voltage_v; }
 
@@ -52,17 +64,12 @@ const MotorCommand& Firmware::motor_command(std::int64_t now_ns) {
 // The motor command of the loops; in force if the rotors are to run.
 void Firmware::run_loops(std::int64_t now_ns) {
   const ImuSample& imu = *new_imu_;
-  dt_s_ = last_stamp_ns_ < 0
-              ? nominal_step_s_
-              : std::clamp(1e-9 * static_cast<double>(imu.stamp_ns - last_stamp_ns_), 1e-4, kLongestStep_s);
-  last_stamp_ns_ = imu.stamp_ns;
-  const bool finite = imu.body_rates_frd.allFinite() && imu.specific_force_frd.allFinite();
-  if (finite && needs_poses_) estimator_.predict(imu, dt_s_);
   if (new_pose_) estimator_.correct(*new_pose_);
   new_pose_.reset();
   const VehicleCommand& command = watchdog_.command();
   const ControlLevel level = level_of(command);
-  if (finite && header_of(command).rotor_state == RotorState::kRunning && level != ControlLevel::kActuators) {
+  if (is_finite(imu) && header_of(command).rotor_state == RotorState::kRunning &&
+      level != ControlLevel::kActuators) {
     const VehicleCommand obeyed = watchdog_.outdated(now_ns) ? without_command(level) : command;
     const RatesAndThrust wanted = std::visit([this](const auto& one) { return rates_for(one); }, obeyed);
     carries_ = wanted.thrust_n >= kFlyingThrust * weight_n_;
@@ -80,18 +87,17 @@ Firmware::RatesAndThrust Firmware::rates_for(const RatesSetpoint& setpoint) {
 }
 
 Firmware::RatesAndThrust Firmware::rates_for(const AttitudeSetpoint& setpoint) {
-  return {attitude_loop_.step(setpoint.q_ned_from_frd, setpoint.body_rates_frd, estimator_.q_ned_from_frd()),
+  return {attitude_loop_.step(setpoint.q_ned_from_frd, setpoint.body_rates_frd, attitude()),
           setpoint.thrust_n};
 }
 
 Firmware::RatesAndThrust Firmware::rates_for(const TrajectorySetpoint& setpoint) {
-  const AttitudeAndThrust wanted =
-      position_loop_.step(setpoint, estimator_.position_ned(), estimator_.velocity_ned(),
-                          estimator_.q_ned_from_frd(), dt_s_, carries_);
+  const AttitudeAndThrust wanted = position_loop_.step(
+      setpoint, odometry_ ? odometry_->position_ned : estimator_.position_ned(),
+      odometry_ ? odometry_->velocity_ned : estimator_.velocity_ned(), attitude(), dt_s_, carries_);
   const Eigen::Vector3d yaw_rate_ned = setpoint.yaw_rate * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d rates_ahead = wanted.q_ned_from_frd.conjugate() * yaw_rate_ned;
-  return {attitude_loop_.step(wanted.q_ned_from_frd, rates_ahead, estimator_.q_ned_from_frd()),
-          wanted.thrust_n};
+  return {attitude_loop_.step(wanted.q_ned_from_frd, rates_ahead, attitude()), wanted.thrust_n};
 }
 
 // In flight: no rates, level at the present heading, or at rest. On the ground the rotors idle.
@@ -102,7 +108,7 @@ VehicleCommand Firmware::without_command(ControlLevel level) const {
     still.thrust_n = thrust_n;
     return still;
   }
-  const Eigen::Vector3d forward_ned = estimator_.q_ned_from_frd() * Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d forward_ned = attitude() * Eigen::Vector3d::UnitX();
   const double yaw_rad = std::atan2(forward_ned.y(), forward_ned.x());
   if (level == ControlLevel::kAttitude) {
     AttitudeSetpoint upright;

@@ -33,8 +33,10 @@ class Firmware {
   // Accepts settings.control_levels. Precondition: validate() finds no violation.
   Firmware(const Vehicle& vehicle, const SimulationSettings& settings);
 
-  // The newest samples; the loops run with the next motor_command().
+  // The newest samples; the estimator is propagated at once, the loops run with the next motor_command().
   void on_imu(const ImuSample& sample);
+  // The vehicle's own estimate at this IMU sample, in place of that of the on-board estimator.
+  void on_odometry(const OdometrySample& sample) { odometry_ = sample; }
   void on_battery(const BatterySample& sample);
   // Needed at levels attitude and trajectory.
   void on_pose(const PoseSample& sample);
@@ -65,6 +67,10 @@ class Firmware {
     double thrust_n = 0.0;
   };
   void run_loops(std::int64_t now_ns);
+  bool is_finite(const ImuSample& sample) const;
+  const Eigen::Quaterniond& attitude() const {
+    return odometry_ ? odometry_->q_ned_from_frd : estimator_.q_ned_from_frd();
+  }
   RatesAndThrust rates_for(const ActuatorCommand& command);
   RatesAndThrust rates_for(const RatesSetpoint& setpoint);
   RatesAndThrust rates_for(const AttitudeSetpoint& setpoint);
@@ -85,6 +91,7 @@ class Firmware {
 
   std::optional<ImuSample> new_imu_;
   std::optional<PoseSample> new_pose_;
+  std::optional<OdometrySample> odometry_;
   double supply_voltage_v_;
   std::int64_t last_stamp_ns_ = -1;
   double dt_s_ = 0.0;     // of the present run of the loops

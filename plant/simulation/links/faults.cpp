@@ -38,6 +38,7 @@ void check_parameters(const Fault& fault, ParameterChecker check) {
       check.vector("rotation_frd_rad", fault.rotation_frd, 2.0 * M_PI);
       return;
     case FaultKind::kMocapSwap:
+    case FaultKind::kOdometryJump:
       check.vector("position_ned_m", fault.position_ned, 100.0);
       check.number("yaw_rad", fault.yaw_rad, -2.0 * M_PI, 2.0 * M_PI);
       return;
@@ -120,6 +121,8 @@ const char* to_string(FaultKind kind) {
       return "commands_stop";
     case FaultKind::kCommandsDelay:
       return "commands_delay";
+    case FaultKind::kOdometryJump:
+      return "odometry_jump";
   }
   return "";
 }

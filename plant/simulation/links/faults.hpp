@@ -40,8 +40,10 @@ enum class FaultKind : std::uint8_t {
   // Link of the actuator commands to the vehicle.
   kCommandsStop,   // commands are lost
   kCommandsDelay,  // commands are delayed
+  // The vehicle's own estimate, of a vehicle that brings it.
+  kOdometryJump,  // turned about the origin and moved, with a reset at the start and at the end
 };
-constexpr std::size_t kFaultKinds = static_cast<std::size_t>(FaultKind::kCommandsDelay) + 1;
+constexpr std::size_t kFaultKinds = static_cast<std::size_t>(FaultKind::kOdometryJump) + 1;
 const char* to_string(FaultKind kind);  // as in the simulation file: "mocap_stop"
 
 // A fault is active in the half-open interval [at_s, at_s + for_s). Only the parameters of its kind are used.
@@ -50,9 +52,10 @@ struct Fault {
   double at_s = 0.0;   // start, simulated time since the plant's start
   double for_s = 0.0;  // duration, at least one integration step
 
-  Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();  // m, kMocapJump: offset; kMocapSwap: position
+  Eigen::Vector3d position_ned =
+      Eigen::Vector3d::Zero();  // m, kMocapJump, kOdometryJump: offset; kMocapSwap: position
   Eigen::Vector3d rotation_frd = Eigen::Vector3d::Zero();  // rad, kMocapJump: rotation vector, in body axes
-  double yaw_rad = 0.0;  // kMocapSwap: yaw of the other body, which is level
+  double yaw_rad = 0.0;  // kMocapSwap: yaw of the other body, which is level; kOdometryJump: turn
   double delay_s = 0.0;  // kMocapLatency, kCommandsDelay
   Eigen::Vector3d specific_force_frd = Eigen::Vector3d::Zero();  // m/s^2, kImuBias
   Eigen::Vector3d body_rates_frd = Eigen::Vector3d::Zero();      // rad/s, kImuBias

@@ -15,7 +15,8 @@ namespace swiftlet::plant {
 
 struct TelemetryPacket {
   ImuSample imu;
-  ObeyedCommand obeyed;  // when the sample was taken
+  std::optional<OdometrySample> odometry;  // in its place
+  ObeyedCommand obeyed;                    // when the sample was taken
   std::optional<BatterySample> battery;
   std::optional<RotorSpeedSample> rotor_speeds;
 };
@@ -28,12 +29,14 @@ class TelemetryPath {
   bool has_radio() const { return packets_.on(); }
 
   // Call after each integration step, and once before the first: collects the samples, and sends them with one of the
-  // IMU. obeyed: by the vehicle so far.
-  void collect(const PlantSimulation& plant, const ObeyedCommand& obeyed) {
+  // IMU. obeyed: by the vehicle so far. odometry: that of this IMU sample, if the vehicle brings it in its place.
+  void collect(const PlantSimulation& plant, const ObeyedCommand& obeyed,
+               const std::optional<OdometrySample>& odometry) {
     if (plant.battery()) next_.battery = plant.battery();
     if (plant.rotor_speeds()) next_.rotor_speeds = plant.rotor_speeds();
     if (!plant.imu()) return;
     next_.imu = *plant.imu();
+    next_.odometry = odometry;
     next_.obeyed = obeyed;
     packets_.send(next_, plant.stamp_ns());
     next_ = {};

@@ -165,7 +165,8 @@ TEST(SimulationFile, ReadsFaultsOfEveryKind) {
           "  - {kind: push, at_s: 1, for_s: 0.5, force_ned_n: [1, 2, 3], moment_frd_n_m: [4, 5, 6]}\n"
           "  - {kind: wind, at_s: 1, for_s: 0.5, wind_ned_m_s: [1, 2, 3]}\n"
           "  - {kind: commands_stop, at_s: 1, for_s: 0.5}\n"
-          "  - {kind: commands_delay, at_s: 1, for_s: 0.5, delay_s: 0.05}\n"),
+          "  - {kind: commands_delay, at_s: 1, for_s: 0.5, delay_s: 0.05}\n"
+          "  - {kind: odometry_jump, at_s: 1, for_s: 0.5, position_ned_m: [1, 2, 3], yaw_rad: 0.25}\n"),
       "s.yaml");
   ASSERT_EQ(s.faults.size(), plant::kFaultKinds);
   for (std::size_t i = 0; i < s.faults.size(); ++i) {
@@ -187,13 +188,15 @@ TEST(SimulationFile, ReadsFaultsOfEveryKind) {
   EXPECT_EQ(s.faults[14].moment_frd, Eigen::Vector3d(4, 5, 6));
   EXPECT_EQ(s.faults[15].wind_ned, Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(s.faults[17].delay_s, 0.05);
+  EXPECT_EQ(s.faults[18].position_ned, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(s.faults[18].yaw_rad, 0.25);
 }
 
 TEST(SimulationFile, RefusesInvalidFaults) {
   EXPECT_EQ(refused_faults("  - {kind: imu_stop, at_s: -1, for_s: 1}\n"),
-            "s.yaml:79: faults[0].at_s: is -1, must be at least 0 and at most 86400");
+            "s.yaml:85: faults[0].at_s: is -1, must be at least 0 and at most 86400");
   EXPECT_NE(refused_faults("  - {kind: imu_stopped, at_s: 1, for_s: 1}\n")
-                .find("s.yaml:79: faults[0].kind: is imu_stopped, must be "),
+                .find("s.yaml:85: faults[0].kind: is imu_stopped, must be "),
             std::string::npos);
   EXPECT_NE(refused_faults("  - {kind: mocap_latency, at_s: 1, for_s: 1}\n").find("faults[0].delay_s"),
             std::string::npos);
@@ -202,7 +205,7 @@ TEST(SimulationFile, RefusesInvalidFaults) {
   EXPECT_EQ(
       refused_faults("  - {kind: imu_stop, at_s: 1, for_s: 1}\n"
                      "  - {kind: imu_stop, at_s: 1.5, for_s: 1}\n"),
-      "s.yaml:80: faults[1].at_s: is 1.5, but faults[0], imu_stop too, lasts from 1 s to 2 s: faults of "
+      "s.yaml:86: faults[1].at_s: is 1.5, but faults[0], imu_stop too, lasts from 1 s to 2 s: faults of "
       "one kind must not overlap");
 }
 

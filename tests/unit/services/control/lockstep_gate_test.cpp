@@ -7,14 +7,14 @@ namespace {
 
 using Stream = LockstepGate::Stream;
 
-comms::msg::Imu imu(std::uint64_t number, std::uint64_t pose, std::uint64_t battery,
-                    std::uint64_t rotor_speeds) {
+VehicleSample imu(std::uint64_t number, std::uint64_t pose, std::uint64_t battery,
+                  std::uint64_t rotor_speeds) {
   comms::msg::Imu message;
   message.sequence_number(number);
   message.mocap_sequence_number(pose);
   message.battery_sequence_number(battery);
   message.rotor_speeds_sequence_number(rotor_speeds);
-  return message;
+  return vehicle_sample(message);
 }
 
 TEST(LockstepGate, PassesASampleWithoutDependenciesOnce) {
@@ -23,7 +23,7 @@ TEST(LockstepGate, PassesASampleWithoutDependenciesOnce) {
   EXPECT_TRUE(gate.offer(imu(1, 0, 0, 0)));
   const auto first = gate.take();
   ASSERT_TRUE(first.has_value());
-  EXPECT_EQ(first->sequence_number(), 1U);
+  EXPECT_EQ(first->sequence(), 1U);
   EXPECT_FALSE(gate.take().has_value());
   EXPECT_FALSE(gate.offer(imu(1, 0, 0, 0))) << "a repetition";
   EXPECT_FALSE(gate.take().has_value());

@@ -24,6 +24,7 @@ void expect_same(const Message& message) {
 
 TEST(Convert, RoundTripPreservesMessages) {
   expect_same<plant::ImuSample>(example<msg::Imu>());
+  expect_same<plant::OdometrySample>(example<msg::VehicleOdometry>());
   expect_same<plant::PoseSample>(example<msg::MocapPose>());
   expect_same<plant::BatterySample>(example<msg::Battery>());
   expect_same<plant::RotorSpeedSample>(example<msg::RotorSpeeds>());

@@ -12,6 +12,23 @@ namespace swiftlet::comms::tests {
 inline plant::PerRotor four_rotors(double first) { return {first, first + 0.1, first + 0.2, first + 0.3}; }
 
 inline plant::ImuSample imu_sample() { return {1001, 11, {0.1, -0.2, -9.8}, {0.3, -0.4, 0.5}}; }
+inline plant::OdometrySample odometry_sample() {
+  plant::OdometrySample sample;
+  sample.stamp_ns = 1012;
+  sample.sequence = 23;
+  sample.position_valid = true;
+  sample.position_ned = {1.0, -2.0, -3.0};
+  sample.velocity_valid = true;
+  sample.velocity_ned = {0.4, -0.5, 0.6};
+  sample.q_ned_from_frd = Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5);
+  sample.body_rates_frd = {0.1, -0.2, 0.3};
+  sample.position_deviation = {0.01, 0.02, 0.03};
+  sample.velocity_deviation = {0.04, 0.05, 0.06};
+  sample.rotation_deviation = {0.07, 0.08, 0.09};
+  sample.resets = 3;
+  sample.fuses_mocap = true;
+  return sample;
+}
 inline plant::PoseSample pose_sample() {
   return {1002, 12, true, {1.0, -2.0, -3.0}, Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5)};
 }
@@ -171,6 +188,10 @@ T example();
 template <>
 inline msg::Imu example() {
   return to_message(imu_sample());
+}
+template <>
+inline msg::VehicleOdometry example() {
+  return to_message(odometry_sample());
 }
 template <>
 inline msg::MocapPose example() {

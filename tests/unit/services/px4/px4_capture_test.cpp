@@ -70,10 +70,13 @@ TEST_F(Px4Capture, EveryLayoutIsThatOnTheWire) {
     EXPECT_NEAR(sample.voltage_v, 16.0, 1.0);
     EXPECT_GT(sample.state_of_charge, 0.4);
   }
+  plant::OdometrySample odometry;
   for (const msg::VehicleOdometry& message : all_of<msg::VehicleOdometryPubSubType>("out/vehicle_odometry")) {
-    plant::PoseSample pose;
-    ASSERT_FALSE(px4::from_px4(message, pose));
-    EXPECT_GT(pose.position_ned.z(), -2.5);
+    ASSERT_FALSE(px4::from_px4(message, odometry));
+    EXPECT_GT(odometry.position_ned.z(), -2.5);
+    EXPECT_LT(odometry.velocity_ned.norm(), 3.0);
+    EXPECT_LT(odometry.body_rates_frd.norm(), 6.0);
+    EXPECT_EQ(odometry.resets % 256, message.reset_counter());
   }
   for (const msg::VehicleStatus& message : all_of<msg::VehicleStatusPubSubType>("out/vehicle_status_v1")) {
     ASSERT_FALSE(px4::check(message)) << px4::check(message).text;

@@ -105,6 +105,34 @@ TEST(Px4Translate, CommandsAreExternalAndAnswersAreKnown) {
   EXPECT_FALSE(is_for_us(ack)) << "of a ground station";
 }
 
+TEST(Px4Translate, ItsEstimateHasWhatItKnows) {
+  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+  msg::VehicleOdometry message;
+  message.pose_frame(1);
+  message.velocity_frame(1);
+  message.position({1.0F, 2.0F, -3.0F});
+  message.q({0.0F, 0.0F, 0.0F, 1.0F});
+  message.velocity({kUnknown, kUnknown, kUnknown});
+  message.angular_velocity({0.5F, 0.25F, -0.5F});
+  message.position_variance({0.25F, 0.25F, 1.0F});
+  message.velocity_variance({kUnknown, kUnknown, kUnknown});
+  message.reset_counter(255);
+  plant::OdometrySample estimate;
+  ASSERT_FALSE(from_px4(message, estimate));
+  EXPECT_TRUE(estimate.position_valid);
+  EXPECT_EQ(estimate.position_ned, Eigen::Vector3d(1.0, 2.0, -3.0));
+  EXPECT_FALSE(estimate.velocity_valid);
+  EXPECT_EQ(estimate.body_rates_frd, Eigen::Vector3d(0.5, 0.25, -0.5));
+  EXPECT_EQ(estimate.position_deviation, Eigen::Vector3d(0.5, 0.5, 1.0));
+  EXPECT_EQ(estimate.velocity_deviation, Eigen::Vector3d(0.0, 0.0, 0.0));
+  EXPECT_EQ(estimate.resets, 255U);
+  message.reset_counter(1);
+  message.velocity({0.1F, 0.2F, 0.3F});
+  ASSERT_FALSE(from_px4(message, estimate));
+  EXPECT_EQ(estimate.resets, 257U) << "the counter wraps";
+  EXPECT_TRUE(estimate.velocity_valid);
+}
+
 // A layout that has changed shows as values that cannot be.
 TEST(Px4Translate, NonsenseIsRefusedByName) {
   msg::SensorCombined sensors;
@@ -117,6 +145,15 @@ TEST(Px4Translate, NonsenseIsRefusedByName) {
   sensors.gyro_rad({0.1F, 0.2F, 0.3F});
   EXPECT_FALSE(from_px4(sensors, imu));
   EXPECT_NEAR(imu.specific_force_frd.z(), -9.8, 1e-6);
+
+  msg::VehicleOdometry odometry;
+  plant::OdometrySample estimate;
+  odometry.q({1.0F, 0.0F, 0.0F, 0.0F});
+  odometry.position({0.0F, 3e7F, 0.0F});
+  EXPECT_STREQ(from_px4(odometry, estimate).text, "position is 3e+07, must be between -100000 and 100000");
+  odometry.position({0.0F, 0.0F, 0.0F});
+  odometry.pose_frame(2);
+  EXPECT_STREQ(from_px4(odometry, estimate).text, "pose_frame is 2, must be at most 1") << "FRD";
 
   msg::BatteryStatus battery;
   battery.voltage_v(1e12F);

@@ -1,0 +1,30 @@
+#include "swiftlet/services/control/vehicle_sample.hpp"
+
+#include <limits>
+
+#include "swiftlet/services/messages/convert.hpp"
+
+namespace swiftlet::services {
+namespace {
+
+template <class Sample, class Message>
+VehicleSample converted(const Message& message) {
+  Sample sample;
+  if (comms::from_message(message, sample)) {
+    sample.stamp_ns = message.stamp_ns();
+    sample.sequence = message.sequence_number();
+    sample.body_rates_frd.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return {sample, comms::obeyed_command(message), message.mocap_sequence_number(),
+          message.battery_sequence_number(), message.rotor_speeds_sequence_number()};
+}
+
+}  // namespace
+
+VehicleSample vehicle_sample(const comms::msg::Imu& message) { return converted<plant::ImuSample>(message); }
+
+VehicleSample vehicle_sample(const comms::msg::VehicleOdometry& message) {
+  return converted<plant::OdometrySample>(message);
+}
+
+}  // namespace swiftlet::services
