@@ -18,6 +18,7 @@ constexpr double kGreatestThrust = 1.5;
 constexpr double kSettling_s = 0.5;  // in free flight near hover, before anything is learnt
 constexpr double kLearning_s = 1.0;  // time constant
 constexpr double kLongestStep_s = 0.1;
+constexpr std::int64_t kTouchdownNs = 1'500'000'000;
 
 bool is_near(double thrust_n, double weight_n) {
   return thrust_n > kLeastThrust * weight_n && thrust_n < kGreatestThrust * weight_n;
@@ -49,9 +50,24 @@ void ThrustScale::set_voltage(double supply_voltage_v) {
   if (supply_voltage_v > least && supply_voltage_v < greatest) voltage_v_ = supply_voltage_v;
 }
 
+void ThrustScale::note_flight(bool flying, std::int64_t stamp_ns) {
+  if (!flying) {
+    if (marked_ns_ >= 0) factor_ = earlier_factor_;
+    marked_ns_ = -1;
+  } else if (marked_ns_ < 0) {
+    recent_factor_ = earlier_factor_ = factor_;
+    marked_ns_ = stamp_ns;
+  } else if (stamp_ns - marked_ns_ > kTouchdownNs) {
+    earlier_factor_ = recent_factor_;
+    recent_factor_ = factor_;
+    marked_ns_ = stamp_ns;
+  }
+}
+
 void ThrustScale::learn(double thrust_n, double specific_force_up, bool flying, std::int64_t stamp_ns) {
   const double dt_s = static_cast<double>(stamp_ns - last_stamp_ns_) * 1e-9;
   last_stamp_ns_ = stamp_ns;
+  note_flight(flying, stamp_ns);
   const double measured_n = vehicle_.mass_kg * specific_force_up;
   if (!(dt_s > 0.0) || dt_s > kLongestStep_s || !flying || !std::isfinite(measured_n)) {
     steady_s_ = 0.0;

@@ -24,18 +24,24 @@ class ThrustScale {
   void set_voltage(double supply_voltage_v);
 
   // An IMU sample while PX4 obeys thrust_n. specific_force_up: along -z of FRD, m/s^2. flying: the vehicle does not touch the
-  // ground. Learns while the thrust is near the weight.
+  // ground. Learns while the thrust is near the weight. In a touchdown the ground carries the vehicle before `flying` tells: what
+  // was learnt in the last 1.5 s of a flight is forgotten.
   void learn(double thrust_n, double specific_force_up, bool flying, std::int64_t stamp_ns);
 
  private:
   double curve(double thrust_n) const;
+  void note_flight(bool flying, std::int64_t stamp_ns);
 
   plant::Vehicle vehicle_;
   double weight_n_;
   double voltage_v_;
   double factor_ = 1.0;
-  double lagged_n_ = 0.0;  // the commanded thrust through the lag of the motors
-  double steady_s_ = 0.0;  // for how long the vehicle has flown near hover
+  // In flight, the factor of up to kTouchdown_s ago and that of before.
+  double recent_factor_ = 1.0;
+  double earlier_factor_ = 1.0;
+  std::int64_t marked_ns_ = -1;  // when they were set; -1: on the ground
+  double lagged_n_ = 0.0;        // the commanded thrust through the lag of the motors
+  double steady_s_ = 0.0;        // for how long the vehicle has flown near hover
   std::int64_t last_stamp_ns_ = 0;
 };
 

@@ -57,6 +57,22 @@ TEST_F(Px4ThrustScale, LearnsTheHoverThrottleInFlight) {
   EXPECT_NEAR(thrust_n, weight_n_, 0.01 * weight_n_);
 }
 
+// GIVEN a vehicle that has learnt its throttle WHEN it lands, and the ground carries more and more of it before PX4 tells
+// THEN the throttle of hover stays.
+TEST_F(Px4ThrustScale, ATouchdownIsNotLearnt) {
+  ThrustScale scale(vehicle_);
+  int i = 1;
+  for (; i < 800; ++i)
+    scale.learn(weight_n_, 0.8 * thrust_of(scale.throttle(weight_n_), 3.8) / vehicle_.mass_kg, true,
+                i * kPeriodNs);
+  const double learnt = scale.hover_throttle();
+  for (const int end = i + 80; i < end; ++i)
+    scale.learn((0.6 + 0.005 * (end - i)) * weight_n_, plant::kGravity, true, i * kPeriodNs);
+  EXPECT_LT(scale.hover_throttle(), 0.95 * learnt) << "misled";
+  scale.learn(0.5 * weight_n_, plant::kGravity, false, i * kPeriodNs);
+  EXPECT_NEAR(scale.hover_throttle(), learnt, 0.01 * learnt);
+}
+
 TEST_F(Px4ThrustScale, LearnsNothingOnTheGroundOrInAFall) {
   ThrustScale scale(vehicle_);
   for (int i = 1; i < 300; ++i) scale.learn(weight_n_, 3.0, false, i * kPeriodNs);
