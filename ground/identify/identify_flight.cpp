@@ -10,6 +10,7 @@
 #include "swiftlet/ground/command_line/output_files.hpp"
 #include "swiftlet/ground/identify/flight_identification_report.hpp"
 #include "swiftlet/ground/identify/identify_actions.hpp"
+#include "swiftlet/ground/identify/identify_ulog.hpp"
 #include "swiftlet/ground/identify/report_page.hpp"
 #include "swiftlet/ground/terminal/progress_line.hpp"
 #include "swiftlet/io/atomic_write.hpp"
@@ -49,6 +50,8 @@ int identify_flight(IdentifyFlightOptions options) {
     for (const fs::path& file : files_of(log)) inputs.push_back(file);
   }
   const auto [base_path, is_assumed] = base_of(options);
+  if (is_ulog(options.logs.front()))
+    return identify_ulog(options, runtime::load_vehicle(base_path.string()), base_path.stem().string());
   inputs.push_back(base_path);
   refuse_overwriting({{"--out", options.out}, {"--report", options.report}}, inputs);
   const plant::Vehicle base = runtime::load_vehicle(base_path.string());

@@ -14,7 +14,7 @@ Command add_flight_command(runtime::CommandLine identify, const IdentifyActions&
   app.add_option(
          "logs", options->logs,
          "flight records made with --sensors or --mcap, MCAP files of `swiftlet record`, or CSV files, "
-         "plain or gzip; all of one vehicle")
+         "plain or gzip, or logs of PX4, .ulg, for its thrust scale; all of one vehicle")
       .required()
       .type_name("LOG...");
   app.add_option("--vehicle-name", options->vehicle, "which vehicle of an MCAP file that has several");

@@ -1,0 +1,64 @@
+// Logs of PX4: ULog, version 1 (docs.px4.io, "ULog File Format"). Reads the logged values of chosen fields.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace swiftlet::ulog {
+
+// The values of some fields of a topic, as logged: a row for each message.
+struct Table {
+  std::vector<double> time_s;                // of each row, since PX4 was started; rises
+  std::vector<std::vector<double>> columns;  // in the order of the fields asked for
+  std::size_t rows() const { return time_s.size(); }
+};
+
+class Log {
+ public:
+  // Refers to the bytes, which must outlive it. Throws ConfigError if they are no ULog, a definition is not understood or
+  // data is used that the file marks as incompatible. A file that ends within a message, as after a loss of power, is read up
+  // to there. file_name appears in messages only.
+  Log(std::string_view bytes, std::string file_name);
+
+  // True if the topic was logged, by its first instance.
+  bool has(const std::string& topic) const;
+  // fields: such as "z" or "xyz[2]". Messages whose stamp is not above the last are left out. Throws ConfigError naming topic
+  // or field if one was not logged, or is no number.
+  Table read(const std::string& topic, const std::vector<std::string>& fields) const;
+  // The value when the log began; throws ConfigError if there is none.
+  double parameter(const std::string& name) const;
+  bool ends_early() const { return ends_early_; }
+
+ private:
+  struct Field {
+    std::string type;       // of PX4: "float", or that of a nested message
+    std::size_t count = 1;  // of an array
+    std::string name;
+  };
+  struct Place {  // of a value in a message
+    char type = 0;
+    std::size_t offset = 0;
+  };
+  using Places = std::map<std::string, Place>;
+
+  void read_definition(char type, std::string_view message);
+  void read_format(std::string_view text);
+  void read_parameter(std::string_view message);
+  void read_subscription(std::string_view message);
+  std::size_t lay_out(const std::string& format, const std::string& prefix, std::size_t offset, int depth,
+                      Places& places) const;
+  [[noreturn]] void fail(const std::string& what) const;
+
+  std::string file_name_;
+  std::map<std::string, std::vector<Field>> formats_;
+  std::map<std::string, std::uint16_t> topics_;                  // first instances
+  std::map<std::uint16_t, std::vector<std::string_view>> data_;  // messages of each subscription
+  std::map<std::string, double> parameters_;
+  bool ends_early_ = false;
+};
+
+}  // namespace swiftlet::ulog

@@ -1,0 +1,84 @@
+#include "swiftlet/io/ulog/ulog.hpp"
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/io/config_error.hpp"
+#include "tests/support/ulog_writer.hpp"
+
+namespace swiftlet::ulog {
+namespace {
+
+using tests::UlogWriter;
+
+UlogWriter written() {
+  UlogWriter file;
+  file.format("inner:int16_t a;uint8_t[2] b;");
+  file.format("motion:uint64_t timestamp;float[3] xyz;inner[2] parts;bool valid;char[4] text;");
+  file.parameter("MPC_THR_HOVER", 0.375F);
+  file.subscribe(7, "motion");
+  file.subscribe(8, "motion", 1);
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    std::string fields;
+    for (const float value : {1.0F, 2.0F, 3.5F}) fields += UlogWriter::raw(value);
+    for (const int part : {-5, 6}) {
+      fields += UlogWriter::raw(static_cast<std::int16_t>(part));
+      fields += UlogWriter::raw(std::uint8_t{200}) + UlogWriter::raw(static_cast<std::uint8_t>(i));
+    }
+    file.data(7, 1'000'000 + 10'000 * i, fields + UlogWriter::raw(std::uint8_t{1}) + "text");
+  }
+  return file;
+}
+
+TEST(Ulog, ReadsFieldsOfArraysAndNestedFormats) {
+  const UlogWriter file = written();
+  const Log log(file.bytes(), "a.ulg");
+  EXPECT_TRUE(log.has("motion"));
+  EXPECT_FALSE(log.has("battery_status"));
+  const Table table = log.read("motion", {"xyz[2]", "parts[1].a", "parts[1].b[1]", "valid"});
+  ASSERT_EQ(table.rows(), 3U);
+  EXPECT_DOUBLE_EQ(table.time_s[2], 1.02);
+  EXPECT_EQ(table.columns[0][0], 3.5);
+  EXPECT_EQ(table.columns[1][1], 6.0);
+  EXPECT_EQ(table.columns[2][2], 2.0);
+  EXPECT_EQ(table.columns[3][0], 1.0);
+  EXPECT_EQ(log.parameter("MPC_THR_HOVER"), 0.375);
+  EXPECT_FALSE(log.ends_early());
+}
+
+TEST(Ulog, IsReadUpToItsEnd) {
+  const UlogWriter file = written();
+  const std::string cut = file.bytes().substr(0, file.bytes().size() - 5);
+  const Log log(cut, "a.ulg");
+  EXPECT_TRUE(log.ends_early());
+  EXPECT_EQ(log.read("motion", {"valid"}).rows(), 2U);
+}
+
+std::string fault_of(const std::string& bytes, const std::string& topic, const std::string& field) {
+  try {
+    Log(bytes, "a.ulg").read(topic, {field});
+  } catch (const runtime::ConfigError& fault) {
+    return fault.what();
+  }
+  return "";
+}
+
+TEST(Ulog, NamesWhatIsMissing) {
+  UlogWriter file = written();
+  EXPECT_EQ(fault_of("ULog?", "motion", "valid"), "a.ulg: is no ULog of PX4");
+  EXPECT_EQ(fault_of(file.bytes(), "attitude", "q"), "a.ulg: has no messages of topic attitude");
+  EXPECT_EQ(fault_of(file.bytes(), "motion", "w"), "a.ulg: topic motion has no number w");
+  EXPECT_EQ(fault_of(file.bytes(), "motion", "text[0]"), "a.ulg: topic motion has no number text[0]");
+  EXPECT_THROW(Log(file.bytes(), "a.ulg").parameter("NONE"), runtime::ConfigError);
+  file.format("loop:uint64_t timestamp;loop inside;");
+  file.subscribe(9, "loop");
+  file.data(9, 1, "");
+  EXPECT_EQ(fault_of(file.bytes(), "loop", "x"), "a.ulg: has no format of loop");
+  std::string flags(40, '\0');
+  flags[9] = 1;
+  file.message('B', flags);
+  EXPECT_EQ(fault_of(file.bytes(), "motion", "valid"),
+            "a.ulg: uses features of ULog that are not known here");
+}
+
+}  // namespace
+}  // namespace swiftlet::ulog
