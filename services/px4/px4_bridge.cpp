@@ -240,11 +240,13 @@ std::string Px4Bridge::arming_fault(std::int64_t now_ns) const {
   const bool uses_estimate =
       level_ == plant::ControlLevel::kAttitude || level_ == plant::ControlLevel::kTrajectory;
   if (!uses_estimate) return {};
+  if (estimated_ns_ == 0 || now_ns - estimated_ns_ > kPoseTimeoutNs)
+    return "PX4 must not be armed: it publishes no vehicle_odometry";
+  // Control commands in the frame of PX4's estimate then, and knows whether motion capture is needed.
+  if (settings_.samples == Samples::kOdometry) return {};
   const std::optional<plant::PoseSample>& pose = vision_.last();
   if (!pose || now_ns - pose->stamp_ns > kPoseTimeoutNs)
     return "PX4 must not be armed: no pose of motion capture";
-  if (estimated_ns_ == 0 || now_ns - estimated_ns_ > kPoseTimeoutNs)
-    return "PX4 must not be armed: it publishes no vehicle_odometry";
   const double distance_m = (estimate_.position_ned - pose->position_ned).norm();
   if (distance_m > kGreatestDistance_m)
     return fmt::format(

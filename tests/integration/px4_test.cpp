@@ -51,8 +51,10 @@ class Px4Flight : public testing::Test {
   // A busy machine must not look like a control that is dead.
   void start_all(const std::string& level, const std::string& silence_s = "1") {
     px4_ = std::make_unique<ScriptedPx4>(vehicle_, network("scripted"), settings_);
-    bridge_ = start("swiftlet-px4",
-                    {"--control-silence", silence_s, "--instance", std::to_string(settings_.instance)});
+    std::vector<std::string> of_bridge{"--control-silence", silence_s, "--instance",
+                                       std::to_string(settings_.instance)};
+    of_bridge.insert(of_bridge.end(), extra_bridge_.begin(), extra_bridge_.end());
+    bridge_ = start("swiftlet-px4", of_bridge);
     mocap_ = start("swiftlet-mocap");
     control_ = start("swiftlet-control", {"--level", level});
     client_ = std::make_unique<ground::Client>(network("ground"));
@@ -102,6 +104,7 @@ class Px4Flight : public testing::Test {
   TemporaryFolder folder_;
   const plant::Vehicle vehicle_;
   const ScriptedPx4Settings settings_;
+  std::vector<std::string> extra_bridge_;  // arguments
   std::unique_ptr<ScriptedPx4> px4_;
   std::unique_ptr<Program> bridge_, mocap_, control_;
   std::unique_ptr<ground::Client> client_;
@@ -269,6 +272,63 @@ TEST_F(Px4OfAnotherVersion, IsRefusedByName) {
       << errors();
   EXPECT_FALSE(ask(msg::Command_Constants::ARM).accepted());
   EXPECT_EQ(px4_->offboard_modes(), 0U);
+}
+
+// GIVEN control that is sent PX4's own estimate in place of its IMU THEN it flies, and tells how far it is from motion capture.
+class Px4Odometry : public Px4Flight {};
+
+TEST_F(Px4Odometry, FliesAndLands) {
+  extra_bridge_ = {"--samples", "odometry"};
+  start_all("attitude");
+  hover();
+  const msg::ControlStatus status = client_->view().control.message;
+  EXPECT_GE(status.odometry_distance_m(), 0.0);
+  EXPECT_LT(status.odometry_distance_m(), 0.1);
+  EXPECT_EQ(status.estimate_source(), msg::ControlStatus_Constants::ESTIMATE_OF_MOCAP);
+  ASSERT_TRUE(ask(msg::Command_Constants::LAND).accepted());
+  EXPECT_TRUE(wait_for(Mode::kDisarmed)) << reason() << errors();
+  ASSERT_TRUE(eventually([&] { return !px4_->armed(); }));
+}
+
+// GIVEN two instances of PX4 WHEN `swiftlet fly --vehicle px4` flies a mission with both THEN it starts mocap, bridge and control,
+// both fly the mission beside each other and land, and the report has both.
+class Px4Fly : public Px4Flight {};
+
+TEST_F(Px4Fly, FliesTwoInstances) {
+  ScriptedPx4Settings second;
+  second.instance = 1;
+  second.east_m = 1.0;
+  comms::NodeSettings of_second = network("scripted2");
+  of_second.vehicle = "kl2";
+  px4_ = std::make_unique<ScriptedPx4>(vehicle_, network("scripted1"), settings_);
+  const ScriptedPx4 other(vehicle_, of_second, second);
+  const std::string mission =
+      folder_.write("hop.yaml",
+                    "name: hop\nframe: ned\ntolerance_m: 0.2\nitems:\n"
+                    "  - {kind: takeoff, height_m: 0.4, speed_m_s: 0.5}\n"
+                    "  - {kind: waypoint, position_m: [0.3, 0, -0.4], speed_m_s: 0.5}\n"
+                    "  - {kind: land, speed_m_s: 0.5}\n");
+  const ProgramResult result = run_program(
+      "swiftlet",
+      {"fly", mission, "--vehicle", "px4", "--vehicle-name", "kl1,kl2", "--domain",
+       std::to_string(lock_.domain()), "--localhost-only", "--record", folder_.path() / "record", "--json"},
+      folder_.path(), kStuck);
+  EXPECT_EQ(result.exit_code, 0) << result.errors << result.output;
+  for (const char* const name : {"kl1", "kl2"}) EXPECT_NE(result.output.find(name), std::string::npos);
+  for (const ScriptedPx4* const px4 : {static_cast<const ScriptedPx4*>(px4_.get()), &other}) {
+    EXPECT_FALSE(px4->armed());
+    EXPECT_GT(px4->setpoints(), 300U);
+    EXPECT_TRUE(px4->last_mode()->attitude()) << "level attitude, unless told";
+    EXPECT_NEAR(px4->height_m(), 0.0, 0.05);
+  }
+}
+
+TEST_F(Px4Fly, RefusesOptionsOfTheSimulation) {
+  const ProgramResult result = run_program(
+      "swiftlet", {"fly", "square", "--vehicle", "px4", "--clock", "lockstep"}, folder_.path(), kStuck);
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.errors.find("--vehicle px4: PX4 is no simulation of swiftlet-plant"), std::string::npos)
+      << result.errors;
 }
 
 class Px4WithWeakRotors : public Px4Flight {

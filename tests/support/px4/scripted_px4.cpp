@@ -31,6 +31,12 @@ plant::SimulationSettings simulation_settings() {
   return settings;
 }
 
+plant::VehicleState standing(double east_m) {
+  plant::VehicleState state;
+  state.position_ned.y() = east_m;
+  return state;
+}
+
 std::array<float, 3> floats(const Vector3d& in) {
   return {static_cast<float>(in.x()), static_cast<float>(in.y()), static_cast<float>(in.z())};
 }
@@ -61,7 +67,7 @@ ScriptedPx4::ScriptedPx4(const plant::Vehicle& vehicle, const comms::NodeSetting
       simulation_settings_(simulation_settings()),
       topics_(settings.instance),
       status_topic_(topics_.folder, settings.status_topic),
-      simulation_(vehicle_, simulation_settings_, 1),
+      simulation_(vehicle_, simulation_settings_, 1, standing(settings.east_m)),
       firmware_(vehicle_, simulation_settings_),
       node_(network),
       sensors_(node_.publish(topics_.sensors.get())),
@@ -238,6 +244,9 @@ void ScriptedPx4::publish() {
   const Quaterniond q = estimator.q_ned_from_frd();
   odometry.q({static_cast<float>(q.w()), static_cast<float>(q.x()), static_cast<float>(q.y()),
               static_cast<float>(q.z())});
+  odometry.velocity_frame(1);
+  odometry.velocity(floats(estimator.velocity_ned()));
+  odometry.angular_velocity(floats(estimator.body_rates_frd()));
   const px4_msg::VehicleStatus status = rules_.status();
   const px4_msg::VehicleLandDetected land = rules_.land_detected();
   const px4_msg::FailsafeFlags flags = rules_.flags();

@@ -25,6 +25,7 @@ namespace swiftlet::tests {
 
 struct ScriptedPx4Settings {
   int instance = 0;
+  double east_m = 0.0;         // where it stands
   double thrust_factor = 1.0;  // thrust over that of the vehicle file
   std::string status_topic = "/out/vehicle_status_v1";
   std::int64_t stamps_lag_us = 40'000;  // of the stamps that go out, after the clock of the agent
