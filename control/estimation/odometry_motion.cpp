@@ -9,7 +9,9 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kStandingThrust = 0.5;  // of the weight: with less the vehicle stands
+constexpr double kCloseStamps = 1.0 / 3.0;  // of the usual interval
+constexpr double kIntervalGain = 0.05;      // of each sample
+constexpr double kStandingThrust = 0.5;     // of the weight: with less the vehicle stands
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
@@ -23,15 +25,19 @@ MeanMotion OdometryMotion::step(const plant::OdometrySample& sample, double spec
   MeanMotion motion;
   const bool jumped = has_last_ && sample.resets != last_.resets;
   const double dt_s = seconds(sample.stamp_ns - last_.stamp_ns);
-  motion.specific_force_frd = jumped ? last_force_frd_ : specific_force(sample, specific_thrust);
+  const bool too_close = has_last_ && !jumped && dt_s < kCloseStamps * interval_s_;
+  motion.specific_force_frd = jumped || too_close ? last_force_frd_ : specific_force(sample, specific_thrust);
   motion.body_rates_frd =
       has_last_ ? Vector3d(0.5 * (last_.body_rates_frd + sample.body_rates_frd)) : sample.body_rates_frd;
-  if (has_last_ && !jumped && dt_s > 0.0)
+  if (has_last_ && !jumped && !too_close && dt_s > 0.0)
     motion.body_rates_frd =
         plant::rotation_vector(last_.q_ned_from_frd.conjugate() * sample.q_ned_from_frd) / dt_s;
+  if (has_last_ && dt_s > 0.0)
+    interval_s_ = interval_s_ == 0.0 ? dt_s : interval_s_ + kIntervalGain * (dt_s - interval_s_);
+  last_force_frd_ = motion.specific_force_frd;
+  if (too_close) return motion;
   last_ = sample;
   has_last_ = true;
-  last_force_frd_ = motion.specific_force_frd;
   return motion;
 }
 

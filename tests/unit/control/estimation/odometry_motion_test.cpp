@@ -47,6 +47,17 @@ TEST(OdometryMotion, AJumpIsNone) {
   EXPECT_NEAR(motion.step(jumped, 0.0).specific_force_frd.norm(), plant::kGravity, 1e-9) << "it goes on";
 }
 
+// GIVEN stamps of a clock that is set WHEN one follows the last closely THEN the change of velocity is no impact.
+TEST(OdometryMotion, AStampThatIsTooCloseIsNoForce) {
+  OdometryMotion motion;
+  double north = 0.0;
+  for (int i = 0; i < 10; ++i) motion.step(sample(i * 10'000'000, {north += 0.02, 0.0, 0.0}), 0.0);
+  const MeanMotion close = motion.step(sample(90'000'001, {north += 0.02, 0.0, 0.0}), 0.0);
+  EXPECT_NEAR(close.specific_force_frd.x(), 2.0, 1e-9);
+  const MeanMotion next = motion.step(sample(110'000'000, {north += 0.02, 0.0, 0.0}), 0.0);
+  EXPECT_NEAR(next.specific_force_frd.x(), 2.0, 1e-9) << "since the sample before";
+}
+
 TEST(OdometryMotion, WithoutVelocityIsTheThrust) {
   OdometryMotion motion;
   plant::OdometrySample blind = sample(0, {0.0, 0.0, 0.0});
@@ -54,6 +65,7 @@ TEST(OdometryMotion, WithoutVelocityIsTheThrust) {
   motion.step(blind, 0.0);
   blind.stamp_ns = 10'000'000;
   EXPECT_EQ(motion.step(blind, 8.0).specific_force_frd, Vector3d(0.0, 0.0, -8.0));
+  blind.stamp_ns = 20'000'000;
   EXPECT_TRUE(motion.step(blind, 2.0).specific_force_frd.isApprox(Vector3d(0.0, 0.0, -plant::kGravity)))
       << "the ground carries it";
 }
