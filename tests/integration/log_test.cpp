@@ -13,6 +13,7 @@
 
 #include "swiftlet/io/mcap/message_decoder.hpp"
 #include "swiftlet/io/mcap/reader.hpp"
+#include "swiftlet/io/mocap/room.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/hop_mission.hpp"
@@ -143,6 +144,31 @@ TEST_F(Log, IsPartOfTheRecordOfAFlight) {
     EXPECT_EQ(reported.at("report").at(figure), json::parse(flight.output).at(figure)) << figure;
   }
   EXPECT_TRUE(reported.at("settings").contains("control.position.x.omega_n"));
+}
+
+// GIVEN a body that is calibrated by hand WHEN a recorded flight is given THEN what it tells is added to the room file.
+TEST_F(Log, TellsHowABodySitsOnItsVehicle) {
+  const ProgramResult flight = run_program("swiftlet",
+                                           {"fly", "calibration", "--clock", "lockstep", "--mcap", "--domain",
+                                            std::to_string(lock_.domain()), "--record", path("record")},
+                                           folder_.path(), kStuck);
+  ASSERT_EQ(flight.exit_code, 0) << flight.errors;
+  const std::string room = folder_.write(
+      "room.yaml",
+      "source: natnet\nframe: yup\nvehicles:\n"
+      "  kl1: {body: drone, lever_arm_frd_m: [0.02, 0, 0.01], misalignment_rad: [0, 0, 0.1]}\n");
+  const auto calibrate = [&](const std::string& log) {
+    return run_program("swiftlet", {"mocap", "calibrate", "--room", room, "--log", log}, folder_.path(),
+                       kStuck);
+  };
+  const ProgramResult result = calibrate(path("record/flight.mcap"));
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  // The simulated body is misaligned by 1.75 mrad, and its origin is the centre of mass.
+  const mocap::Room written = mocap::load_room(room);
+  const mocap::VehicleBody& body = *mocap::find(written, "kl1");
+  EXPECT_NEAR((body.misalignment - Eigen::Vector3d(0, 0, 0.1)).norm(), 1.75e-3, 1e-3) << result.output;
+  EXPECT_LT((body.lever_arm_frd - Eigen::Vector3d(0.02, 0, 0.01)).norm(), 5e-3) << result.output;
+  EXPECT_EQ(calibrate(path("record")).exit_code, 2);  // has no sensors.csv
 }
 
 TEST_F(Log, OfAKilledRecorderIsReadableUpToTheLastSecond) {

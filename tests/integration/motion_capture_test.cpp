@@ -189,6 +189,35 @@ TEST_F(MotionCapture, ReportsABodyThatIsLost) {
   EXPECT_TRUE(wait_until_rotors_off()) << mode_log();
 }
 
+// GIVEN a vehicle that is still WHEN its IMU is compared with its poses THEN gravity tells roll and pitch, and nothing the lever
+// arm.
+TEST_F(MotionCapture, IsCalibratedByTheImuOfAVehicle) {
+  control_ = start("swiftlet-control");
+  plant_ = start("swiftlet-plant");
+  mocap_ = start("swiftlet-mocap");
+  wait_until_ready();
+  const std::string room = (folder_.path() / "room.yaml").string();
+  const std::string text = "source: natnet\nframe: yup\nvehicles:\n  kl1: {body: drone, " + kBodyKeys + "}\n";
+  std::ofstream(room) << text;
+  const ProgramResult result =
+      run_program("swiftlet",
+                  {"mocap", "calibrate", "kl1", "--room", room, "--hover", "--time", "6", "--dry-run",
+                   "--json", "--localhost-only", "--domain", std::to_string(lock_.domain())},
+                  folder_.path(), kStuck);
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const json found = json::parse(result.output);
+  const json& deviation = found.at("misalignment_deviation_rad");
+  for (int axis = 0; axis < 2; ++axis) {
+    EXPECT_LT(deviation[axis].get<double>(), 15e-3) << axis;
+    EXPECT_NEAR(found.at("misalignment_rad")[axis].get<double>(), kMisalignment[axis], 4.0 * 11e-3) << axis;
+  }
+  EXPECT_TRUE(found.at("lever_arm_deviation_m")[2].is_null());
+  EXPECT_NEAR(found.at("lever_arm_frd_m")[2].get<double>(), kLeverArm.z(), 2e-3);
+  EXPECT_GT(found.at("poses").get<int>(), 300);
+  std::ifstream file(room);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), text);
+}
+
 // GIVEN a body that sits askew, of a vehicle that stands and then is turned about its centre THEN the room file says how.
 TEST(MotionCaptureTool, CalibratesABodyAndListsIt) {
   const TemporaryFolder folder;

@@ -64,7 +64,8 @@ TEST_F(Tool, BashCompletesNamesOfConfigurationFilesAndVehicles) {
   EXPECT_EQ(completed({asked, "gains", "--vehicle", ""}), Words({"asked:config_ls_--names_vehicles"}));
   EXPECT_EQ(completed({asked, "set", "control", ""}), Words({"asked:config_ls_--names_control"}));
   EXPECT_EQ(completed({asked, "arm", "--vehicle-name", ""}), Words({"asked:list_--names_--time_0.5"}));
-  EXPECT_EQ(run({"config", "ls", "--names", "missions"}).output, "identification\nsquare\ntour\nzigzag\n");
+  EXPECT_EQ(run({"config", "ls", "--names", "missions"}).output,
+            "calibration\nidentification\nsquare\ntour\nzigzag\n");
 }
 
 TEST_F(Tool, AllProgramsFailIfTheirOutputCannotBeWritten) {

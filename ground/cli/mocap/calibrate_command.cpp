@@ -1,18 +1,24 @@
 // `swiftlet mocap calibrate`: aligns a body of the motion capture with its vehicle, and writes that into the room file.
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <poll.h>
 #include <stdexcept>
 #include <string>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/cli/mocap/calibration.hpp"
+#include "swiftlet/ground/cli/mocap/flight_calibration.hpp"
 #include "swiftlet/ground/cli/mocap/mocap_commands.hpp"
+#include "swiftlet/ground/cli/mocap/recorded_motion.hpp"
+#include "swiftlet/ground/command_line/network_options.hpp"
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/text_file.hpp"
@@ -31,6 +37,13 @@ struct Options {
   double rest_s = 3.0;
   double turn_s = 20.0;
   bool no_prompt = false;
+  bool hover = false;
+  double time_s = 20.0;
+  std::string log;
+  std::optional<double> from_s;
+  std::optional<double> until_s;
+  identification::AlignmentPriors priors;
+  comms::NodeSettings network;
   bool dry_run = false;
   bool json = false;
 };
@@ -90,8 +103,19 @@ Recording record(mocap::Source& source, const mocap::RoomFrame& frame, const moc
   return recording;
 }
 
+std::vector<double> list(const Eigen::Vector3d& v) { return {v.data(), v.data() + 3}; }
+
+// Three lines, with values and deviations in thousandths of their units.
+void print_components(const char* what, const char* unit, const Eigen::Vector3d& value,
+                      const Eigen::Vector3d& deviation, const std::array<bool, 3>& told) {
+  constexpr const char* kAxes[] = {"forward", "right", "down"};
+  for (int i = 0; i < 3; ++i)
+    std::printf("  %-28s %8.2f %-4s %s\n", fmt::format("{} {}", what, kAxes[i]).c_str(), 1e3 * value[i], unit,
+                told[static_cast<std::size_t>(i)] ? fmt::format("(within {:.2f})", 2e3 * deviation[i]).c_str()
+                                                  : "(as before)");
+}
+
 void print(const Options& options, const Misalignment& misalignment, const LeverArm& arm) {
-  const auto list = [](const Eigen::Vector3d& v) { return std::vector<double>(v.data(), v.data() + 3); };
   if (options.json) {
     const nlohmann::ordered_json json = {{"vehicle", options.vehicle},
                                          {"misalignment_rad", list(misalignment.vector)},
@@ -102,20 +126,89 @@ void print(const Options& options, const Misalignment& misalignment, const Lever
     std::printf("%s\n", json.dump(2).c_str());
     return;
   }
+  constexpr std::array<bool, 3> kAll = {true, true, true};
   std::printf("%s, each with two standard deviations:\n", options.vehicle.c_str());
-  for (int i = 0; i < 3; ++i)
-    std::printf("  misalignment about %-8s %8.2f mrad (within %.2f)\n",
-                i == 0   ? "forward"
-                : i == 1 ? "right"
-                         : "down",
-                1e3 * misalignment.vector[i], 2e3 * misalignment.deviation[i]);
-  for (int i = 0; i < 3; ++i)
-    std::printf("  lever arm %-17s %8.2f mm   (within %.2f)\n",
-                i == 0   ? "forward"
-                : i == 1 ? "right"
-                         : "down",
-                1e3 * arm.frd[i], 2e3 * arm.deviation[i]);
+  print_components("misalignment about", "mrad", misalignment.vector, misalignment.deviation, kAll);
+  print_components("lever arm", "mm", arm.frd, arm.deviation, kAll);
   std::printf("  the centre moved by %.2f mm RMS while the vehicle was turned\n", 1e3 * arm.residual_m);
+}
+
+// null: not told
+nlohmann::ordered_json told_only(const Eigen::Vector3d& deviation, const std::array<bool, 3>& told) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::array();
+  for (int i = 0; i < 3; ++i)
+    out.push_back(told[static_cast<std::size_t>(i)] ? nlohmann::ordered_json(deviation[i]) : nullptr);
+  return out;
+}
+
+void print(const Options& options, const FlightCalibration& calibration,
+           const identification::BodyAlignment& found) {
+  const Misalignment& misalignment = calibration.misalignment;
+  const LeverArm& arm = calibration.lever_arm;
+  if (options.json) {
+    const nlohmann::ordered_json json = {
+        {"vehicle", options.vehicle},
+        {"misalignment_rad", list(misalignment.vector)},
+        {"misalignment_deviation_rad", told_only(misalignment.deviation, calibration.misalignment_told)},
+        {"lever_arm_frd_m", list(arm.frd)},
+        {"lever_arm_deviation_m", told_only(arm.deviation, calibration.lever_arm_told)},
+        {"vertical_rad", {found.vertical.x(), found.vertical.y()}},
+        {"vertical_deviation_rad", {found.vertical_deviation.x(), found.vertical_deviation.y()}},
+        {"pose_delay_s", found.pose_delay_s},
+        {"pose_delay_deviation_s", found.pose_delay_deviation_s},
+        {"duration_s", found.duration_s},
+        {"poses", found.poses},
+        {"refused_poses", found.refused},
+        {"advice", calibration.advice}};
+    std::printf("%s\n", json.dump(2).c_str());
+    return;
+  }
+  std::printf("%s, from %.1f s with %zu poses, each with two standard deviations:\n", options.vehicle.c_str(),
+              found.duration_s, found.poses);
+  print_components("misalignment about", "mrad", misalignment.vector, misalignment.deviation,
+                   calibration.misalignment_told);
+  print_components("lever arm", "mm", arm.frd, arm.deviation, calibration.lever_arm_told);
+  std::printf(
+      "  the vertical of the motion capture is off by %.2f mrad to north and %.2f mrad to east (within "
+      "%.2f)\n",
+      1e3 * found.vertical.x(), 1e3 * found.vertical.y(), 2e3 * found.vertical_deviation.maxCoeff());
+  std::printf("  the stamps of the poses are %.2f ms late (within %.2f)\n", 1e3 * found.pose_delay_s,
+              2e3 * found.pose_delay_deviation_s);
+  for (const std::string& sentence : calibration.advice) std::printf("  %s\n", sentence.c_str());
+}
+
+// The poses of a flight come from swiftlet-mocap, which uses the room file.
+int calibrate_by_flight(const Options& options, const std::string& file, const std::string& text) {
+  const mocap::SourceOptions& source = options.source;
+  for (const auto& [name, given] :
+       {std::pair{"--source", source.source}, std::pair{"--server", source.server},
+        std::pair{"--mocap-interface", source.interface}, std::pair{"--frame", source.frame},
+        std::pair{"--file", source.file}}) {
+    if (!given.empty())
+      throw InputError(
+          fmt::format("{}: not with --hover or --log, whose poses come from swiftlet-mocap", name));
+  }
+  const mocap::Room room = mocap::parse_room(text, file);
+  const mocap::VehicleBody* const body = mocap::find(room, options.vehicle);
+  if (body == nullptr) throw InputError(file + ": vehicles: does not have the vehicle " + options.vehicle);
+  identification::FlightLog log;
+  if (options.hover) {
+    runtime::StopSignal stop;
+    comms::NodeSettings network = options.network;
+    network.vehicle = options.vehicle;
+    std::fprintf(stderr, "Recording %s for %g s.\n", options.vehicle.c_str(), options.time_s);
+    log = receive_motion(network, options.time_s, stop);
+  } else {
+    log = read_motion(options.log, options.vehicle, options.from_s, options.until_s);
+  }
+  const identification::BodyAlignment found = identification::align_body(log, options.priors);
+  const FlightCalibration calibration = calibrated(*body, found);
+  print(options, calibration, found);
+  if (options.dry_run) return kDone;
+  runtime::write_atomically(
+      file, with_calibration(text, file, options.vehicle, calibration.misalignment, calibration.lever_arm));
+  std::fprintf(stderr, "wrote %s\n", file.c_str());
+  return kDone;
 }
 
 int calibrate(const Options& options) {
@@ -124,6 +217,7 @@ int calibrate(const Options& options) {
   const std::string text = runtime::read_text_file(file);
   with_calibration(text, file, options.vehicle, {},
                    {});  // refuses a file without the keys before anything is asked for
+  if (options.hover || !options.log.empty()) return calibrate_by_flight(options, file, text);
   runtime::StopSignal stop;
   const std::unique_ptr<mocap::Source> source = open_mocap_source(options.source, {options.vehicle});
   const mocap::Room room = mocap::room_of(options.source, {options.vehicle});
@@ -156,14 +250,42 @@ Command add_mocap_calibrate_command(runtime::CommandLine mocap) {
   const runtime::CommandLine app =
       mocap.add_subcommand("calibrate", "Align a body with its vehicle, and write that into the room file");
   app.footer(
-      "The vehicle first stands level, then is turned by hand about its centre of mass "
-      "(docs/swap-mocap.md).\n\n"
-      "example: swiftlet mocap calibrate kl1 --room lab.yaml");
+      "The vehicle first stands level, then is turned by hand about its centre of mass; or, with --hover or "
+      "--log, "
+      "its IMU is compared with the poses of a flight (docs/swap-mocap.md).\n\n"
+      "example: swiftlet mocap calibrate kl1 --room lab.yaml\n"
+      "example: swiftlet mocap calibrate kl1 --room lab.yaml --hover\n"
+      "example: swiftlet mocap calibrate kl1 --room lab.yaml --log flights/calibration");
   app.add_option("vehicle", options->vehicle, "Vehicle of the room").show_default();
   mocap::add_source_options(app, options->source);
-  app.add_option("--rest-time", options->rest_s, "How long it stands, s").range(1.0, 60.0).show_default();
-  app.add_option("--turn-time", options->turn_s, "How long it is turned, s").range(2.0, 600.0).show_default();
+  runtime::Option rest =
+      app.add_option("--rest-time", options->rest_s, "How long it stands, s").range(1.0, 60.0).show_default();
+  runtime::Option turn = app.add_option("--turn-time", options->turn_s, "How long it is turned, s")
+                             .range(2.0, 600.0)
+                             .show_default();
   app.add_flag("--no-prompt", options->no_prompt, "Do not wait for Enter");
+  runtime::Option hover =
+      app.add_flag("--hover", options->hover,
+                   "From the vehicle in flight: it hovers, or better turns and flies short legs");
+  runtime::Option log =
+      app.add_option(
+             "--log", options->log,
+             "From a recorded flight: a record with sensors.csv, or an MCAP file of 'swiftlet record'")
+          .type_name("PATH");
+  hover.excludes(log).excludes(rest).excludes(turn);
+  log.excludes(rest).excludes(turn);
+  app.add_option("--time", options->time_s, "How long --hover records, s")
+      .range(identification::kShortestAlignment_s, 120.0)
+      .show_default()
+      .needs(hover);
+  app.add_option("--from", options->from_s, "Begin in --log, s of its clock").finite().needs(log);
+  app.add_option("--until", options->until_s, "End in --log, s of its clock").finite().needs(log);
+  app.add_option("--accelerometer-bias", options->priors.accelerometer_bias_m_s2,
+                 "Standard deviation of the accelerometer's bias for --hover and --log, m/s^2")
+      .range(1e-4, 10.0)
+      .show_default();
+  add_network_options(app, options->network);
+  app.remove_option("--vehicle-name");
   app.add_flag("--dry-run", options->dry_run, "Do not write the room file");
   app.add_flag("--json", options->json, "Print JSON");
   return {app, [options] { return calibrate(*options); }};

@@ -1,0 +1,153 @@
+#include "swiftlet/ground/cli/mocap/recorded_motion.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+#include <fmt/core.h>
+
+#include "swiftlet/ground/cli/check/sample_recorder.hpp"
+#include "swiftlet/ground/cli/mocap/mocap_commands.hpp"
+#include "swiftlet/ground/recording/log_table.hpp"
+#include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/configuration.hpp"
+#include "swiftlet/io/logs/flight_log_files.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using identification::FlightLog;
+using namespace std::chrono_literals;
+
+constexpr double kLongestWait_s = 10.0;
+
+void add_imu(FlightLog& log, double time_s, const Eigen::Vector3d& force, const Eigen::Vector3d& rates) {
+  if (!log.time_s.empty() && time_s <= log.time_s.back()) return;
+  log.time_s.push_back(time_s);
+  log.specific_force_frd.push_back(force);
+  log.body_rates_frd.push_back(rates);
+}
+
+void add_pose(FlightLog& log, const identification::FlightPose& pose) {
+  if (log.poses.empty() || pose.time_s > log.poses.back().time_s) log.poses.push_back(pose);
+}
+
+// The columns of a topic by their names.
+class TopicColumns {
+ public:
+  TopicColumns(const mcap::Reader& file, std::string topic)
+      : file_name_(file.name()), topic_(std::move(topic)) {
+    const std::vector<mcap::Column> columns = columns_of(file, topic_);
+    for (std::size_t i = 0; i < columns.size(); ++i) index_[columns[i].name] = i;
+  }
+  double number(const std::vector<mcap::Value>& values, const std::string& column) const {
+    const auto found = index_.find(column);
+    if (found == index_.end()) throw runtime::ConfigError(file_name_, 0, topic_, "has no field " + column);
+    return number_of(values[found->second]);
+  }
+  Eigen::Vector3d vector(const std::vector<mcap::Value>& values, const std::string& name) const {
+    return {number(values, name + "[0]"), number(values, name + "[1]"), number(values, name + "[2]")};
+  }
+
+ private:
+  std::string file_name_;
+  std::string topic_;
+  std::map<std::string, std::size_t> index_;
+};
+
+FlightLog read_mcap(const std::string& name, const std::string& vehicle) {
+  const mcap::Reader file(name);
+  FlightLog log;
+  log.name = name;
+  const std::string imu = "/" + vehicle + "/imu";
+  const TopicColumns of_imu(file, imu);
+  for_each_row(file, {}, imu, [&](const mcap::Message&, const std::vector<mcap::Value>& values) {
+    add_imu(log, 1e-9 * of_imu.number(values, "stamp_ns"), of_imu.vector(values, "specific_force_frd"),
+            of_imu.vector(values, "body_rates_frd"));
+  });
+  const std::string pose = "/" + vehicle + "/mocap_pose";
+  const TopicColumns of_pose(file, pose);
+  for_each_row(file, {}, pose, [&](const mcap::Message&, const std::vector<mcap::Value>& values) {
+    if (of_pose.number(values, "tracked") == 0.0) return;
+    const auto q = [&](const char* index) {
+      return of_pose.number(values, "q_ned_from_frd" + std::string(index));
+    };
+    add_pose(log, {1e-9 * of_pose.number(values, "stamp_ns"), of_pose.vector(values, "position_ned"),
+                   Eigen::Quaterniond(q("[0]"), q("[1]"), q("[2]"), q("[3]")).normalized()});
+  });
+  return log;
+}
+
+FlightLog cut(const FlightLog& log, double from_s, double until_s) {
+  FlightLog out;
+  out.name = log.name;
+  const auto is_inside = [&](double time_s) { return time_s >= from_s && time_s <= until_s; };
+  for (std::size_t row = 0; row < log.size(); ++row) {
+    if (is_inside(log.time_s[row]))
+      add_imu(out, log.time_s[row], log.specific_force_frd[row], log.body_rates_frd[row]);
+  }
+  for (const identification::FlightPose& pose : log.poses) {
+    if (is_inside(pose.time_s)) add_pose(out, pose);
+  }
+  return out;
+}
+
+}  // namespace
+
+FlightLog read_motion(const std::string& file, const std::string& vehicle, std::optional<double> from_s,
+                      std::optional<double> until_s) {
+  FlightLog log;
+  if (std::filesystem::path(file).extension() == ".mcap") {
+    log = read_mcap(file, vehicle);
+  } else {
+    // The commands, which a vehicle file translates, are not used.
+    const plant::Vehicle any =
+        runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, "kaylion"));
+    log = read_flight_log(file, any, BodyAxes::kDetected).log;
+  }
+  if (log.poses.empty())
+    throw std::runtime_error(file +
+                             " has no poses of the motion capture; a calibration needs them and the IMU");
+  constexpr double kEver_s = std::numeric_limits<double>::infinity();
+  return cut(log, from_s.value_or(-kEver_s), until_s.value_or(kEver_s));
+}
+
+FlightLog receive_motion(const comms::NodeSettings& settings, double time_s, runtime::StopSignal& stop) {
+  SampleRecorder recorder(settings);
+  const auto interrupted = [&] { return is_interrupted(stop); };
+  const auto record = [&](std::chrono::milliseconds time) {
+    if (!recorder.record(time, interrupted)) throw std::runtime_error("mocap calibrate: interrupted");
+  };
+  const auto begin = std::chrono::steady_clock::now();
+  while (!recorder.hears_imu() || !recorder.newest_tracked_pose()) {
+    record(50ms);
+    if (std::chrono::steady_clock::now() - begin > std::chrono::duration<double>(kLongestWait_s))
+      throw std::runtime_error(fmt::format("no {} of {} arrived in {:g} s",
+                                           recorder.hears_imu() ? "tracked mocap_pose" : "imu",
+                                           settings.vehicle, kLongestWait_s));
+  }
+  recorder.restart();
+  record(std::chrono::milliseconds(std::llround(1e3 * time_s)));
+  const VehicleRecording recording = recorder.recording();
+  FlightLog log;
+  log.name = settings.vehicle;
+  for (const auto& received : recording.imu.samples) {
+    const plant::ImuSample& imu = received.sample.imu;
+    add_imu(log, 1e-9 * static_cast<double>(imu.stamp_ns), imu.specific_force_frd, imu.body_rates_frd);
+  }
+  for (const auto& received : recording.mocap.samples) {
+    const plant::PoseSample& pose = received.sample;
+    if (pose.tracked)
+      add_pose(log, {1e-9 * static_cast<double>(pose.stamp_ns), pose.position_ned, pose.q_ned_from_frd});
+  }
+  return log;
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,24 @@
+// IMU samples and poses of a vehicle, from its topics or from a record.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "swiftlet/recording/flight_log.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/runtime/stop_signal.hpp"
+
+namespace swiftlet::ground {
+
+// From a record with sensors.csv or that file itself, a CSV log as for `swiftlet identify flight`, or an MCAP file by
+// `swiftlet record`. Only what lies between from_s and until_s, by the clock of the log, s. Throws ConfigError, or
+// std::runtime_error if there are no poses.
+identification::FlightLog read_motion(const std::string& file, const std::string& vehicle,
+                                      std::optional<double> from_s, std::optional<double> until_s);
+
+// Receives for this time, from the first sample of both on. Throws std::runtime_error if one of them does not come, or if
+// interrupted.
+identification::FlightLog receive_motion(const comms::NodeSettings& settings, double time_s,
+                                         runtime::StopSignal& stop);
+
+}  // namespace swiftlet::ground

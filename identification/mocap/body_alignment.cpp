@@ -1,0 +1,596 @@
+#include "swiftlet/identification/mocap/body_alignment.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <fmt/core.h>
+
+#include "swiftlet/math/rotation_vector.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+
+namespace swiftlet::identification {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+// Errors of a motion state, at the time of each pose, and of the parameters; index of the first component of each.
+constexpr int kMotion = 15;
+constexpr int kPosition = 0;
+constexpr int kVelocity = 3;
+constexpr int kAttitude = 6;  // rotation vector in body axes
+constexpr int kForceBias = 9;
+constexpr int kRateBias = 12;
+constexpr int kParameters = 9;
+constexpr int kMisalignment = 0;
+constexpr int kLeverArm = 3;
+constexpr int kVertical = 6;
+constexpr int kDelay = 8;
+
+using Motion = Eigen::Matrix<double, kMotion, 1>;
+using MotionMatrix = Eigen::Matrix<double, kMotion, kMotion>;
+using MotionParameters = Eigen::Matrix<double, kMotion, kParameters>;
+using Parameters = Eigen::Matrix<double, kParameters, 1>;
+using ParameterMatrix = Eigen::Matrix<double, kParameters, kParameters>;
+using Residual = Eigen::Matrix<double, 6, 1>;
+
+constexpr double kShortestInterval_s = 0.009;  // between poses that are used
+constexpr double kMostPoses = 20000;
+constexpr double kLongestGap_s = 0.25;  // in the samples or poses, that the motion continues over
+constexpr double kGroundRange_m =
+    0.3;  // more than this between the lowest and the highest pose: it took off or landed
+constexpr double kAirborne_m = 0.1;        // above the lowest pose
+constexpr double kHalfSmoothing_s = 0.02;  // half the window of the readings at a pose
+constexpr int kFirstIterations = 3;        // with the noise assumed at first
+constexpr int kConverged = 11;             // before, residuals of the IMU are those of the start
+constexpr int kIterations = 15;
+constexpr double kCorrelation_s = 0.5;  // longest that errors of poses are alike
+constexpr double kGate = 45.0;  // of squares of normalised residuals, 6 degrees of freedom: 1 of 1e7 poses
+constexpr double kMostRefused = 0.05;
+constexpr double kMostPositionNoise_m = 5e-3;  // of a pose
+constexpr double kMostOrientationNoise_rad = 30e-3;
+constexpr double kMostForceNoise = 0.04;  // m/s^2/sqrt(Hz)
+constexpr double kMostRateNoise = 5e-3;   // rad/s/sqrt(Hz)
+constexpr double kTurning_rad_s = 0.05;   // least RMS of the rates at which they tell the delay of the poses
+constexpr double kKnownDelay_s = 1e-5;
+constexpr std::size_t kLeastPoses = 50;
+// Of the deviations: the derivatives are those at a motion that is itself estimated, whose noise passes for motion. With it,
+// the intervals of simulated flights hold the true values.
+constexpr double kAllowance = 1.25;
+
+// Least noise: that of usual sensors. That of the force is four times as large: it allows for vibration, and for noise of the
+// attitude that would pass for tilt.
+constexpr double kForceNoise = 1.6e-2;   // m/s^2/sqrt(Hz)
+constexpr double kRateNoise = 2e-4;      // rad/s/sqrt(Hz)
+constexpr double kForceBiasWalk = 1e-3;  // m/s^2/sqrt(s)
+constexpr double kRateBiasWalk = 1e-4;   // rad/s/sqrt(s)
+constexpr double kPositionNoise_m = 2e-5;
+constexpr double kOrientationNoise_rad = 1e-4;
+
+struct Noise {
+  double force = kForceNoise;  // density
+  double rate = kRateNoise;    // density
+  double position_m = 2e-4;    // of a pose, each axis
+  double orientation_rad = 1e-3;
+  double position_growth = 1.0;  // of variances, because errors of neighbouring poses are alike
+  double orientation_growth = 1.0;
+
+  Residual variances() const {
+    Residual out;
+    out << Vector3d::Constant(position_m * position_m * position_growth),
+        Vector3d::Constant(orientation_rad * orientation_rad * orientation_growth);
+    return out;
+  }
+};
+
+Matrix3d hat(const Vector3d& v) {
+  Matrix3d matrix;
+  matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return matrix;
+}
+
+// Density of white noise, from second differences: the motion has next to none. Their median leaves out impacts.
+double noise_density(const std::vector<double>& time_s, const std::vector<Vector3d>& values, double least) {
+  constexpr double kDeviationOverMedian = 1.4826;  // of the absolute value of a normal distribution
+  std::vector<double> differences;
+  for (std::size_t i = 2; i < values.size(); ++i) {
+    const Vector3d difference = values[i] - 2.0 * values[i - 1] + values[i - 2];
+    for (int axis = 0; axis < 3; ++axis) differences.push_back(std::abs(difference[axis]));
+  }
+  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+  std::nth_element(differences.begin(), middle, differences.end());
+  const double deviation = kDeviationOverMedian * *middle / std::sqrt(6.0);
+  const double period_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
+  return std::max(least, deviation * std::sqrt(period_s));
+}
+
+struct State {
+  Vector3d position = Vector3d::Zero();
+  Vector3d velocity = Vector3d::Zero();
+  Quaterniond attitude = Quaterniond::Identity();
+  Vector3d force_bias = Vector3d::Zero();
+  Vector3d rate_bias = Vector3d::Zero();
+  Vector3d force = Vector3d::Zero();  // reading at the time, with bias
+  Vector3d rates = Vector3d::Zero();
+
+  Motion minus(const State& other) const {
+    Motion out;
+    out << position - other.position, velocity - other.velocity,
+        plant::rotation_vector(other.attitude.conjugate() * attitude), force_bias - other.force_bias,
+        rate_bias - other.rate_bias;
+    return out;
+  }
+  void add(const Motion& error) {
+    position += error.segment<3>(kPosition);
+    velocity += error.segment<3>(kVelocity);
+    attitude = (attitude * plant::rotation(error.segment<3>(kAttitude))).normalized();
+    force_bias += error.segment<3>(kForceBias);
+    rate_bias += error.segment<3>(kRateBias);
+  }
+};
+
+struct Sought {
+  Quaterniond misalignment = Quaterniond::Identity();  // vehicle attitude = pose attitude * misalignment
+  Vector3d lever_arm = Vector3d::Zero();
+  Eigen::Vector2d vertical = Eigen::Vector2d::Zero();
+  double delay_s = 0.0;
+
+  Vector3d gravity() const { return plant::kGravity * Vector3d(vertical.x(), vertical.y(), 1.0); }
+  Parameters vector() const {
+    Parameters out;
+    out << plant::rotation_vector(misalignment), lever_arm, vertical, delay_s;
+    return out;
+  }
+  void add(const Parameters& error) {
+    misalignment = (misalignment * plant::rotation(error.segment<3>(kMisalignment))).normalized();
+    lever_arm += error.segment<3>(kLeverArm);
+    vertical += error.segment<2>(kVertical);
+    delay_s += error[kDelay];
+  }
+};
+
+// Readings between two poses.
+struct Interval {
+  double duration_s = 0.0;
+  bool is_gap = false;
+  struct Reading {
+    double dt = 0.0;
+    Vector3d force;
+    Vector3d rates;
+  };
+  std::vector<Reading> readings;
+};
+
+struct Recording {
+  std::vector<FlightPose> poses;
+  std::vector<Interval> intervals;  // one less
+  std::vector<Vector3d> force;      // at the poses
+  std::vector<Vector3d> rates;
+};
+
+// Poses in the air: on the ground, samples of the IMU miss most of what the contact does.
+std::vector<FlightPose> airborne(const std::vector<FlightPose>& poses) {
+  if (poses.empty()) return poses;
+  const auto is_higher = [](const FlightPose& a, const FlightPose& b) {
+    return a.position_ned.z() > b.position_ned.z();
+  };
+  const auto [lowest, highest] = std::minmax_element(poses.begin(), poses.end(), is_higher);
+  const double ground_z = lowest->position_ned.z();
+  if (ground_z - highest->position_ned.z() < kGroundRange_m) return poses;
+  const auto flies = [&](const FlightPose& pose) { return ground_z - pose.position_ned.z() > kAirborne_m; };
+  return {std::find_if(poses.begin(), poses.end(), flies),
+          std::find_if(poses.rbegin(), poses.rend(), flies).base()};
+}
+
+// Means around a row, so that their noise does not pass for motion.
+void add_readings(const FlightLog& log, std::size_t row, Recording& out) {
+  std::size_t first = row;
+  std::size_t last = row;
+  while (first > 0 && log.time_s[row] - log.time_s[first - 1] < kHalfSmoothing_s) --first;
+  while (last + 1 < log.size() && log.time_s[last + 1] - log.time_s[row] < kHalfSmoothing_s) ++last;
+  Vector3d force = Vector3d::Zero();
+  Vector3d rates = Vector3d::Zero();
+  for (std::size_t i = first; i <= last; ++i) {
+    force += log.specific_force_frd[i];
+    rates += log.body_rates_frd[i];
+  }
+  const auto count = static_cast<double>(last - first + 1);
+  out.force.push_back(force / count);
+  out.rates.push_back(rates / count);
+}
+
+// Between two samples the mean of both holds.
+Recording recording_of(const FlightLog& log) {
+  Recording out;
+  const double duration_s = log.time_s.back() - log.time_s.front();
+  const double interval_s = std::max(kShortestInterval_s, duration_s / kMostPoses);
+  std::size_t row = 1;
+  for (const FlightPose& pose : airborne(log.poses)) {
+    if (pose.time_s < log.time_s.front()) continue;
+    if (pose.time_s > log.time_s.back()) break;
+    if (!out.poses.empty() && pose.time_s - out.poses.back().time_s < interval_s) continue;
+    Interval interval;
+    double time_s = out.poses.empty() ? pose.time_s : out.poses.back().time_s;
+    interval.duration_s = pose.time_s - time_s;
+    interval.is_gap = interval.duration_s > kLongestGap_s;
+    for (;; ++row) {
+      interval.is_gap = interval.is_gap || log.time_s[row] - log.time_s[row - 1] > kLongestGap_s;
+      const double end_s = std::min(log.time_s[row], pose.time_s);
+      if (end_s > time_s) {
+        interval.readings.push_back({end_s - time_s,
+                                     0.5 * (log.specific_force_frd[row - 1] + log.specific_force_frd[row]),
+                                     0.5 * (log.body_rates_frd[row - 1] + log.body_rates_frd[row])});
+        time_s = end_s;
+      }
+      if (log.time_s[row] >= pose.time_s) break;
+    }
+    if (!out.poses.empty()) out.intervals.push_back(std::move(interval));
+    out.poses.push_back(pose);
+    add_readings(log, row, out);
+  }
+  return out;
+}
+
+// The state after an interval, with the derivatives of its errors and their variances.
+struct Propagation {
+  State state;
+  MotionMatrix F = MotionMatrix::Identity();
+  Eigen::Matrix<double, kMotion, 2> by_vertical = Eigen::Matrix<double, kMotion, 2>::Zero();
+  Motion variance = Motion::Zero();
+};
+
+Propagation propagate(const State& from, const Interval& interval, const Sought& sought, const Noise& noise) {
+  Propagation out;
+  out.state = from;
+  const double dt = interval.duration_s;
+  out.variance.segment<3>(kForceBias).setConstant(kForceBiasWalk * kForceBiasWalk * dt);
+  out.variance.segment<3>(kRateBias).setConstant(kRateBiasWalk * kRateBiasWalk * dt);
+  if (interval.is_gap) {
+    out.variance.segment<3>(kPosition).setConstant(100.0);
+    out.variance.segment<3>(kVelocity).setConstant(100.0);
+    out.variance.segment<3>(kAttitude).setConstant(10.0);
+    return out;
+  }
+  Vector3d velocity_change = Vector3d::Zero();  // by specific force
+  for (const Interval::Reading& reading : interval.readings) {
+    const Vector3d turn = reading.dt * (reading.rates - from.rate_bias);
+    const Vector3d force =
+        out.state.attitude * plant::rotation(0.5 * turn) * (reading.force - from.force_bias);
+    const Vector3d acceleration = force + sought.gravity();
+    out.state.position += reading.dt * (out.state.velocity + 0.5 * reading.dt * acceleration);
+    out.state.velocity += reading.dt * acceleration;
+    out.state.attitude = out.state.attitude * plant::rotation(turn);
+    velocity_change += reading.dt * force;
+  }
+  out.state.attitude.normalize();
+  const Matrix3d from_body = from.attitude.toRotationMatrix();
+  MotionMatrix& F = out.F;
+  F.block<3, 3>(kVelocity, kAttitude) = -hat(velocity_change) * from_body;
+  F.block<3, 3>(kVelocity, kForceBias) = -dt * from_body;
+  F.block<3, 3>(kPosition, kVelocity) = dt * Matrix3d::Identity();
+  F.block<3, 3>(kPosition, kAttitude) = 0.5 * dt * F.block<3, 3>(kVelocity, kAttitude);
+  F.block<3, 3>(kPosition, kForceBias) = 0.5 * dt * F.block<3, 3>(kVelocity, kForceBias);
+  F.block<3, 3>(kAttitude, kAttitude) = (out.state.attitude.conjugate() * from.attitude).toRotationMatrix();
+  F.block<3, 3>(kAttitude, kRateBias) = -dt * Matrix3d::Identity();
+  out.by_vertical.block<2, 2>(kVelocity, 0) = dt * plant::kGravity * Eigen::Matrix2d::Identity();
+  out.by_vertical.block<2, 2>(kPosition, 0) = 0.5 * dt * dt * plant::kGravity * Eigen::Matrix2d::Identity();
+  const double force_variance = noise.force * noise.force * dt;
+  out.variance.segment<3>(kPosition).setConstant(force_variance * dt * dt / 3.0 + 1e-12);
+  out.variance.segment<3>(kVelocity).setConstant(force_variance);
+  out.variance.segment<3>(kAttitude).setConstant(noise.rate * noise.rate * dt);
+  return out;
+}
+
+// A pose minus that of the state, with the derivatives of the latter.
+struct Observation {
+  Residual residual;
+  Eigen::Matrix<double, 6, kMotion> by_motion = Eigen::Matrix<double, 6, kMotion>::Zero();
+  Eigen::Matrix<double, 6, kParameters> by_parameters = Eigen::Matrix<double, 6, kParameters>::Zero();
+};
+
+Observation observe(const FlightPose& pose, const State& state, const Sought& sought) {
+  const double delay_s = sought.delay_s;
+  const Vector3d rates = state.rates - state.rate_bias;
+  const Vector3d acceleration = state.attitude * (state.force - state.force_bias) + sought.gravity();
+  const Quaterniond ahead = plant::rotation(delay_s * rates);
+  const Quaterniond attitude = state.attitude * ahead.conjugate();
+  const Vector3d position =
+      state.position - delay_s * state.velocity + 0.5 * delay_s * delay_s * acceleration;
+  Observation out;
+  out.residual << pose.position_ned - (position - attitude * sought.lever_arm),
+      plant::rotation_vector(sought.misalignment * attitude.conjugate() * pose.q_ned_from_frd);
+  const Matrix3d from_vehicle = attitude.toRotationMatrix();
+  const Matrix3d swing = from_vehicle * hat(sought.lever_arm);
+  const Matrix3d turn = ahead.toRotationMatrix();
+  const Matrix3d body_from_vehicle = sought.misalignment.toRotationMatrix();
+  out.by_motion.block<3, 3>(0, kPosition).setIdentity();
+  out.by_motion.block<3, 3>(0, kVelocity) = -delay_s * Matrix3d::Identity();
+  out.by_motion.block<3, 3>(0, kAttitude) = swing * turn;
+  out.by_motion.block<3, 3>(3, kAttitude) = body_from_vehicle * turn;
+  out.by_parameters.block<3, 3>(0, kLeverArm) = -from_vehicle;
+  out.by_parameters.block<3, 1>(0, kDelay) = -state.velocity + delay_s * acceleration - swing * rates;
+  out.by_parameters.block<3, 3>(3, kMisalignment) = -body_from_vehicle;
+  out.by_parameters.block<3, 1>(3, kDelay) = -body_from_vehicle * rates;
+  return out;
+}
+
+// Least squares over all motion states and the parameters by Gauss-Newton. The normal equations are block-tridiagonal with the
+// parameters as a border; the states are eliminated one after the other.
+class AlignmentFit {
+ public:
+  AlignmentFit(const Recording& recording, const AlignmentPriors& priors, const Noise& noise)
+      : recording_(recording),
+        least_(noise),
+        noise_(noise),
+        states_(recording.poses.size()),
+        refused_(states_.size(), 0) {
+    parameter_deviation_ << Vector3d::Constant(priors.misalignment_rad),
+        Vector3d::Constant(priors.lever_arm_m), Eigen::Vector2d::Constant(priors.vertical_rad),
+        priors.pose_delay_s;
+    // Position, velocity and attitude of the first state are next to unknown.
+    first_deviation_ << Vector3d::Constant(10.0), Vector3d::Constant(3.0), Vector3d::Constant(1.0),
+        Vector3d::Constant(priors.accelerometer_bias_m_s2), Vector3d::Constant(priors.gyro_bias_rad_s);
+    for (std::size_t k = 0; k < states_.size(); ++k) {
+      State& state = states_[k];
+      state.position = recording.poses[k].position_ned;
+      state.attitude = recording.poses[k].q_ned_from_frd;
+      const std::size_t next = std::min(k + 1, states_.size() - 1);
+      const std::size_t last = k == 0 ? 0 : k - 1;
+      state.velocity = (recording.poses[next].position_ned - recording.poses[last].position_ned) /
+                       (recording.poses[next].time_s - recording.poses[last].time_s);
+      state.force = recording.force[k];
+      state.rates = recording.rates[k];
+    }
+    first_ = states_.front();
+  }
+
+  void iterate() {
+    eliminate();
+    substitute();
+  }
+
+  // The noise of the poses from the residuals and the part of their variance that the fit took away, and which poses to refuse.
+  void learn_pose_noise() {
+    const Residual variances = noise_.variances();
+    std::vector<Residual> residuals;
+    Residual squares = Residual::Zero();
+    MotionMatrix covariance;
+    for (std::size_t k = states_.size(); k-- > 0;) {
+      const Eliminated& one = eliminated_[k];
+      covariance = k + 1 == states_.size()
+                       ? one.inverse
+                       : MotionMatrix(one.inverse + one.by_next * covariance * one.by_next.transpose());
+      const Observation seen = observe(recording_.poses[k], states_[k], sought_);
+      refused_[k] = (seen.residual.cwiseAbs2().cwiseQuotient(variances)).sum() > kGate ? 1 : 0;
+      if (refused_[k] != 0) continue;
+      residuals.push_back(seen.residual);
+      squares +=
+          seen.residual.cwiseAbs2() + (seen.by_motion * covariance * seen.by_motion.transpose()).diagonal();
+    }
+    if (residuals.size() < kLeastPoses) return;
+    const auto count = 3.0 * static_cast<double>(residuals.size());
+    noise_.position_m = std::max(kPositionNoise_m, std::sqrt(squares.head<3>().sum() / count));
+    noise_.orientation_rad = std::max(kOrientationNoise_rad, std::sqrt(squares.tail<3>().sum() / count));
+    const double period_s = (recording_.poses.back().time_s - recording_.poses.front().time_s) /
+                            static_cast<double>(states_.size() - 1);
+    noise_.position_growth = growth(residuals, 0, period_s);
+    noise_.orientation_growth = growth(residuals, 3, period_s);
+  }
+
+  // From the residuals alone: at least what was assumed at first.
+  void learn_imu_noise() {
+    double force = 0.0;
+    double rate = 0.0;
+    double count = 0.0;
+    for (std::size_t k = 0; k + 1 < states_.size(); ++k) {
+      if (recording_.intervals[k].is_gap) continue;
+      const Propagation step = propagate(states_[k], recording_.intervals[k], sought_, noise_);
+      const Motion squares = states_[k + 1].minus(step.state).cwiseAbs2().cwiseQuotient(step.variance);
+      force += squares.segment<3>(kVelocity).sum();
+      rate += squares.segment<3>(kAttitude).sum();
+      count += 3.0;
+    }
+    if (count == 0.0) return;
+    noise_.force = std::max(least_.force, noise_.force * std::sqrt(force / count));
+    noise_.rate = std::max(least_.rate, noise_.rate * std::sqrt(rate / count));
+  }
+
+  BodyAlignment result() const {
+    BodyAlignment out;
+    const Parameters deviation = kAllowance * covariance_.diagonal().cwiseMax(0.0).cwiseSqrt();
+    out.misalignment = {plant::rotation_vector(sought_.misalignment), deviation.segment<3>(kMisalignment)};
+    out.lever_arm = {sought_.lever_arm, deviation.segment<3>(kLeverArm)};
+    out.vertical = sought_.vertical;
+    out.vertical_deviation = deviation.segment<2>(kVertical);
+    out.pose_delay_s = sought_.delay_s;
+    out.pose_delay_deviation_s = deviation[kDelay];
+    out.force_noise = noise_.force;
+    out.rate_noise = noise_.rate;
+    out.position_noise_m = noise_.position_m;
+    out.orientation_noise_rad = noise_.orientation_rad;
+    out.duration_s = recording_.poses.back().time_s - recording_.poses.front().time_s;
+    out.poses = states_.size();
+    out.refused = static_cast<std::size_t>(std::count(refused_.begin(), refused_.end(), 1));
+    return out;
+  }
+
+ private:
+  // A state in terms of the next one and of the parameters: value - by_next * next - by_parameters * parameters.
+  struct Eliminated {
+    MotionMatrix inverse;
+    MotionMatrix by_next = MotionMatrix::Zero();
+    MotionParameters by_parameters;
+    Motion value;
+  };
+
+  // Variance inflation of a mean of correlated values: 1 + 2 * the sum of the autocorrelations.
+  static double growth(const std::vector<Residual>& residuals, int first, double period_s) {
+    const auto product = [&](std::size_t lag) {
+      double sum = 0.0;
+      for (std::size_t i = lag; i < residuals.size(); ++i)
+        sum += residuals[i].segment<3>(first).dot(residuals[i - lag].segment<3>(first));
+      return sum;
+    };
+    const auto lags = std::min(residuals.size() / 4, static_cast<std::size_t>(kCorrelation_s / period_s));
+    const double variance = std::max(product(0), 1e-30);
+    double sum = 1.0;
+    for (std::size_t lag = 1; lag <= lags; ++lag) sum += 2.0 * product(lag) / variance;
+    return std::max(1.0, sum);
+  }
+
+  void eliminate() {
+    eliminated_.resize(states_.size());
+    ParameterMatrix C = parameter_deviation_.cwiseAbs2().cwiseInverse().asDiagonal();
+    Parameters c = -parameter_deviation_.cwiseAbs2().cwiseInverse().cwiseProduct(sought_.vector());
+    const Motion prior = first_deviation_.cwiseAbs2().cwiseInverse();
+    MotionMatrix A = prior.asDiagonal();
+    Motion a = prior.cwiseProduct(first_.minus(states_.front()));
+    MotionParameters B = MotionParameters::Zero();
+    const Residual weights = noise_.variances().cwiseInverse();
+    for (std::size_t k = 0; k < states_.size(); ++k) {
+      if (refused_[k] == 0) {
+        const Observation seen = observe(recording_.poses[k], states_[k], sought_);
+        const Eigen::Matrix<double, kMotion, 6> weighted = seen.by_motion.transpose() * weights.asDiagonal();
+        A += weighted * seen.by_motion;
+        B += weighted * seen.by_parameters;
+        a += weighted * seen.residual;
+        C += seen.by_parameters.transpose() * weights.asDiagonal() * seen.by_parameters;
+        c += seen.by_parameters.transpose() * weights.asDiagonal() * seen.residual;
+      }
+      MotionMatrix to_next = MotionMatrix::Zero();
+      MotionMatrix next_A = MotionMatrix::Zero();
+      MotionParameters next_B = MotionParameters::Zero();
+      Motion next_a = Motion::Zero();
+      if (k + 1 < states_.size()) {
+        const Propagation step = propagate(states_[k], recording_.intervals[k], sought_, noise_);
+        const Motion weight = step.variance.cwiseInverse();
+        const Motion off =
+            step.state.minus(states_[k + 1]);  // = next error - F * error - by_vertical * vertical
+        const MotionMatrix weighted = step.F.transpose() * weight.asDiagonal();
+        const Eigen::Matrix<double, kMotion, 2> weighted_vertical = weight.asDiagonal() * step.by_vertical;
+        A += weighted * step.F;
+        a -= weighted * off;
+        B.middleCols<2>(kVertical) += weighted * step.by_vertical;
+        C.block<2, 2>(kVertical, kVertical) += step.by_vertical.transpose() * weighted_vertical;
+        c.segment<2>(kVertical) -= weighted_vertical.transpose() * off;
+        to_next = -weighted;
+        next_A = weight.asDiagonal();
+        next_a = weight.cwiseProduct(off);
+        next_B.middleCols<2>(kVertical) = -weighted_vertical;
+      }
+      Eliminated& one = eliminated_[k];
+      const Eigen::LLT<MotionMatrix> solver(A);
+      one.inverse = solver.solve(MotionMatrix::Identity());
+      one.by_next = solver.solve(to_next);
+      one.by_parameters = solver.solve(B);
+      one.value = solver.solve(a);
+      C -= B.transpose() * one.by_parameters;
+      c -= B.transpose() * one.value;
+      A = next_A - to_next.transpose() * one.by_next;
+      B = next_B - to_next.transpose() * one.by_parameters;
+      a = next_a - to_next.transpose() * one.value;
+    }
+    const Eigen::LDLT<ParameterMatrix> solver(C);
+    covariance_ = solver.solve(ParameterMatrix::Identity());
+    step_ = solver.solve(c);
+  }
+
+  void substitute() {
+    Motion next = Motion::Zero();
+    for (std::size_t k = states_.size(); k-- > 0;) {
+      const Eliminated& one = eliminated_[k];
+      next = one.value - one.by_parameters * step_ - one.by_next * next;
+      states_[k].add(next);
+    }
+    sought_.add(step_);
+  }
+
+  const Recording& recording_;
+  const Noise least_;
+  Noise noise_;
+  Parameters parameter_deviation_;
+  Motion first_deviation_;
+  State first_;
+  std::vector<State> states_;
+  std::vector<char> refused_;
+  Sought sought_;
+  std::vector<Eliminated> eliminated_;
+  ParameterMatrix covariance_ = ParameterMatrix::Zero();
+  Parameters step_ = Parameters::Zero();
+};
+
+void require_rows(const FlightLog& log) {
+  const double duration_s = log.size() < 3 ? 0.0 : log.time_s.back() - log.time_s.front();
+  if (duration_s < kShortestAlignment_s)
+    throw std::runtime_error(fmt::format("{:.1f} s of IMU samples are recorded, {:g} s are needed",
+                                         duration_s, kShortestAlignment_s));
+}
+
+double rms_rates(const Recording& recording) {
+  Vector3d mean = Vector3d::Zero();
+  double squares = 0.0;
+  for (const Vector3d& rates : recording.rates) {
+    mean += rates;
+    squares += rates.squaredNorm();
+  }
+  const auto count = static_cast<double>(recording.rates.size());
+  return std::sqrt(squares / count - (mean / count).squaredNorm());
+}
+
+void require_poses(const Recording& recording) {
+  const double duration_s =
+      recording.poses.empty() ? 0.0 : recording.poses.back().time_s - recording.poses.front().time_s;
+  if (duration_s < kShortestAlignment_s || recording.poses.size() < kLeastPoses)
+    throw std::runtime_error(
+        fmt::format("{:.1f} s with {} poses and IMU samples are recorded, {:g} s and {} poses are needed",
+                    duration_s, recording.poses.size(), kShortestAlignment_s, kLeastPoses));
+}
+
+void require_one_motion(const BodyAlignment& found) {
+  if (static_cast<double>(found.refused) <= kMostRefused * static_cast<double>(found.poses) &&
+      found.position_noise_m < kMostPositionNoise_m &&
+      found.orientation_noise_rad < kMostOrientationNoise_rad && found.force_noise < kMostForceNoise &&
+      found.rate_noise < kMostRateNoise)
+    return;
+  throw std::runtime_error(fmt::format(
+      "IMU and poses do not show one motion: the poses are off by {:.1f} mm and {:.1f} mrad RMS and {} of {} "
+      "by much "
+      "more, the IMU by {:.2f} m/s^2 and {:.3f} rad/s; the body may be that of another vehicle, or the axes "
+      "or units of "
+      "one of them wrong ('swiftlet check vehicle --hand')",
+      1e3 * found.position_noise_m, 1e3 * found.orientation_noise_rad, found.refused, found.poses,
+      found.force_noise / std::sqrt(kShortestInterval_s), found.rate_noise / std::sqrt(kShortestInterval_s)));
+}
+
+}  // namespace
+
+BodyAlignment align_body(const FlightLog& log, const AlignmentPriors& priors) {
+  require_rows(log);
+  const Recording recording = recording_of(log);
+  require_poses(recording);
+  // In a calm hover the delay has no effect, and noise would pass for one.
+  const bool tells_delay = rms_rates(recording) > kTurning_rad_s;
+  AlignmentPriors used = priors;
+  if (!tells_delay) used.pose_delay_s = kKnownDelay_s;
+  Noise noise;
+  noise.force = noise_density(log.time_s, log.specific_force_frd, kForceNoise);
+  noise.rate = noise_density(log.time_s, log.body_rates_frd, kRateNoise);
+  AlignmentFit fit(recording, used, noise);
+  for (int i = 0; i < kIterations; ++i) {
+    fit.iterate();
+    if (i + 1 >= kFirstIterations && i + 1 < kIterations) fit.learn_pose_noise();
+    if (i + 1 >= kConverged && i + 1 < kIterations) fit.learn_imu_noise();
+  }
+  BodyAlignment found = fit.result();
+  if (!tells_delay) found.pose_delay_deviation_s = priors.pose_delay_s;
+  require_one_motion(found);
+  return found;
+}
+
+}  // namespace swiftlet::identification
