@@ -7,6 +7,7 @@
 
 #include "swiftlet/identification/fitting/estimate.hpp"
 #include "swiftlet/identification/flight/flight_checks.hpp"
+#include "swiftlet/identification/flight/motor_order.hpp"
 #include "swiftlet/plant/model/propulsion.hpp"
 
 namespace swiftlet::identification {
@@ -137,6 +138,7 @@ FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, co
   out.window = find_flight(log, bounds);
   require_whole(log, out.window.flight);
   require_readings(log, out.window.flight);
+  require_motor_order(log, out.window.flight, base);
   const Rows& flight = out.window.flight;
   out.estimation_set = {
       flight.first,

@@ -3,10 +3,13 @@
 #include <cstdio>
 #include <map>
 #include <string>
+#include <utility>
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include "swiftlet/identification/flight/flight.hpp"
+#include "swiftlet/identification/flight/motor_order.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/plant/model/airframe.hpp"
 #include "tests/support/campaign.hpp"
@@ -159,6 +162,45 @@ TEST(CommandFlight, RefusesSwappedMotors) {
   FlightLog log = with_commands_and_imu(flown(plan, plan.vehicle, 4));
   swap_motors(log);
   expect_refused({log}, plan.vehicle, "are the motors in its order");
+}
+
+// GIVEN a log in whose columns two motors are exchanged THEN the sentence says which.
+TEST(CommandFlight, NamesExchangedMotors) {
+  const LaunchConfiguration plan = delayed_plan();
+  FlightLog log = with_commands_and_imu(flown(plan, plan.vehicle, 4));
+  for (plant::PerRotor& command : log.command) std::swap(command[0], command[1]);
+  expect_refused({log}, plan.vehicle,
+                 "motor 1 acts like rotor 2 (front left), motor 2 acts like rotor 1 (front right)");
+}
+
+TEST(CommandFlight, NamesExchangedMotorsOfARealVehicle) {
+  const plant::Vehicle base = runtime::load_vehicle(kSource + "/config/vehicles/crazyflie2.yaml");
+  const FlightLog log =
+      read_flight_log(kSource + "/tests/data/crazyflie_flight.csv.gz", base, BodyAxes::kDetected).log;
+  const char* const places[] = {"front right", "rear right", "rear left", "front left"};
+  for (std::size_t one = 0; one < 4; ++one) {
+    for (std::size_t other = one + 1; other < 4; ++other) {
+      FlightLog swapped = log;
+      for (plant::PerRotor& command : swapped.command) std::swap(command[one], command[other]);
+      expect_refused({swapped}, base,
+                     fmt::format("motor {} acts like rotor {} ({}), motor {} acts like rotor {} ({})",
+                                 one + 1, other + 1, places[other], other + 1, one + 1, places[one]));
+    }
+  }
+}
+
+// A hover excites too little to decide.
+TEST(CommandFlight, AcceptsTheOrderOfACalmFlight) {
+  const tests::TemporaryFolder folder;
+  const LaunchConfiguration plan = plan_of(folder.write("hover.yaml", R"(name: hover
+frame: ned
+tolerance_m: 0.2
+items:
+  - {kind: takeoff, height_m: 1.0, speed_m_s: 0.3, hold_s: 10}
+  - {kind: land, speed_m_s: 0.3}
+)"));
+  const FlightLog log = flown(plan, plan.vehicle, 2);
+  EXPECT_NO_THROW(identification::require_motor_order(log, {0, log.size()}, plan.vehicle));
 }
 
 }  // namespace
