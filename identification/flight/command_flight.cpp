@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include <Eigen/Cholesky>
+
 #include "swiftlet/identification/flight/command_model.hpp"
 #include "swiftlet/identification/flight/command_prediction.hpp"
 #include "swiftlet/identification/flight/flight_results.hpp"
@@ -20,6 +22,8 @@ using Eigen::VectorXd;
 
 constexpr std::size_t kCurvePoints = 41;
 constexpr double kRareCommands = 0.01;  // fraction of commands outside the figure, at each end
+constexpr double kNotable = 0.03;       // standard error over the value, of a difference that it warns of
+constexpr std::size_t kParts = 3;       // of a single log, that are compared
 constexpr double kAtOdds = 1.5;         // Birge's ratio of the lags above which it warns
 constexpr double kBatteryKnown = 0.25;  // standard error of the sag over the sag
 constexpr double kOneRate = 0.1;        // relative difference of the sample periods of logs
@@ -33,15 +37,22 @@ struct CommandFit {
 };
 
 CommandFit fit_responses(const std::vector<FlightSeries>& flights, const plant::Vehicle& base,
-                         std::vector<Response> responses, std::optional<ThrustCurve> curve,
+                         std::vector<Response> responses, std::optional<KnownThrust> known,
                          const std::vector<const CommandFit*>& before,
                          const std::function<void()>& progress) {
   CommandFit out;
-  out.model = std::make_unique<CommandModel>(flights, base, std::move(responses), curve);
+  out.model = std::make_unique<CommandModel>(flights, base, std::move(responses), std::move(known));
   SeriesProblem problem = out.model->problem(progress);
   for (const CommandFit* const fit : before)
     problem.start = started_from(*fit->model, fit->x(), *out.model, problem.start);
   out.fit = fit_series(problem);
+  return out;
+}
+
+KnownThrust thrust_of(const CommandFit& fit) {
+  KnownThrust out{fit.model->curve(fit.x()), {}};
+  for (std::size_t flight = 0; flight < fit.model->flights().size(); ++flight)
+    out.drift.push_back(fit.model->drift(fit.x(), flight));
   return out;
 }
 
@@ -51,9 +62,63 @@ std::vector<CommandFit> fit_alone(const std::vector<FlightSeries>& flights, cons
                                   const std::function<void()>& progress) {
   std::vector<CommandFit> out;
   out.push_back(fit_responses(flights, base, {Response::kForce}, std::nullopt, {}, progress));
-  const ThrustCurve curve = out[0].model->curve(out[0].x());
+  const KnownThrust thrust = thrust_of(out[0]);
   for (const Response response : {Response::kRoll, Response::kPitch})
-    out.push_back(fit_responses(flights, base, {response}, curve, {}, progress));
+    out.push_back(fit_responses(flights, base, {response}, thrust, {}, progress));
+  return out;
+}
+
+// Adds the information of a fit to that of all parameters, for those of the same name.
+void add_information(const CommandFit& from, const CommandModel& to, MatrixXd& information,
+                     VectorXd& weighted) {
+  const std::vector<FlightParameter>& theirs = from.model->layout().parameters;
+  const std::vector<FlightParameter>& ours = to.layout().parameters;
+  const MatrixXd own = from.fit.covariance.ldlt().solve(MatrixXd::Identity(from.x().size(), from.x().size()));
+  MatrixXd names = MatrixXd::Zero(static_cast<Index>(theirs.size()), static_cast<Index>(ours.size()));
+  for (std::size_t i = 0; i < theirs.size(); ++i) {
+    for (std::size_t j = 0; j < ours.size(); ++j) {
+      if (theirs[i].name == ours[j].name) names(static_cast<Index>(i), static_cast<Index>(j)) = 1.0;
+    }
+  }
+  information += names.transpose() * own * names;
+  weighted += names.transpose() * own * from.x();
+}
+
+// The fits of force and of moments as one of all responses: the lag, which both have, is their weighted mean, and what is
+// correlated with it follows. The thrust over the command is that of the force alone: in the moments, feedback and effects
+// that the model omits would pass for a slope of it. Its uncertainty is added to the gains, which are inverse to the slope.
+CommandFit combined(const std::vector<FlightSeries>& flights, const plant::Vehicle& base,
+                    const CommandFit& force, const CommandFit& moments) {
+  CommandFit out;
+  out.model = std::make_unique<CommandModel>(
+      flights, base, std::vector<Response>{kAllResponses.begin(), kAllResponses.end()}, std::nullopt);
+  const CommandLayout& l = out.model->layout();
+  const auto count = static_cast<Index>(l.parameters.size());
+  MatrixXd information = MatrixXd::Zero(count, count);
+  VectorXd weighted = VectorXd::Zero(count);
+  add_information(force, *out.model, information, weighted);
+  add_information(moments, *out.model, information, weighted);
+  // Scaled: the parameters have units of very different sizes.
+  const VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LDLT<MatrixXd> solver(scale.asDiagonal() * information * scale.asDiagonal());
+  out.fit.covariance =
+      scale.asDiagonal() * solver.solve(MatrixXd::Identity(count, count)) * scale.asDiagonal();
+  out.fit.parameters = out.fit.covariance * weighted;
+  // The noise stays as it was fitted: a step along its covariance can leave the range in which its filter is stable.
+  const auto noise = count - static_cast<Index>(out.model->physical_parameters().size());
+  out.fit.parameters.tail(noise) =
+      started_from(*force.model, force.x(), *out.model,
+                   started_from(*moments.model, moments.x(), *out.model, out.fit.parameters))
+          .tail(noise);
+  const double slope = out.fit.parameters[l.curve + 1];
+  MatrixXd follows = MatrixXd::Identity(count, count);
+  for (int axis = 0; axis < 3; ++axis) {
+    follows(l.gain[axis], l.curve + 1) = -out.fit.parameters[l.gain[axis]] / slope;
+    follows(l.trim[axis], l.curve) = -out.fit.parameters[l.trim[axis]] / plant::kGravity;
+  }
+  out.fit.covariance = (follows * out.fit.covariance * follows.transpose()).eval();
+  out.fit.degrees_of_freedom = std::min(force.fit.degrees_of_freedom, moments.fit.degrees_of_freedom);
+  out.fit.converged = force.fit.converged && moments.fit.converged;
   return out;
 }
 
@@ -93,6 +158,60 @@ void widen(EstimatedParameters& fit, Index parameter, double standard_error) {
   if (wanted <= variance) return;
   const VectorXd follows = fit.covariance.col(parameter) / variance;
   fit.covariance += (wanted - variance) * follows * follows.transpose();
+}
+
+// Each log, or thirds of a single one.
+std::vector<std::vector<FlightSeries>> parts_of(const std::vector<FlightSeries>& flights) {
+  std::vector<std::vector<FlightSeries>> out;
+  if (flights.size() > 1) {
+    for (const FlightSeries& flight : flights) out.push_back({flight});
+    return out;
+  }
+  const Rows whole = flights.front().estimation_set;
+  for (std::size_t part = 0; part < kParts; ++part) {
+    FlightSeries series = flights.front();
+    series.estimation_set = {whole.first + part * whole.size() / kParts,
+                             whole.first + (part + 1) * whole.size() / kParts};
+    series.validation_set = {series.estimation_set.last, series.estimation_set.last};
+    out.push_back({std::move(series)});
+  }
+  return out;
+}
+
+// Widens the intervals of the gains to the differences between parts of the flights, which show what the model
+// omits: battery, airflow, feedback. Returns a sentence for each that differs by more than its interval allows.
+std::vector<std::string> widen_by_parts(CommandFit& all, const std::vector<FlightSeries>& flights,
+                                        const plant::Vehicle& base, const std::function<void()>& progress) {
+  const CommandLayout& l = all.model->layout();
+  const std::vector<std::pair<const char*, Index>> compared = {{"the gain about roll", l.gain[0]},
+                                                               {"the gain about pitch", l.gain[1]},
+                                                               {"the gain about yaw", l.gain[2]}};
+  std::vector<std::vector<ParameterEstimate>> found(compared.size());
+  const KnownThrust whole = thrust_of(all);
+  const std::vector<std::vector<FlightSeries>> parts = parts_of(flights);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const KnownThrust thrust{whole.curve, {whole.drift[flights.size() > 1 ? p : 0]}};
+    const CommandFit moments = fit_responses(
+        parts[p], base, {Response::kRoll, Response::kPitch, Response::kYaw}, thrust, {&all}, progress);
+    for (std::size_t i = 0; i < compared.size(); ++i) {
+      const Index at = moments.model->layout().gain[i];
+      found[i].push_back({compared[i].first, "", "", moments.x()[at], moments.fit.standard_error(at), 0.0});
+    }
+  }
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < compared.size(); ++i) {
+    const Agreement together = agreement(found[i]);
+    if (together.ratio <= 1.0) continue;
+    widen(all.fit, compared[i].second, together.standard_error);
+    if (together.ratio > kAtOdds &&
+        together.standard_error > kNotable * std::abs(all.x()[compared[i].second]))
+      out.push_back(
+          std::string(compared[i].first) + " differs between " +
+          (flights.size() > 1 ? "the logs" : "parts of the log") + " " + format_number(together.ratio) +
+          " times as much as its intervals allow: the model does not describe all of the flight; the "
+          "interval is widened accordingly");
+  }
+  return out;
 }
 
 // Adds the uncertainty of the base vehicle's supply sag to the gains and the quantities derived from them.
@@ -308,11 +427,14 @@ void identify_commands(FlightIdentification& out, const std::vector<FlightSeries
   require_one_rate(flights);
   const std::vector<CommandFit> alone = fit_alone(flights, base, progress);
   for (const CommandFit& fit : alone) reject_negative_gains(fit.model->layout().gain, base, fit.fit);
-  CommandFit all = fit_responses(flights, base, {kAllResponses.begin(), kAllResponses.end()}, std::nullopt,
-                                 {&alone[2], &alone[1], &alone[0]}, progress);
+  const CommandFit moments = fit_responses(flights, base, {Response::kRoll, Response::kPitch, Response::kYaw},
+                                           thrust_of(alone[0]), {&alone[2], &alone[1]}, progress);
+  CommandFit all = combined(flights, base, alone[0], moments);
   for (const CommandFit& fit : alone) out.lags.push_back(lag_of(fit));
   const Agreement lags = agreement(out.lags);
   if (lags.ratio > 1.0) widen(all.fit, all.model->layout().lag, lags.standard_error);
+  for (std::string& sentence : widen_by_parts(all, flights, base, progress))
+    out.warnings.push_back(std::move(sentence));
   reject_negative_gains(all.model->layout().gain, base, all.fit);
 
   out.converged = all.fit.converged && within_bounds(all.model->physical_parameters(), all.fit);

@@ -83,12 +83,12 @@ double mean_command(const std::vector<FlightSeries>& flights) {
 const char* response_name(Response response) { return kNames[index_of(response)]; }
 
 CommandModel::CommandModel(std::vector<FlightSeries> flights, plant::Vehicle base,
-                           std::vector<Response> responses, std::optional<ThrustCurve> curve)
+                           std::vector<Response> responses, std::optional<KnownThrust> known)
     : flights_(std::move(flights)),
       base_(std::move(base)),
       responses_(std::move(responses)),
-      given_curve_(curve),
-      middle_command_(curve ? curve->middle : mean_command(flights_)),
+      known_(std::move(known)),
+      middle_command_(known_ ? known_->curve.middle : mean_command(flights_)),
       shared_over_single_(identification::shared_over_single(base_)),
       steady_speeds_(kCachedPerFlight * flights_.size()),
       thrust_(kCachedPerFlight * flights_.size()),
@@ -186,8 +186,14 @@ double CommandModel::sample_s() const {
 }
 
 ThrustCurve CommandModel::curve(const VectorXd& x) const {
-  if (layout_.curve == kAbsent) return *given_curve_;
+  if (layout_.curve == kAbsent) return known_->curve;
   return {middle_command_, x[layout_.curve], x[layout_.curve + 1], x[layout_.curve + 2]};
+}
+
+ThrustDrift CommandModel::drift(const VectorXd& x, std::size_t flight) const {
+  if (layout_.drift.empty()) return known_->drift[flight];
+  const Rows rows = rows_of(flights_[flight]);
+  return {x[layout_.drift[flight]], flights_[flight].log->time_s[rows.first + rows.size() / 2]};
 }
 
 ArmaNoise CommandModel::noise(const VectorXd& x, Response response) const {
@@ -196,14 +202,14 @@ ArmaNoise CommandModel::noise(const VectorXd& x, Response response) const {
 
 CommandModel::SteadyKey CommandModel::steady_key(const VectorXd& x, std::size_t flight) const {
   const ThrustCurve c = curve(x);
-  const double drift = layout_.drift.empty() ? 0.0 : x[layout_.drift[flight]];
-  return {static_cast<double>(flight), c.value, c.slope, c.curvature, drift};
+  const ThrustDrift d = drift(x, flight);
+  return {static_cast<double>(flight), c.value, c.slope, c.curvature, d.per_s, d.middle_s};
 }
 
 CommandModel::RotorsKey CommandModel::rotors_key(const VectorXd& x, std::size_t flight,
                                                  double delay_s) const {
-  const auto [index, value, slope, curvature, drift] = steady_key(x, flight);
-  return {index, value, slope, curvature, drift, x[layout_.lag], delay_s};
+  const auto [index, value, slope, curvature, per_s, middle_s] = steady_key(x, flight);
+  return {index, value, slope, curvature, per_s, middle_s, x[layout_.lag], delay_s};
 }
 
 std::shared_ptr<const CommandModel::Speeds> CommandModel::steady_speeds(const VectorXd& x,
@@ -212,19 +218,18 @@ std::shared_ptr<const CommandModel::Speeds> CommandModel::steady_speeds(const Ve
     const FlightLog& log = *flights_[flight].log;
     const Rows rows = rows_of(flights_[flight]);
     const ThrustCurve thrust_curve = curve(x);
-    const double drift_per_s = layout_.drift.empty() ? 0.0 : x[layout_.drift[flight]];
+    const ThrustDrift thrust_drift = drift(x, flight);
     const auto count = static_cast<std::size_t>(log.rotor_count);
     const double share = 1.0 / static_cast<double>(count);
-    const double middle_s = log.time_s[rows.first + rows.size() / 2];
     Speeds steady(rows.last, plant::PerRotor{});
     for (std::size_t row = 0; row < rows.last; ++row) {
-      const double drift = 1.0 + drift_per_s * (log.time_s[row] - middle_s);
+      const double drifted = 1.0 + thrust_drift.per_s * (log.time_s[row] - thrust_drift.middle_s);
       double mean = 0.0;
       for (std::size_t i = 0; i < count; ++i) mean += share * log.command[row][i];
       const double shared = thrust_curve.at(mean);
       for (std::size_t i = 0; i < count; ++i) {
         const double own = (thrust_curve.at(log.command[row][i]) - shared) / shared_over_single_;
-        steady[row][i] = std::sqrt(std::max(share * drift * (shared + own), kLeastThrust));
+        steady[row][i] = std::sqrt(std::max(share * drifted * (shared + own), kLeastThrust));
       }
     }
     return steady;

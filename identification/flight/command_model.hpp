@@ -60,6 +60,18 @@ struct ThrustCurve {
   double slope_at(double command) const { return slope + 2.0 * (command - middle) * curvature; }
 };
 
+// Of a log: as the supply voltage falls, the thrust is that of the curve times 1 + per_s (t - middle_s).
+struct ThrustDrift {
+  double per_s = 0.0;
+  double middle_s = 0.0;
+};
+
+// Thrust that is known from the specific force.
+struct KnownThrust {
+  ThrustCurve curve;
+  std::vector<ThrustDrift> drift;  // of each log
+};
+
 // Indices of the parameters in the vector; kAbsent if not part of the fit.
 struct CommandLayout {
   std::vector<FlightParameter> parameters;
@@ -88,10 +100,10 @@ struct BlockedFlight {
 // Not thread-safe: const methods cache the last results.
 class CommandModel {
  public:
-  // Fits the given responses. `curve` is required if they do not include kForce. The logs must outlive the
+  // Fits the given responses. `known` is required if they do not include kForce. The logs must outlive the
   // model.
   CommandModel(std::vector<FlightSeries> flights, plant::Vehicle base, std::vector<Response> responses,
-               std::optional<ThrustCurve> curve);
+               std::optional<KnownThrust> known);
 
   const CommandLayout& layout() const { return layout_; }
   std::vector<FlightParameter> physical_parameters() const;  // without those of the noise
@@ -103,6 +115,7 @@ class CommandModel {
 
   SeriesProblem problem(const std::function<void()>& on_iteration) const;
   ThrustCurve curve(const Eigen::VectorXd& parameters) const;
+  ThrustDrift drift(const Eigen::VectorXd& parameters, std::size_t flight) const;
   ArmaNoise noise(const Eigen::VectorXd& parameters, Response response) const;
   double lever(int axis) const { return lever_[static_cast<std::size_t>(axis)]; }  // d, m, of the base
   double shared_over_single() const { return shared_over_single_; }                // of the base vehicle
@@ -143,7 +156,7 @@ class CommandModel {
   std::vector<FlightSeries> flights_;
   plant::Vehicle base_;
   std::vector<Response> responses_;
-  std::optional<ThrustCurve> given_curve_;
+  std::optional<KnownThrust> known_;
   double middle_command_ = 0.5;  // mean over the estimation set
   Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, plant::kMaxRotors> signs_;  // L
   std::array<double, 3> lever_{};
@@ -152,8 +165,8 @@ class CommandModel {
   CommandLayout layout_;
 
   // Keys of the caches. Parameters outside a key do not change its result.
-  using SteadyKey = std::array<double, 5>;  // flight, curve and drift
-  using RotorsKey = std::array<double, 7>;  // lag and delay as well
+  using SteadyKey = std::array<double, 6>;  // flight, curve and drift
+  using RotorsKey = std::array<double, 8>;  // lag and delay as well
   SteadyKey steady_key(const Eigen::VectorXd& parameters, std::size_t flight) const;
   RotorsKey rotors_key(const Eigen::VectorXd& parameters, std::size_t flight, double delay_s) const;
   mutable RecentResults<SteadyKey, Speeds> steady_speeds_;
