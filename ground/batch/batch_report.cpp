@@ -39,7 +39,7 @@ std::string numbers(const std::vector<Eigen::Vector3d>& vectors) {
 std::string repeat_of(const FlyOptions& options) {
   const FlyOptions usual;
   std::string command = "swiftlet sim fly " + shell_word(options.mission);
-  const FileOptions& reading = options.reading;
+  const ReadingOptions& reading = options.reading;
   if (reading.frame) command += std::string(" --frame ") + frame_name(*reading.frame);
   if (reading.tolerance_m) command += " --tolerance " + runtime::exact(*reading.tolerance_m);
   if (!reading.columns.empty()) command += " --columns " + shell_word(reading.columns);
@@ -50,6 +50,8 @@ std::string repeat_of(const FlyOptions& options) {
   if (reading.fence) command += " --fence " + numbers({reading.fence->min_ned, reading.fence->max_ned});
   if (reading.time_scale != usual.reading.time_scale)
     command += " --time-scale " + runtime::exact(reading.time_scale);
+  if (reading.as_fast_as_possible)
+    command += " --as-fast-as-possible --reserve " + runtime::exact(reading.reserve);
   const auto add = [&](const char* option, const std::string& value, const std::string& usual_value) {
     if (value != usual_value) command += std::string(" ") + option + " " + shell_word(value);
   };

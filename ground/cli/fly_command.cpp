@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <deque>
 #include <exception>
 #include <future>
@@ -140,6 +141,21 @@ void fly_together(std::deque<ProcessFlight>& flights, ProcessGroup& processes, c
   if (fault) std::rethrow_exception(fault);
 }
 
+// Throws unless the running vehicles are on the ground and can fly their missions. What is not known of one is said.
+void require_flyable_by_running(const comms::NodeSettings& network, const std::vector<std::string>& vehicles,
+                                const std::vector<LaunchConfiguration>& plans, const FileOptions& reading) {
+  const std::vector<std::optional<ReportedModel>> models = require_on_ground(network, vehicles);
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    const KnownVehicle vehicle = known_vehicle(models[i]);
+    if (vehicle.model) {
+      require_flyable(plans[i], *vehicle.model, reading);
+    } else {
+      std::fprintf(stderr, "%s: its rotors are not checked: %s\n", vehicles[i].c_str(),
+                   vehicle.unknown.c_str());
+    }
+  }
+}
+
 std::vector<std::string> vehicles_of(const FlyOptions& options) {
   return comms::vehicles_of_list(options.vehicles > 1 ? "kl1..kl" + std::to_string(options.vehicles)
                                                       : options.network.vehicle);
@@ -179,7 +195,7 @@ int fly(const FlyOptions& given) {
   network.domain = domain_lock ? domain_lock->domain() : std::max(options.domain, 0);
   const bool is_alone = !attached && !options.px4_instance;  // all processes are started here
   network.localhost_only = network.localhost_only || is_alone;
-  if (attached) require_on_ground(network, vehicles);
+  if (attached) require_flyable_by_running(network, vehicles, plans, options.reading);
   if (attached && !options.skip_check) require_sound_vehicles(network, vehicles);
   // In a domain that others may use, the vehicles must not live already.
   std::optional<comms::FlightReservation> reservation;
@@ -281,7 +297,7 @@ Command add_fly_command(runtime::CommandLine root, const std::string& version) {
                "lockstep only: write trace.csv, which holds every sample and command bit for bit");
   for (const char* launch_option :
        {"--vehicle", "--simulation", "--seed", "--imu-rate", "--level", "--odometry", "--radio-delay",
-        "--radio-jitter", "--radio-loss", "--clock", "--speed"}) {
+        "--radio-jitter", "--radio-loss", "--clock", "--speed", "--as-fast-as-possible"}) {
     attach.excludes(app.option(launch_option));
   }
   for (const char* of_simulation :

@@ -79,7 +79,7 @@ void add_frame_option(runtime::CommandLine app, std::optional<MissionFrame>& fra
       "up)");
 }
 
-void add_file_options(runtime::CommandLine app, FileOptions& options) {
+void add_file_options(runtime::CommandLine app, ReadingOptions& options) {
   add_frame_option(app, options.frame);
   app.add_option(
          "--tolerance", options.tolerance_m,
@@ -120,6 +120,17 @@ void add_file_options(runtime::CommandLine app, FileOptions& options) {
          "faster; holds and waits stay")
       .range(0.01, 100.0)
       .show_default();
+  runtime::Option fastest = app.add_flag(
+      "--as-fast-as-possible", options.as_fast_as_possible,
+      "shorten the times until the vehicle meets a limit of its rotors, or of tilt, speed, "
+      "acceleration or yaw rate of the control settings, by `mission check`; says which, and where");
+  app.add_option(
+         "--reserve", options.reserve,
+         "with --as-fast-as-possible: share of the tilt limit and of the range of thrust of each rotor that "
+         "is kept free")
+      .range(0.0, 0.9)
+      .show_default()
+      .needs(fastest);
 }
 
 void add_fly_options(runtime::CommandLine app, FlyOptions& options) {

@@ -18,9 +18,9 @@ void add_fly_options(runtime::CommandLine app, FlyOptions& options);
 // Of the radio between vehicle and control.
 void add_radio_options(runtime::CommandLine app, FlyOptions& options);
 void add_level_option(runtime::CommandLine app, plant::ControlLevel& level);
-// Adds --frame, --tolerance, --columns and --time-scale: how a file is read.
-void add_file_options(runtime::CommandLine app, FileOptions& options);
-// Adds --frame: the frame of a CSV file that does not name its own.
+// Adds --frame, --tolerance, --columns, --scale ... --as-fast-as-possible: how a file is read, where and how fast it is flown.
+void add_file_options(runtime::CommandLine app, ReadingOptions& options);
+// Adds --frame: the frame of a file that does not name its own.
 void add_frame_option(runtime::CommandLine app, std::optional<MissionFrame>& frame);
 // Adds --dispersion.
 runtime::Option add_dispersion_option(runtime::CommandLine app, FlyOptions& options);

@@ -5,6 +5,7 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
 #include "swiftlet/ground/mission/mission_check.hpp"
+#include "swiftlet/ground/mission/pace.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
@@ -14,7 +15,7 @@ namespace {
 
 struct Options {
   std::string file;
-  FileOptions reading;
+  ReadingOptions reading;
   std::string vehicle = "kaylion";
   std::string control = "motor_lag";
   std::vector<double> start = {0.0, 0.0};
@@ -28,10 +29,10 @@ int run(const Options& options) {
   const auto settings =
       runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control));
   const std::string path = runtime::configuration_file(runtime::kinds::kMission, options.file);
-  const MissionFile file = load_mission_file(path, settings.limits, options.reading);
+  const MissionFile file = load_mission(path, options.reading, vehicle, settings);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
-  const CheckConditions conditions{{options.start[0], options.start[1]}, options.supply_voltage_v};
+  const CheckConditions conditions{{options.start[0], options.start[1]}, options.supply_voltage_v, 0.0};
   const MissionCheck check = check_mission(file, vehicle, settings, conditions);
   const std::string help =
       check.feasible() ? "" : advice(file, path, options.reading, vehicle, settings, conditions);

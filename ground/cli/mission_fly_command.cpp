@@ -4,33 +4,25 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/cli/fly_options.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
+#include "swiftlet/ground/cli/sent_mission.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
-#include "swiftlet/io/configuration.hpp"
-#include "swiftlet/io/missions/mission_file.hpp"
-#include "swiftlet/io/settings/control_settings_file.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
 struct Options : CommandOptions {
-  std::string file;
-  FileOptions reading;
-  std::string control = "motor_lag";
+  SentFileOptions sent;
   bool no_wait = false;
   bool link = false;
 };
 
 int fly_mission(const Options& options) {
-  const auto settings =
-      runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control));
-  const MissionFile mission = load_mission_file(
-      runtime::configuration_file(runtime::kinds::kMission, options.file), settings.limits, options.reading);
-  for (const std::string& assumption : mission.assumptions)
-    std::fprintf(stderr, "%s: %s\n", mission.name.c_str(), assumption.c_str());
+  const SentFile sent(options.sent);
+  const MissionFile mission = sent.mission();
   Vehicle vehicle(options.network);
   log_connection(vehicle, "mission " + mission.name);
+  sent.require_flyable(vehicle, mission, options.timeout());
   if (options.link) vehicle.enable_link_loss_failsafe();
   const Interrupts interrupts;
   vehicle.cancel_when([&] { return interrupts.count() > 0; });
@@ -68,17 +60,9 @@ Command add_mission_fly_command(runtime::CommandLine mission) {
   const runtime::CommandLine app = add_vehicle_subcommand(
       mission, "fly", "Upload a mission file, start it and wait until it ends; Ctrl-C pauses it",
       "swiftlet mission fly config/missions/square.yaml", options);
-  app.add_option(
-         "file", options->file,
-         "mission file, or the name of one in config/missions; also a trajectory or waypoints as CSV, "
-         "or a QGroundControl .plan file")
-      .type_name(runtime::kinds::kMission.value)
-      .required();
-  add_file_options(app, options->reading);
-  app.add_option("--control", options->control,
-                 "control settings with the limits and the fence for the mission check")
-      .type_name(runtime::kinds::kControl.value)
-      .show_default();
+  add_sent_file_options(app, options->sent,
+                        "mission file, or the name of one in config/missions; also a trajectory or waypoints "
+                        "as CSV, or a QGroundControl .plan file");
   runtime::Option no_wait =
       app.add_flag("--no-wait", options->no_wait, "return when the mission has started");
   app.add_flag("--link", options->link,

@@ -4,15 +4,18 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
 #include "swiftlet/ground/mission/mission_plot.hpp"
+#include "swiftlet/ground/mission/pace.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
 struct Options {
   std::string file;
-  FileOptions reading;
+  ReadingOptions reading;
+  std::string vehicle = "kaylion";
   std::string control = "motor_lag";
   std::string output = "mission.png";
   std::vector<double> start = {0.0, 0.0};
@@ -21,8 +24,10 @@ struct Options {
 int run(const Options& options) {
   const auto settings =
       runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control));
-  const MissionFile file = load_mission_file(
-      runtime::configuration_file(runtime::kinds::kMission, options.file), settings.limits, options.reading);
+  const plant::Vehicle vehicle =
+      runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
+  const MissionFile file = load_mission(runtime::configuration_file(runtime::kinds::kMission, options.file),
+                                        options.reading, vehicle, settings);
   const MissionDryRun flown = dry_run(file.mission, settings, {options.start[0], options.start[1]});
   if (!flown.completed)
     std::fprintf(stderr, "swiftlet: mission %s: %s\n", file.name.c_str(), flown.reason.c_str());
@@ -49,6 +54,10 @@ Command add_mission_plot_command(runtime::CommandLine mission) {
       .type_name(runtime::kinds::kMission.value)
       .required();
   add_file_options(app, options->reading);
+  app.add_option("--vehicle", options->vehicle,
+                 "vehicle of --as-fast-as-possible: a file, or the name of one in config/vehicles")
+      .type_name(runtime::kinds::kVehicle.value)
+      .show_default();
   app.add_option("-o,--out", options->output, "output file, PNG").show_default();
   app.add_option("--control", options->control,
                  "control settings file, or the name of one in config/control: its limits and fence apply")

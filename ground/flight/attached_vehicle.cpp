@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/core.h>
 
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/client/client.hpp"
+#include "swiftlet/io/configuration.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
 #include "swiftlet/services/dds/search_text.hpp"
 
@@ -18,6 +22,8 @@ using namespace std::chrono_literals;
 using control::Mode;
 
 constexpr auto kDiscoveryTimeout = 5s;
+constexpr double kSameMass = 1e-6;  // relative difference of one mass, read from two copies of a file
+constexpr auto kModelTimeout = 1s;
 constexpr auto kMissionTimeout = 500ms;  // mission_status arrives with control_status
 
 bool finds(const View& view, const std::string& process) {
@@ -47,14 +53,22 @@ std::string flight_of(const View& view) {
                      view.mission.message.item_count());
 }
 
+std::optional<ReportedModel> reported_model(const Client& client) {
+  client.wait(kModelTimeout, [](const View& news) { return news.vehicle.seen(); });
+  const Latest<msg::VehicleInfo> vehicle = client.view().vehicle;
+  if (!vehicle.seen()) return std::nullopt;
+  const msg::VehicleInfo& info = vehicle.message;
+  return ReportedModel{info.name().c_str(), info.mass_kg(), info.rotor_count()};
+}
+
 bool is_on_ground(Mode mode) { return control::rotors_off(mode) || mode == Mode::kArmed; }
 
-void require_on_ground(const Client& client, const comms::NodeSettings& network) {
+std::optional<ReportedModel> require_on_ground(const Client& client, const comms::NodeSettings& network) {
   const bool found = client.wait(kDiscoveryTimeout, [](const View& view) { return view.control.seen(); });
   const View view = client.view();
   if (!found && (finds_nothing(view) || finds(view, "control")))
     throw std::runtime_error("looked on " + interfaces_of(network) + ": " + client.no_control());
-  if (!found || is_on_ground(static_cast<Mode>(view.control.message.mode()))) return;
+  if (!found || is_on_ground(static_cast<Mode>(view.control.message.mode()))) return reported_model(client);
   client.wait(kMissionTimeout, [](const View& news) { return news.mission.seen(); });
   throw std::runtime_error(
       fmt::format("vehicle {} is in flight: {}; wait until it has landed, or end its flight with `swiftlet "
@@ -64,14 +78,35 @@ void require_on_ground(const Client& client, const comms::NodeSettings& network)
 
 }  // namespace
 
-void require_on_ground(const comms::NodeSettings& network, const std::vector<std::string>& vehicles) {
+std::vector<std::optional<ReportedModel>> require_on_ground(const comms::NodeSettings& network,
+                                                            const std::vector<std::string>& vehicles) {
   const comms::Participant participant(network);
+  std::vector<std::optional<ReportedModel>> models;
   for (const std::string& vehicle : vehicles) {
     comms::NodeSettings settings = network;
     settings.vehicle = vehicle;
     const Client client(participant, settings);
-    require_on_ground(client, settings);
+    models.push_back(require_on_ground(client, settings));
   }
+  return models;
+}
+
+KnownVehicle known_vehicle(const std::optional<ReportedModel>& reported) {
+  if (!reported) return {std::nullopt, "it reports no vehicle model"};
+  const std::vector<runtime::ConfigurationFile> files =
+      runtime::configuration_files(runtime::kinds::kVehicle);
+  const auto file = std::find_if(
+      files.begin(), files.end(),
+      [&](const runtime::ConfigurationFile& candidate) { return candidate.name == reported->name; });
+  if (file == files.end()) return {std::nullopt, "no vehicle file is named " + reported->name};
+  plant::Vehicle vehicle = runtime::load_vehicle(file->path);
+  if (vehicle.rotor_count() != reported->rotor_count ||
+      std::abs(vehicle.mass_kg - reported->mass_kg) > kSameMass * vehicle.mass_kg)
+    return {std::nullopt,
+            fmt::format("it reports {} rotors and {:.1f} g, but the file of {} has {} and {:.1f} g",
+                        reported->rotor_count, reported->mass_kg * 1e3, reported->name, vehicle.rotor_count(),
+                        vehicle.mass_kg * 1e3)};
+  return {std::move(vehicle), ""};
 }
 
 }  // namespace swiftlet::ground

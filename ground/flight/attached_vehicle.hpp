@@ -1,16 +1,30 @@
-// The check before a flight with processes that run already, which others may command too.
+// What is known of a vehicle whose processes run already, which others may command too.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "swiftlet/ground/client/vehicle.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::ground {
 
 // Throws std::runtime_error with a sentence if a vehicle is in flight. Likewise if no process of it is found
 // within 5 s, or only a control service that cannot be heard. Returns if other processes are found: control may
-// still be starting.
-void require_on_ground(const comms::NodeSettings& network, const std::vector<std::string>& vehicles);
+// still be starting. Returns the model that each vehicle reports; none if it reports none within 1 s.
+std::vector<std::optional<ReportedModel>> require_on_ground(const comms::NodeSettings& network,
+                                                            const std::vector<std::string>& vehicles);
+
+// What a vehicle model is known by.
+struct KnownVehicle {
+  std::optional<plant::Vehicle> model;
+  std::string unknown;  // why there is none, a sentence
+};
+
+// The vehicle in the configuration with the name that the running one reports, if mass and number of rotors agree. Throws
+// runtime::ConfigError if its file is invalid.
+KnownVehicle known_vehicle(const std::optional<ReportedModel>& reported);
 
 }  // namespace swiftlet::ground

@@ -54,22 +54,28 @@ void require_takeoff_and_land(const MissionFile& mission, const fs::path& file) 
     throw InputError(file.string() + ": items: the last item is not a land: a flight ends on the ground");
 }
 
-// Returns the duration of the mission, s.
-double require_flyable(const LaunchConfiguration& plan, const FileOptions& reading) {
-  const CheckConditions conditions{plan.start_ned, {}};
-  const MissionCheck check = check_mission(plan.mission, plan.vehicle, plan.control, conditions);
-  const bool known_vehicle = plan.launch_mode != LaunchMode::kAttached;
-  if (known_vehicle ? check.feasible() : check.reason.empty()) return check.duration_s;
-  const std::string help = known_vehicle ? advice(plan.mission, plan.mission_file.string(), reading,
-                                                  plan.vehicle, plan.control, conditions)
-                                         : "";
-  throw InputError(fmt::format("{}: {} cannot fly it: {}{}", plan.mission_file.c_str(), plan.vehicle.name,
-                               check.refusal(), help.empty() ? "" : "; " + help));
+// The duration of the mission by the dry run, s, of any vehicle.
+double dry_run_duration_s(const LaunchConfiguration& plan) {
+  const MissionDryRun flown = dry_run(plan.mission.mission, plan.control, plan.start_ned);
+  if (flown.completed) return flown.duration_s;
+  throw InputError(fmt::format("{}: the control service would not complete it: {}", plan.mission_file.c_str(),
+                               flown.reason));
 }
 
 std::string absolute_path(const fs::path& path) { return fs::absolute(path).string(); }
 
 }  // namespace
+
+double require_flyable(const LaunchConfiguration& plan, const plant::Vehicle& vehicle,
+                       const FileOptions& reading) {
+  CheckConditions conditions;
+  conditions.start_ned = plan.start_ned;
+  const MissionCheck check = check_mission(plan.mission, vehicle, plan.control, conditions);
+  const std::string refusal = refusal_with_advice(plan.mission, plan.mission_file.string(), reading, vehicle,
+                                                  plan.control, check, conditions);
+  if (!refusal.empty()) throw InputError(plan.mission_file.string() + ": " + refusal);
+  return check.duration_s;
+}
 
 LaunchConfiguration plan_flight(const FlyOptions& options) {
   LaunchConfiguration plan;
@@ -112,7 +118,7 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
   plan.seed = options.seed;
 
   plan.mission_file = runtime::configuration_file(runtime::kinds::kMission, options.mission);
-  plan.mission = load_mission_file(plan.mission_file, plan.control.limits, options.reading);
+  plan.mission = load_mission(plan.mission_file, options.reading, plan.vehicle, plan.control);
   plan.start_ned = options.start_ned;
   plan.mission.mission = shifted(std::move(plan.mission.mission), options.start_ned, plan.control.limits);
   if (const control::Outcome outcome = control::check(plan.mission.mission, plan.control.limits);
@@ -121,7 +127,9 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
                                  plan.mission_file.c_str(), plan.start_ned.x(), plan.start_ned.y(),
                                  outcome.reason));
   require_takeoff_and_land(plan.mission, plan.mission_file);
-  plan.planned_duration_s = require_flyable(plan, options.reading);
+  plan.planned_duration_s = plan.launch_mode == LaunchMode::kAttached
+                                ? dry_run_duration_s(plan)
+                                : require_flyable(plan, plan.vehicle, options.reading);
 
   if (plan.launch_mode == LaunchMode::kStarted) {
     plan.vehicle_program = program_beside(options.px4_instance ? "swiftlet-px4" : "swiftlet-plant");

@@ -11,6 +11,7 @@
 
 #include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/ground/flight/record_folder.hpp"
+#include "swiftlet/ground/mission/pace.hpp"
 #include "swiftlet/ground/report/flight_report.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
@@ -35,7 +36,7 @@ struct FlyOptions {
   // Simulated time per real time. Unset: real time, or in lockstep as fast as possible.
   std::optional<double> speed;
   std::string mission = "square";
-  FileOptions reading;  // of a mission in a format of another project
+  ReadingOptions reading;
   std::string vehicle = "kaylion";
   std::string control = "motor_lag";
   std::string simulation = "default";
@@ -98,6 +99,10 @@ struct LaunchConfiguration {
 // (mission_check.hpp), with what would make it possible. The vehicle of kAttached is not known: it is not checked, but
 // the dry run is. Starts no process and writes no file.
 LaunchConfiguration plan_flight(const FlyOptions& options);
+
+// The duration of the mission of the plan, s. Throws InputError if this vehicle cannot fly it, as above.
+double require_flyable(const LaunchConfiguration& plan, const plant::Vehicle& vehicle,
+                       const FileOptions& reading);
 
 ExistingRecord existing_record(const FlyOptions& options);
 

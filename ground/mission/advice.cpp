@@ -54,9 +54,8 @@ class Search {
   bool can_fly(const MissionFile& file) const {
     return check_mission(file, vehicle_, settings_, conditions_).feasible();
   }
-  bool can_fly_slower(MissionFile file, double factor) const {
-    file.mission = control::stretched(std::move(file.mission), factor);
-    return can_fly(file);
+  bool can_fly_slower(const MissionFile& file, double factor) const {
+    return can_fly(stretched(file, factor));
   }
 
   const plant::Vehicle& vehicle_;
@@ -77,6 +76,15 @@ std::string advice(const MissionFile& file, const std::string& path, const FileO
     text += fmt::format("{}past the samples by up to {:.3g} mm: --tolerance {:.3g}",
                         text.empty() ? "" : ", or ", tolerance_m * 1e3, tolerance_m);
   return text;
+}
+
+std::string refusal_with_advice(const MissionFile& file, const std::string& path, const FileOptions& options,
+                                const plant::Vehicle& vehicle, const control::ControlSettings& settings,
+                                const MissionCheck& check, const CheckConditions& conditions) {
+  if (check.feasible()) return "";
+  const std::string help = advice(file, path, options, vehicle, settings, conditions);
+  return fmt::format("{} cannot fly it: {}{}", vehicle.name, check.refusal(),
+                     help.empty() ? "" : "; " + help);
 }
 
 }  // namespace swiftlet::ground

@@ -23,9 +23,21 @@ const WorstDemand* find(const ItemCheck& item, Demand demand) {
   return found == item.demands.end() ? nullptr : &*found;
 }
 
+// Tightens the limits of tilt and thrust.
+void keep_reserve(std::vector<WorstDemand>& demands, double reserve) {
+  const auto of = [&demands](Demand demand) -> double& {
+    return demands[static_cast<std::size_t>(demand)].limit;
+  };
+  of(Demand::kTilt) *= 1.0 - reserve;
+  of(Demand::kThrust) *= 1.0 - reserve;
+  const double range = of(Demand::kRotorMost) - of(Demand::kRotorLeast);
+  of(Demand::kRotorLeast) += reserve * range;
+  of(Demand::kRotorMost) -= reserve * range;
+}
+
 // The worst demands on the legs of an item, with times since the start of the mission, holds included.
 std::vector<WorstDemand> demands_on(const std::vector<DryRunLeg>& legs, const plant::Vehicle& vehicle,
-                                    const control::Limits& limits, double supply_voltage_v) {
+                                    const control::Limits& limits, double supply_voltage_v, double reserve) {
   if (legs.empty()) return {};
   std::vector<control::PolynomialSegment> segments;
   std::vector<double> begins_s;
@@ -36,6 +48,7 @@ std::vector<WorstDemand> demands_on(const std::vector<DryRunLeg>& legs, const pl
     at_s += leg.segment.duration_s;
   }
   std::vector<WorstDemand> demands = control::worst_demands(vehicle, limits, supply_voltage_v, segments);
+  keep_reserve(demands, reserve);
   for (WorstDemand& worst : demands) worst.time_s += legs[worst.segment].start_s - begins_s[worst.segment];
   return demands;
 }
@@ -166,7 +179,7 @@ MissionCheck check_mission(const MissionFile& file, const plant::Vehicle& vehicl
                  [i](const DryRunLeg& leg) { return leg.item == i; });
     check.items.push_back({file.mission.items[i].kind, i < file.lines.size() ? file.lines[i] : 0,
                            dry_run.item_starts_s[i], end_s - dry_run.item_starts_s[i],
-                           demands_on(legs, vehicle, limits, supply_voltage_v)});
+                           demands_on(legs, vehicle, limits, supply_voltage_v, conditions.reserve)});
   }
   return check;
 }

@@ -39,6 +39,9 @@ struct CheckConditions {
   Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();  // m, where the vehicle stands
   std::optional<double>
       supply_voltage_v;  // > 0, at which the rotors are checked; else the low-battery threshold
+  // 0 .. 1: the share of the tilt limit, and of the range between least and greatest thrust at both of its ends, that is
+  // kept free: the limits are so much tighter.
+  double reserve = 0.0;
 };
 
 // A dry run of the mission, and the demands on its path. Limits and fence: those of the settings, as tightened by the
@@ -51,6 +54,11 @@ MissionCheck check_mission(const MissionFile& file, const plant::Vehicle& vehicl
 std::string advice(const MissionFile& file, const std::string& path, const FileOptions& options,
                    const plant::Vehicle& vehicle, const control::ControlSettings& settings,
                    const CheckConditions& conditions = {});
+
+// "kaylion cannot fly it: item 2 (trajectory): ...; slower by 1.4: --time-scale 1.4"; empty if it can.
+std::string refusal_with_advice(const MissionFile& file, const std::string& path, const FileOptions& options,
+                                const plant::Vehicle& vehicle, const control::ControlSettings& settings,
+                                const MissionCheck& check, const CheckConditions& conditions = {});
 
 // check_table(): text for people, ends in a newline. check_json(): JSON, without a newline, of
 //   mission, vehicle, control, feasible, reason, advice, duration_s, supply_voltage_v

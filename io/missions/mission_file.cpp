@@ -131,10 +131,10 @@ MissionFile read_mission(const ConfigNode& root, const control::Limits& settings
 }
 
 // The time scale may be below 1, so that limits are exceeded.
-MissionFile stretched(MissionFile file, const control::Limits& limits, const FileOptions& options,
-                      const std::string& path) {
+MissionFile time_scaled(MissionFile file, const control::Limits& limits, const FileOptions& options,
+                        const std::string& path) {
   if (options.time_scale == 1.0) return file;
-  file.mission = control::stretched(std::move(file.mission), options.time_scale);
+  file = stretched(std::move(file), options.time_scale);
   const control::Outcome outcome = control::check(file.mission, limits);
   if (!outcome.accepted)
     throw runtime::ConfigError(path, 0, "",
@@ -174,7 +174,7 @@ MissionFile load_mission_file(const std::string& path, const control::Limits& se
   switch (source.format) {
     case MissionFormat::kYaml:
       return with(
-          stretched(parse_mission_file(source.text, path, settings, options), settings, options, path));
+          time_scaled(parse_mission_file(source.text, path, settings, options), settings, options, path));
     case MissionFormat::kPolynomialCsv:
       return with(parse_polynomial_csv(source.text, path, limits, options, source.first_line));
     case MissionFormat::kSampledCsv:
@@ -183,7 +183,7 @@ MissionFile load_mission_file(const std::string& path, const control::Limits& se
       return with(parse_waypoint_csv(source.text, path, limits, options, source.first_line));
     case MissionFormat::kQGroundControlPlan:
       return with(
-          stretched(parse_qgroundcontrol_plan(source.text, path, limits, options), limits, options, path));
+          time_scaled(parse_qgroundcontrol_plan(source.text, path, limits, options), limits, options, path));
   }
   throw std::logic_error("a format that is not read");
 }
@@ -222,6 +222,16 @@ TrajectoryFile load_trajectory_file(const std::string& path, const control::Limi
 MissionFile parse_mission_file(const std::string& text, const std::string& file_name,
                                const control::Limits& limits, const FileOptions& options) {
   return read_mission(runtime::parse_config(text, file_name), limits, options);
+}
+
+MissionFile stretched(MissionFile file, double factor) {
+  if (!file.is_path) {
+    file.mission = control::stretched(std::move(file.mission), factor);
+    return file;
+  }
+  for (control::PolynomialSegment& segment : file.mission.segments)
+    segment = control::stretched(segment, factor);
+  return file;
 }
 
 double planned_duration_s(const control::Mission& mission, const control::Limits& settings) {

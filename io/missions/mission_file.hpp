@@ -42,6 +42,7 @@ struct MissionFile {
   control::Mission mission;              // in NED; its id is 0
   std::vector<int> lines;                // line of each item, from 1; empty for files of other projects
   std::vector<std::string> assumptions;  // made in reading a file of another project, as sentences
+  bool is_path = false;                  // of a file that has the path only: take-off and landing were added
 
   bool takes_off() const;
   bool lands() const;
@@ -60,6 +61,10 @@ MissionFile parse_mission_file(const std::string& text, const std::string& file_
 // runtime::ConfigError as load_mission_file() does.
 TrajectoryFile load_trajectory_file(const std::string& path, const control::Limits& limits,
                                     const FileOptions& options = {});
+
+// The same flight, `factor` times as slow, > 0, as --time-scale makes it: of a path of another project the path alone, else
+// also the moves.
+MissionFile stretched(MissionFile file, double factor);
 
 // Returns the duration of the mission, s, from the ground at the origin. Moves take the items' speeds and the
 // limits of acceleration, jerk and yaw rate.

@@ -137,6 +137,7 @@ MissionFile whole_flight(const std::string& file_name, TrajectoryFile path, cons
                   -segments.front().z[0], duration_s, segments.size()));
   file.mission.segments = std::move(segments);
   file.assumptions = std::move(path.assumptions);
+  file.is_path = true;
   return file;
 }
 

@@ -4,6 +4,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -235,6 +236,18 @@ TEST_F(OnlineFlight, UploadsStartsPausesResumesSkipsAndClearsAMission) {
     EXPECT_EQ(result.errors, "swiftlet: mission " + request + ": " + reason + "\n");
   };
   accepted("clear");  // without a mission
+  // A vehicle of this file could not fly it: nothing is sent.
+  std::ifstream kaylion(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+  std::string heavy{std::istreambuf_iterator<char>(kaylion), {}};
+  const std::string mass = "mass: {value: ";
+  const std::size_t at = heavy.find(mass) + mass.size();
+  heavy.replace(at, heavy.find(',', at) - at, "0.066");
+  const ProgramResult beyond =
+      swiftlet({"mission", "upload", file, "--vehicle", folder_.write("heavy.yaml", heavy)});
+  EXPECT_EQ(beyond.exit_code, 2) << beyond.errors;
+  EXPECT_NE(beyond.errors.find("walk.yaml: kaylion cannot fly it: item "), std::string::npos)
+      << beyond.errors;
+  EXPECT_EQ(status().at("mission").at("state"), "none");
   const ProgramResult uploaded = swiftlet({"mission", "upload", file, "--json"});
   ASSERT_EQ(uploaded.exit_code, 0) << uploaded.errors;
   const std::string id = std::to_string(json::parse(uploaded.output).at("mission_id").get<std::uint64_t>());
