@@ -43,6 +43,8 @@ std::string repeat_of(const FlyOptions& options) {
   if (reading.frame) command += std::string(" --frame ") + frame_name(*reading.frame);
   if (reading.tolerance_m) command += " --tolerance " + runtime::exact(*reading.tolerance_m);
   if (!reading.columns.empty()) command += " --columns " + shell_word(reading.columns);
+  if (reading.from_s) command += " --from " + runtime::exact(*reading.from_s);
+  if (reading.until_s) command += " --until " + runtime::exact(*reading.until_s);
   const Placement& placement = reading.placement;
   if (placement.scale != 1.0) command += " --scale " + runtime::exact(placement.scale);
   if (placement.rotate_deg != 0.0) command += " --rotate " + runtime::exact(placement.rotate_deg);

@@ -90,6 +90,12 @@ void add_file_options(runtime::CommandLine app, ReadingOptions& options) {
       "--columns", options.columns,
       "names of all columns of a CSV file in order, in place of its header, such as t,x,y,z,yaw; w_ for "
       "one that is not used");
+  app.add_option("--from", options.from_s,
+                 "leave out the samples of a CSV file or log before this time, s from its first")
+      .range(0.0, 1e6);
+  app.add_option("--until", options.until_s,
+                 "leave out the samples after this time, s from the first of the file")
+      .range(0.0, 1e6);
   app.add_option("--scale", options.placement.scale,
                  "enlarge the file about the origin, heights too; times stay, so that paths become faster")
       .range(1e-3, 1e3)

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/missions/crazyflie_log.hpp"
 #include "swiftlet/io/missions/foreign_table.hpp"
 #include "swiftlet/io/missions/motion_columns.hpp"
 #include "swiftlet/io/missions/waypoint_list.hpp"
@@ -61,7 +62,13 @@ Source read_source(const std::string& path, const FileOptions& options) {
   const std::string extension = lower_case_extension(path);
   const std::size_t first = source.text.find_first_not_of(" \t\r\n");
   const bool json = first != std::string::npos && source.text[first] == '{';
-  if (is_waypoint_list(source.text)) {
+  const bool log = is_crazyflie_log(source.text);
+  if (log) {
+    CrazyflieLog read = read_crazyflie_log(source.text, path);
+    source.text = std::move(read.table);
+    source.assumptions = std::move(read.assumptions);
+    source.format = MissionFormat::kSampledCsv;
+  } else if (is_waypoint_list(source.text)) {
     source.text = plan_of_waypoint_list(source.text, path);
     source.format = MissionFormat::kQGroundControlPlan;
     source.assumptions.emplace_back("a list of waypoints, read like a plan of QGroundControl");
@@ -79,10 +86,12 @@ Source read_source(const std::string& path, const FileOptions& options) {
   if (options.frame && source.format == MissionFormat::kQGroundControlPlan)
     throw runtime::ConfigError(path, 0, "",
                                "names the frame of each item itself: --frame is for other files");
-  if (!options.columns.empty() && !table)
+  if (!options.columns.empty() && (!table || log))
     throw runtime::ConfigError(path, 0, "", "is no table: --columns is for CSV files");
   if (options.tolerance_m && source.format != MissionFormat::kSampledCsv)
     throw runtime::ConfigError(path, 0, "", "is no table of samples: --tolerance is for those");
+  if ((options.from_s || options.until_s) && source.format != MissionFormat::kSampledCsv)
+    throw runtime::ConfigError(path, 0, "", "is no table of samples: --from and --until are for those");
   return source;
 }
 

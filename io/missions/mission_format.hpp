@@ -3,6 +3,7 @@
 //
 //   polynomial CSV      duration,x^0..x^7,y^0..y^7,z^0..z^7,yaw^0..yaw^7 (Crazyswarm, uav_trajectories)
 //   sampled CSV         t, x, y, z and, if given, vx, vy, vz, ax, ay, az, yaw
+//   log of a Crazyflie  its estimated position (crazyflie_log.hpp)
 //   flight.csv          of a flight record: its reference between take-off and landing
 //   waypoint CSV        x, y, z and, if given, yaw; or x,y,z[,yaw] without a header line
 //   QGroundControl      .plan, JSON: a simple mission with a planned home position
@@ -26,7 +27,8 @@ enum class MissionFormat { kYaml, kPolynomialCsv, kSampledCsv, kWaypointCsv, kQG
 // A file as the functions below read it.
 struct Source {
   MissionFormat format = MissionFormat::kYaml;
-  std::string text;    // tables of other programs are in the dialect of ours, and lists of waypoints a .plan
+  std::string
+      text;  // tables and logs of other programs are in the dialect of ours, and lists of waypoints a .plan
   int first_line = 1;  // of the text in the file
   std::vector<std::string> assumptions;
 };

@@ -60,6 +60,7 @@ struct Samples {
   std::vector<PositionYaw> tolerances;         // of the places
   std::vector<Eigen::Vector3d> velocities;     // if given
   std::vector<Eigen::Vector3d> accelerations;  // if given
+  std::size_t first_row = 0;                   // of the table
 
   std::size_t size() const { return places.size(); }
 };
@@ -123,6 +124,33 @@ Samples read(const runtime::CsvTable& table, const MotionColumns& columns, const
   return samples;
 }
 
+// Keeps the samples within these times.
+void cut(Samples& samples, const FileOptions& options, const std::string& file_name) {
+  if (!options.from_s && !options.until_s) return;
+  std::vector<double>& time_s = samples.times.time_s;
+  constexpr double kSameTime_s = 1e-9;
+  const double from_s = options.from_s.value_or(time_s.front());
+  const double until_s = options.until_s.value_or(time_s.back());
+  const auto begin = std::lower_bound(time_s.begin(), time_s.end(), from_s - kSameTime_s) - time_s.begin();
+  const auto end = std::upper_bound(time_s.begin(), time_s.end(), until_s + kSameTime_s) - time_s.begin();
+  if (end - begin < 2)
+    throw runtime::ConfigError(
+        file_name, 0, "",
+        fmt::format("has {} samples from {:g} to {:g} s, must have at least 2: its last is at {:g} s",
+                    std::max<std::ptrdiff_t>(end - begin, 0), from_s, until_s, time_s.back()));
+  const auto keep = [begin, end](auto& list) {
+    if (!list.empty()) list = {list.begin() + begin, list.begin() + end};
+  };
+  keep(time_s);
+  keep(samples.places);
+  keep(samples.tolerances);
+  keep(samples.velocities);
+  keep(samples.accelerations);
+  samples.first_row += static_cast<std::size_t>(begin);
+  const double start_s = time_s.front();
+  for (double& t_s : time_s) t_s -= start_s;
+}
+
 // Stamps that are rounded and not even move each place along the path.
 void allow_for_rounded_stamps(Samples& samples) {
   if (samples.times.rounding_s <= 0.0) return;
@@ -153,7 +181,7 @@ void require_reachable(const runtime::CsvTable& table, const Samples& samples, d
     const double spare_m = scale * (samples.tolerances[i] + samples.tolerances[i - 1]).head<3>().norm();
     if (step_m - spare_m <= kStep * limits.max_speed * step_s) continue;
     table.fail(
-        i, "",
+        samples.first_row + i, "",
         fmt::format("is {:.3f} m from the row before, {:.4g} s earlier: {:.2f} m/s, the limit is {:.2f} "
                     "m/s",
                     step_m, step_s, step_m / step_s, limits.max_speed));
@@ -169,7 +197,7 @@ std::vector<SplineSample> spline_samples(const runtime::CsvTable& table, const M
     const auto add = [&](int derivative, const Eigen::Vector3d& value, Motion x, double least) {
       SplineSample sample{t_s, derivative, PositionYaw::Zero(), PositionYaw::Constant(kNone)};
       sample.value.head<3>() = value;
-      sample.tolerance.head<3>() = rounding_of(table, i, columns, x).cwiseMax(least);
+      sample.tolerance.head<3>() = rounding_of(table, samples.first_row + i, columns, x).cwiseMax(least);
       out.push_back(sample);
     };
     const bool last = i + 1 == samples.size();
@@ -284,22 +312,22 @@ void say(const runtime::CsvTable& table, const MotionColumns& columns, const Sam
   std::string text;
   if (!samples.velocities.empty())
     text += fmt::format("its velocity differs from vx, vy, vz by up to {:.3g} m/s (line {})",
-                        comparison.velocity_m_s, table.line(comparison.velocity_row));
+                        comparison.velocity_m_s, table.line(samples.first_row + comparison.velocity_row));
   if (!samples.accelerations.empty())
     text += fmt::format("{}its acceleration differs from ax, ay, az by up to {:.3g} m/s^2 (line {})",
                         text.empty() ? "" : ", ", comparison.acceleration_m_s2,
-                        table.line(comparison.acceleration_row));
+                        table.line(samples.first_row + comparison.acceleration_row));
   assumptions.push_back(text);
 }
 
-// The row of the last sample at or before the start of a segment.
+// The row of the table of the last sample at or before the start of a segment.
 std::size_t row_of(const Samples& samples, const std::vector<control::PolynomialSegment>& segments,
                    std::size_t segment) {
   double begin_s = 0.0;
   for (std::size_t i = 0; i < segment; ++i) begin_s += segments[i].duration_s;
   const auto after =
       std::upper_bound(samples.times.time_s.begin(), samples.times.time_s.end(), begin_s + 1e-9);
-  return static_cast<std::size_t>(after - samples.times.time_s.begin()) - 1;
+  return samples.first_row + static_cast<std::size_t>(after - samples.times.time_s.begin()) - 1;
 }
 
 }  // namespace
@@ -317,6 +345,7 @@ TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file
   const runtime::CsvTable table =
       recorded ? *recorded : runtime::parse_csv(text, file_name, header, 2, {true, true, true, first_line});
   Samples samples = read(table, columns, given, options.tolerance_m);
+  cut(samples, options, file_name);
   std::vector<std::string> assumptions;
   if (recorded) assumptions.push_back(extent_of(table));
   if (const auto assumption = columns.assumption("a sampled trajectory")) assumptions.push_back(*assumption);
@@ -330,7 +359,7 @@ TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file
 
   if (given.velocity && samples.velocities.front().norm() > control::kJoin_m_s)
     table.fail(
-        0, "",
+        samples.first_row, "",
         fmt::format("the path starts at {:.2f} m/s, must start at rest", samples.velocities.front().norm()));
   scale_time(samples, options.time_scale);
   require_reachable(table, samples, options.placement.scale, limits);
