@@ -1,19 +1,24 @@
 // Tracking error of five common paths, flown in one process: 3-D error against ground truth, with perfect
-// state feedback and with all sensor models. Figures of other projects were measured on such a machine with
+// state feedback and with all sensor models; and of two of them at two and three times the speed, beside what the rotors
+// can do. Figures of other projects were measured on such a machine with
 // their own vehicles and gains and perfect state feedback.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/control/planning/feasibility.hpp"
+#include "swiftlet/ground/mission/pace.hpp"
 #include "swiftlet/ground/report/recorded_messages.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/configuration.hpp"
@@ -201,6 +206,17 @@ Path lemniscate() {
   return path;
 }
 
+Path faster(const Path& path, double factor) {
+  Path out = path;
+  if (path.position_ned)
+    out.position_ned = [path, factor](double t) { return path.position_ned(factor * t); };
+  for (PolynomialSegment& segment : out.trajectory.segments)
+    segment = control::stretched(segment, 1.0 / factor);
+  out.score_from_s /= factor;
+  out.score_to_s /= factor;
+  return out;
+}
+
 Vector3d reference_at(const control::Trajectory& trajectory, double t) {
   for (const PolynomialSegment& segment : trajectory.segments) {
     if (t <= segment.duration_s) return control::evaluate(segment, t).position_ned;
@@ -281,6 +297,97 @@ constexpr Peer kPeers[] = {
     {"Crazyflie PID", {0.109, 0.218, 0.132, 0.394, 0.648}},
 };
 
+// A path at a multiple of its speed, by the vehicle's model and in flight.
+struct FastFlight {
+  std::string path;
+  double speed = 1.0;                         // times that of the path
+  std::vector<control::WorstDemand> demands;  // indexed by control::Demand
+  std::optional<Score> perfect, sensors;      // none: not flown to the end
+  std::string failure;                        // why
+
+  const control::WorstDemand& of(control::Demand demand) const {
+    return demands[static_cast<std::size_t>(demand)];
+  }
+  double rotor_use() const {  // share of the way from the middle of the range to the closer limit
+    using control::Demand;
+    const double middle_n = 0.5 * (of(Demand::kRotorLeast).limit + of(Demand::kRotorMost).limit);
+    return std::max((of(Demand::kRotorMost).value - middle_n) / (of(Demand::kRotorMost).limit - middle_n),
+                    (middle_n - of(Demand::kRotorLeast).value) / (middle_n - of(Demand::kRotorLeast).limit));
+  }
+};
+
+// The limits of speed and acceleration of the control settings out of the way of those of the vehicle.
+control::ControlSettings agile(control::ControlSettings settings) {
+  settings.limits.max_speed = 20.0;
+  settings.limits.max_acceleration = 50.0;
+  return settings;
+}
+
+FastFlight fly_fast(const Path& path, double speed, const plant::SimulationSettings& perfect,
+                    const plant::SimulationSettings& real, const control::ControlSettings& settings,
+                    std::uint64_t seed) {
+  const plant::Vehicle vehicle = runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml"));
+  const Path fast = faster(path, speed);
+  FastFlight out{path.name, speed, {}, {}, {}, ""};
+  out.demands = control::worst_demands(vehicle, settings.limits, settings.failsafe.low_battery_voltage,
+                                       fast.trajectory.segments);
+  try {
+    out.perfect = fly(fast, perfect, settings, seed);
+    out.sensors = fly(fast, real, settings, seed);
+  } catch (const std::runtime_error& failure) {
+    out.failure = failure.what();
+  }
+  return out;
+}
+
+nlohmann::ordered_json json_of(const FastFlight& flight) {
+  using control::Demand;
+  nlohmann::ordered_json json{{"name", fmt::format("{} at {:g} times the speed", flight.path, flight.speed)},
+                              {"speed_m_s", flight.of(Demand::kSpeed).value},
+                              {"acceleration_m_s2", flight.of(Demand::kAcceleration).value},
+                              {"tilt_rad", flight.of(Demand::kTilt).value},
+                              {"rotor_use", flight.rotor_use()}};
+  if (flight.perfect)
+    json["perfect"] = {{"rms_m", flight.perfect->rms_m}, {"peak_m", flight.perfect->peak_m}};
+  if (flight.sensors)
+    json["sensors"] = {{"rms_m", flight.sensors->rms_m}, {"peak_m", flight.sensors->peak_m}};
+  if (!flight.failure.empty()) json["failure"] = flight.failure;
+  return json;
+}
+
+void print_fast(const std::vector<FastFlight>& flights) {
+  using control::Demand;
+  std::printf("\n%-12s%8s%8s%8s%10s   %-22s%s\n", "path, times", "m/s", "m/s^2", "deg", "rotors %",
+              "perfect: RMS, peak mm", "sensors: RMS, peak mm");
+  const auto text = [](const std::optional<Score>& score) {
+    return score ? fmt::format("{:.2f}, {:.2f}", score->rms_m * 1e3, score->peak_m * 1e3) : std::string("-");
+  };
+  for (const FastFlight& flight : flights) {
+    std::printf("%-6s%6.0f%8.2f%8.2f%8.1f%10.0f   %-22s%s%s\n", flight.path.c_str(), flight.speed,
+                flight.of(Demand::kSpeed).value, flight.of(Demand::kAcceleration).value,
+                flight.of(Demand::kTilt).value * 180.0 / M_PI, 100.0 * flight.rotor_use(),
+                text(flight.perfect).c_str(), text(flight.sensors).c_str(),
+                flight.failure.empty() ? "" : ("  " + flight.failure).c_str());
+  }
+  std::printf(
+      "The limits of speed and acceleration of the control settings are set aside; that of tilt is %.1f deg. "
+      "Rotors: share of the way from the middle of their range of thrust, with a battery at its low "
+      "threshold.\n",
+      flights.front().of(Demand::kTilt).limit * 180.0 / M_PI);
+}
+
+// How many times as fast the vehicle can fly a path with a reserve, and what it meets then.
+std::string limit_of(const Path& path, const control::ControlSettings& settings) {
+  const plant::Vehicle vehicle = runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml"));
+  const ground::TrajectoryFile file{path.trajectory.segments, {}};
+  ground::CheckConditions conditions = ground::at_start_of(file);
+  conditions.reserve = 0.1;
+  const ground::Pace pace =
+      ground::fastest_pace(ground::mission_of(path.name, file, settings), vehicle, settings, conditions);
+  return fmt::format("{}: {:.2f} times as fast with a reserve of 10 %; faster, {}", path.name,
+                     1.0 / pace.time_scale, pace.limit);
+}
+
 void run(const Options& options) {
   control::ControlSettings settings =
       runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml"));
@@ -307,7 +414,14 @@ void run(const Options& options) {
   };
   const auto with_perfect = add("Swiftlet, perfect state feedback, 1 kHz", perfect);
   const auto with_sensors = add("Swiftlet, all sensor models, 500 Hz", real);
+  std::vector<FastFlight> fast;
+  const control::ControlSettings up_to_the_rotors = agile(settings);
+  for (const std::size_t path : {std::size_t{3}, std::size_t{4}}) {
+    for (const double speed : {1.0, 2.0, 3.0})
+      fast.push_back(fly_fast(paths[path], speed, perfect, real, up_to_the_rotors, options.seed));
+  }
   if (options.json) {
+    for (const FastFlight& flight : fast) rows.push_back(json_of(flight));
     std::printf("%s\n", rows.dump().c_str());
     return;
   }
@@ -338,6 +452,9 @@ void run(const Options& options) {
       "with its corners.\n"
       "All sensor models: IMU noise and bias, mocap at 100 Hz with 0.1 mm and 10 ms of latency, the battery "
       "sagging.\n");
+  print_fast(fast);
+  for (const std::size_t path : {std::size_t{3}, std::size_t{4}})
+    std::printf("%s\n", limit_of(paths[path], up_to_the_rotors).c_str());
 }
 
 // The errors of recorded flights, from the messages in their files.
