@@ -91,7 +91,7 @@ void climb(const GuidanceContext& context) {
   state.phase = Phase::kPath;
   Eigen::Vector3d top = state.path.at(context.now_ns).position_ned;
   top.z() = state.climb_to_z_ned;
-  start_move(context, top, true, 0.0, state.climb_speed, context.now_ns);
+  start_move(context, top, true, 0.0, state.climb_speed, state.phase_since_ns + nanoseconds(kSpoolUp_s));
 }
 
 // The planned part of a landing is over: sinks until touchdown is detected.
@@ -266,10 +266,10 @@ BrakingManoeuvre inside_fence(const Limits& limits, const Reference& from, Braki
   return stop;
 }
 
-void start_takeoff(const GuidanceContext& context, double to_z_ned, double speed) {
+void start_takeoff(const GuidanceContext& context, double to_z_ned, double speed, std::int64_t start_ns) {
   GuidanceState& state = context.state;
   state.phase = Phase::kSpoolUp;
-  state.phase_since_ns = context.now_ns;
+  state.phase_since_ns = start_ns;
   state.climb_to_z_ned = to_z_ned;
   state.climb_speed = speed;
   state.path.rest(standing_at(context.estimate));
@@ -373,7 +373,7 @@ void start_item(const GuidanceContext& context, std::int64_t start_ns) {
   context.state.pause = MissionPause::kNone;
   switch (item.kind) {
     case MissionItemKind::kTakeoff: {
-      if (!context.state.flying()) return start_takeoff(context, item.position_ned.z(), item.speed);
+      if (!context.state.flying()) return start_takeoff(context, item.position_ned.z(), item.speed, start_ns);
       Eigen::Vector3d up = context.state.path.at(start_ns).position_ned;
       up.z() = item.position_ned.z();
       return start_move(context, up, true, 0.0, item.speed, start_ns);

@@ -34,8 +34,8 @@ BrakingManoeuvre brake_vehicle(const Limits& limits, const Reference& from);
 // time that the ascent takes.
 BrakingManoeuvre inside_fence(const Limits& limits, const Reference& from, BrakingManoeuvre stop);
 
-// Spools up, then climbs vertically to to_z_ned.
-void start_takeoff(const GuidanceContext& context, double to_z_ned, double speed);
+// Idles until start_ns, spools up, then climbs vertically to to_z_ned.
+void start_takeoff(const GuidanceContext& context, double to_z_ned, double speed, std::int64_t start_ns);
 // Moves from the reference at start_ns to a position: straight from rest, by a quintic from motion. The path
 // is nowhere lower than the minimum height, or the lower of its ends if that is lower.
 void start_move(const GuidanceContext& context, const Eigen::Vector3d& to_ned, bool yaw_free, double yaw_rad,

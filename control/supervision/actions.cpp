@@ -12,7 +12,8 @@ namespace {
 constexpr double kApproachSpeed = 0.5;  // m/s, from rest to the start of a trajectory
 
 void take_off(SupervisorContext& context) {
-  start_takeoff(context.guidance(), context.request->position_ned.z(), context.request->speed);
+  start_takeoff(context.guidance(), context.request->position_ned.z(), context.request->speed,
+                context.state.now_ns);
 }
 
 void keep_mission(SupervisorContext& context) {
@@ -34,7 +35,9 @@ void fly_mission(SupervisorContext& context, void (*begin)(SupervisorContext&)) 
 
 void start_mission(SupervisorContext& context) {
   context.state.guidance.mission.item_index = 0;
-  fly_mission(context, [](SupervisorContext& flown) { start_item(flown.guidance(), flown.state.now_ns); });
+  fly_mission(context, [](SupervisorContext& flown) {
+    start_item(flown.guidance(), std::max(flown.request->start_ns, flown.state.now_ns));
+  });
 }
 
 void skip_item(SupervisorContext& context) {

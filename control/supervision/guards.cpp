@@ -16,6 +16,7 @@ namespace swiftlet::control {
 namespace {
 
 constexpr double kLeastClimb_m = 2.0 * kAirborneHeight_m;
+constexpr double kLongestWaitForStart_s = 60.0;
 constexpr double kMaxSetpointStep_m = 1.0;
 constexpr double kUnitTolerance = 1e-3;
 constexpr double kDetectionDelay_s = 0.01;  // delay until a stream time-out is detected: the next IMU sample
@@ -89,9 +90,24 @@ Outcome check_mission_fence(const SupervisorContext& context) {
   return accept();
 }
 
+// A start in the future: the reference rests until then.
+Outcome check_start_time(const SupervisorContext& context) {
+  const Request& request = *context.request;
+  if (request.start_ns == 0) return accept();
+  const double ahead_s = elapsed_s(context.state.now_ns, request.start_ns);
+  if (!(ahead_s >= 0.0)) return refuse("mission start: the start time was %.3f s ago", -ahead_s);
+  if (ahead_s > kLongestWaitForStart_s)
+    return refuse("mission start: the start time is %.1f s ahead, the limit is %.0f s", ahead_s,
+                  kLongestWaitForStart_s);
+  if (context.state.guidance.path.finished(context.state.now_ns)) return accept();
+  return refuse("mission start: the vehicle still moves; at a given time it can start from rest only");
+}
+
 Outcome check_start(const SupervisorContext& context) {
   const Outcome named = check_mission_named(context);
-  return named.accepted ? check_mission_fence(context) : named;
+  if (!named.accepted) return named;
+  const Outcome time = check_start_time(context);
+  return time.accepted ? check_mission_fence(context) : time;
 }
 
 Outcome check_start_from_ground(const SupervisorContext& context) {
@@ -353,9 +369,10 @@ const Precondition kTakeoff{"battery voltage, speed, target above the ground and
                             check_takeoff};
 const Precondition kUpload{"the mission has items", check_upload};
 const Precondition kStartFromGround{
-    "a mission is uploaded, battery voltage, inside its fence, first item a takeoff to above the ground",
+    "a mission is uploaded, start time, battery voltage, inside its fence, first item a takeoff to above the "
+    "ground",
     check_start_from_ground};
-const Precondition kStart{"a mission is uploaded, inside its fence", check_start};
+const Precondition kStart{"a mission is uploaded, start time, inside its fence", check_start};
 const Precondition kNamed{"the mission id matches", check_mission_named};
 const Precondition kSkip{"the mission id matches, another item follows", check_skip};
 const Precondition kClear{"the mission id matches, or no mission is uploaded", check_clear};

@@ -91,6 +91,8 @@ ControlSetpoint Supervisor::setpoint(const SupervisorInputs& inputs) {
   } else if (state_.mode == Mode::kDescent) {
     setpoint.control_mode = ControlMode::kLevelDescent;
     setpoint.descent_speed = blind_descent_speed(guidance);
+  } else if (state_.guidance.phase == Phase::kSpoolUp && state_.now_ns < state_.guidance.phase_since_ns) {
+    setpoint.control_mode = ControlMode::kIdle;  // until the mission's start time
   } else if (state_.guidance.phase == Phase::kSpoolUp) {
     setpoint.control_mode = ControlMode::kSpoolUp;
     setpoint.lift_fraction = spool_up_lift(guidance);

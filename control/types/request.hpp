@@ -50,6 +50,7 @@ struct Request {
   bool yaw_free = true;          // true: keep the present yaw
   double speed = 0.5;            // m/s, peak
   std::uint64_t mission_id = 0;  // kMissionStart .. kMissionClear: the mission meant; 0: the uploaded one
+  std::int64_t start_ns = 0;     // kMissionStart: when its first item begins; 0: at once
   const Mission* mission =
       nullptr;  // kMissionUpload; owned by the caller, kept until another upload is accepted
   const Trajectory* trajectory = nullptr;  // kTrajectory; likewise, or until the controller has left it

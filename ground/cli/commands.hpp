@@ -64,8 +64,8 @@ Command add_keys_command(runtime::CommandLine root);
 Command add_completion_command(runtime::CommandLine root);
 Command add_manual_command(runtime::CommandLine root);
 
-// Several vehicles in one room: `fleet check`.
-Command add_fleet_command(runtime::CommandLine root);
+// Several vehicles in one room: `fleet check`, `fleet fly`. version: of the program, for the record.
+Command add_fleet_command(runtime::CommandLine root, const std::string& version = "swiftlet");
 
 // Controller design, mission checks and simulation.
 Command add_tune_command(runtime::CommandLine root);  // `tune plot`

@@ -139,11 +139,7 @@ void add_file_options(runtime::CommandLine app, ReadingOptions& options) {
       .needs(fastest);
 }
 
-void add_fly_options(runtime::CommandLine app, FlyOptions& options) {
-  add_mission_options(app, options);
-  add_level_option(app, options.level);
-  add_odometry_option(app, options.odometry);
-  add_radio_options(app, options);
+void add_record_options(runtime::CommandLine app, FlyOptions& options) {
   const runtime::Option record = app.add_option(
       "--record", options.record,
       "new folder for flight.csv, report.json, flight.png and logs; default: flights/<date>-<mission>");
@@ -154,6 +150,44 @@ void add_fly_options(runtime::CommandLine app, FlyOptions& options) {
       "write sensors.csv, the input of `swiftlet identify flight`: every IMU sample, command, pose, voltage "
       "and rotor speed");
   app.add_flag("--json", options.json, "print one JSON object instead of the summary");
+}
+
+void add_fly_options(runtime::CommandLine app, FlyOptions& options) {
+  add_mission_options(app, options);
+  add_level_option(app, options.level);
+  add_odometry_option(app, options.odometry);
+  add_radio_options(app, options);
+  add_record_options(app, options);
+}
+
+runtime::Option add_launch_options(runtime::CommandLine app, FlyOptions& options) {
+  app.option("--localhost-only")
+      .describe(
+          "with --attach or --px4: use the loopback interface only, without multicast; otherwise always set");
+  app.remove_option("--domain");  // added below with another default
+  app.add_option("--domain", options.domain, "DDS domain; default: a free one")
+      .environment("ROS_DOMAIN_ID")
+      .range(0, 232);
+  runtime::Option attach = app.add_flag(
+      "--attach", [&options] { options.launch_mode = LaunchMode::kAttached; },
+      "start no processes: use the plant, mocap and control that run in the domain (default: 0)");
+  app.add_flag("--skip-check", options.skip_check,
+               "with --attach: arm the vehicle although it was not checked, see `swiftlet check vehicle`")
+      .needs(attach);
+  runtime::add_clock_option(app, options.clock);
+  app.add_option(
+         "--speed", options.speed,
+         "simulation speed factor (1 = real time); default: 1, or with --clock lockstep as fast as possible")
+      .range(0.01, 100.0);
+  app.add_flag("--mcap", options.mcap,
+               "write flight.mcap, every message of the flight, as `swiftlet record` does");
+  app.add_flag("--trace", options.trace,
+               "lockstep only: write trace.csv, which holds every sample and command bit for bit");
+  // Processes that it starts are on this host.
+  for (const char* network_option :
+       {"--network", "--peer", "--discovery-server", "--interface", "--dds-profile"})
+    app.option(network_option).needs(attach);
+  return attach;
 }
 
 runtime::Option add_dispersion_option(runtime::CommandLine app, FlyOptions& options) {

@@ -14,6 +14,11 @@ namespace swiftlet::ground {
 void add_mission_options(runtime::CommandLine app, FlyOptions& options);
 // Adds the options of add_mission_options(), --level, --record, --replace, --sensors and --json.
 void add_fly_options(runtime::CommandLine app, FlyOptions& options);
+// Adds --record, --replace, --sensors and --json.
+void add_record_options(runtime::CommandLine app, FlyOptions& options);
+// Adds --attach, --skip-check, --clock, --speed, --mcap and --trace, and changes the network options of `app`. Returns
+// --attach.
+runtime::Option add_launch_options(runtime::CommandLine app, FlyOptions& options);
 // Adds --level: at which the vehicle is commanded.
 // Of the radio between vehicle and control.
 void add_radio_options(runtime::CommandLine app, FlyOptions& options);

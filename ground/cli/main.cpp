@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
       ground::add_stop_command(root),
       ground::add_mission_command(root),
       ground::add_trajectory_command(root),
-      ground::add_fleet_command(root),
+      ground::add_fleet_command(root, runtime::version_text()),
       ground::add_stream_command(root),
       ground::add_teleop_command(root),
       ground::add_status_command(root),

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/control/guidance/time_scaling.hpp"
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/ground/mission/shifted_mission.hpp"
 #include "swiftlet/io/config_error.hpp"
@@ -20,10 +21,20 @@ namespace {
 
 constexpr double kTouching = 1.0 - 2e-5;  // the bound of Approach::clearance
 constexpr std::size_t kListedPairs = 10;
+constexpr double kLateShare =
+    2.0 / 3.0;  // of the safety ellipsoid, that no other one's touches when vehicles are late
+constexpr double kReaction_s = 0.15;  // from an estimate until the vehicle begins to stop
+constexpr double kLeastStop_s = 0.5;  // of control/guidance: shortest change of the time scaling
 
-MissionFile mission_of(const FleetMember& member, MissionFrame frame, const control::Limits& limits) {
+// Mission files and QGroundControl plans name their frame.
+FileOptions reading_of(const FleetMember& member, MissionFrame frame) {
   FileOptions reading;
-  if (read_source(member.mission_file, {}).format != MissionFormat::kYaml) reading.frame = frame;
+  const MissionFormat format = read_source(member.mission_file).format;
+  if (format != MissionFormat::kYaml && format != MissionFormat::kQGroundControlPlan) reading.frame = frame;
+  return reading;
+}
+
+MissionFile mission_of(const FleetMember& member, const FileOptions& reading, const control::Limits& limits) {
   MissionFile file = load_mission_file(member.mission_file, limits, reading);
   if (member.mission_at_start) file.mission = shifted(std::move(file.mission), member.start_ned, limits);
   const auto refuse = [&](const std::string& reason) {
@@ -37,6 +48,13 @@ MissionFile mission_of(const FleetMember& member, MissionFrame frame, const cont
   return file;
 }
 
+// While it slows to a stop, path time goes on by half of the change's duration.
+double stop_s(const FlightPath& path, const control::Limits& limits) {
+  return kReaction_s + 0.5 * control::clock_change_duration(greatest_speed(path),
+                                                            limits.max_reference_acceleration,
+                                                            limits.max_reference_jerk, kLeastStop_s);
+}
+
 FleetVehicle vehicle_of(const FleetMember& member, const FleetFile& fleet,
                         const control::ControlSettings& control) {
   plant::Vehicle vehicle = runtime::load_vehicle(member.vehicle_file);
@@ -46,11 +64,18 @@ FleetVehicle vehicle_of(const FleetMember& member, const FleetFile& fleet,
         fmt::format("is {:g} m, must be at least {:.2f} m: {}, a {}, is up to {:.2f} m wide",
                     fleet.safety.radius_xy_m, 0.5 * width_m, member.name, vehicle.name, width_m));
   }
-  MissionFile mission = mission_of(member, fleet.frame, control.limits);
+  const FileOptions reading = reading_of(member, fleet.frame);
+  MissionFile mission = mission_of(member, reading, control.limits);
   MissionCheck check = check_mission(mission, vehicle, control, {member.start_ned, {}});
   FlightPath path =
       FlightPath::of(dry_run(mission.mission, control, member.start_ned), member.start_ned, mission.lands());
-  return {member, std::move(vehicle), std::move(mission), std::move(check), std::move(path)};
+  const Ellipsoid around{std::max(kLateShare * fleet.safety.radius_xy_m, 0.5 * plant::width(vehicle)),
+                         kLateShare * fleet.safety.radius_z_m};
+  const control::Limits limits = control::tightened(control.limits, mission.mission.bounds);
+  const double lands_s = check.items.empty() ? 0.0 : check.items.back().start_s;
+  MonitoredVehicle monitored{{path, around, lands_s}, stop_s(path, limits), member.priority};
+  return {member,          std::move(vehicle),  reading, std::move(mission), std::move(check),
+          std::move(path), std::move(monitored)};
 }
 
 std::string place(const Eigen::Vector3d& p) {
@@ -66,8 +91,14 @@ std::string FleetCheck::refusal() const {
     if (!one.check.feasible())
       return fmt::format("{} cannot fly {}: {}", one.member.name, one.mission.name, one.check.refusal());
   }
-  if (pairs.empty() || pairs.front().closest.clearance >= kTouching) return "";
-  return describe(*this, pairs.front());
+  if (!pairs.empty() && pairs.front().closest.clearance < kTouching) return describe(*this, pairs.front());
+  if (slack.slack_s >= needed_slack_s) return "";
+  return fmt::format(
+      "{} comes to where {} was at {:.2f} s, {:.2f} s after it: if {} were late, {} could not stop in time, "
+      "for which "
+      "it needs {:.2f} s",
+      vehicles[slack.second].member.name, vehicles[slack.first].member.name, slack.at_s, slack.slack_s,
+      vehicles[slack.first].member.name, vehicles[slack.second].member.name, needed_slack_s);
 }
 
 FleetCheck check_fleet(const FleetFile& fleet) {
@@ -88,7 +119,16 @@ FleetCheck check_fleet(const FleetFile& fleet) {
   std::sort(check.pairs.begin(), check.pairs.end(), [](const FleetPair& one, const FleetPair& other) {
     return one.closest.clearance < other.closest.clearance;
   });
+  const FleetMonitor monitor = monitor_of(check);
+  check.slack = monitor.least_slack();
+  check.needed_slack_s = monitor.needed_slack_s(check.slack.second);
   return check;
+}
+
+FleetMonitor monitor_of(const FleetCheck& check) {
+  std::vector<MonitoredVehicle> vehicles;
+  for (const FleetVehicle& one : check.vehicles) vehicles.push_back(one.monitored);
+  return FleetMonitor(std::move(vehicles));
 }
 
 std::string describe(const FleetCheck& check, const FleetPair& pair) {
@@ -132,8 +172,17 @@ std::string check_table(const FleetCheck& check) {
   const std::string refusal = check.refusal();
   text += "\n";
   if (!refusal.empty()) return text + fleet.name + " cannot be flown: " + refusal + "\n";
-  return text + fmt::format("{} can be flown in {:.1f} s{}\n", fleet.name, check.duration_s,
-                            check.pairs.empty() ? "" : "; " + describe(check, check.pairs.front()));
+  return text +
+         fmt::format("{} can be flown in {:.1f} s{}\n", fleet.name, check.duration_s,
+                     check.pairs.empty() ? "" : "; " + describe(check, check.pairs.front())) +
+         (std::isfinite(check.slack.slack_s)
+              ? fmt::format("late vehicles: {} comes to where {} was {:.2f} s after it, at {:.2f} s, and "
+                            "needs {:.2f} s "
+                            "to stop\n",
+                            check.vehicles[check.slack.second].member.name,
+                            check.vehicles[check.slack.first].member.name, check.slack.slack_s,
+                            check.slack.at_s, check.needed_slack_s)
+              : "");
 }
 
 std::string check_json(const FleetCheck& check) {
@@ -168,6 +217,9 @@ std::string check_json(const FleetCheck& check) {
       {"duration_s", check.duration_s},
       {"safety",
        {{"radius_xy_m", check.fleet.safety.radius_xy_m}, {"radius_z_m", check.fleet.safety.radius_z_m}}},
+      {"slack_s", std::isfinite(check.slack.slack_s) ? nlohmann::ordered_json(check.slack.slack_s)
+                                                     : nlohmann::ordered_json()},
+      {"needed_slack_s", check.needed_slack_s},
       {"vehicles", vehicles},
       {"pairs", pairs}};
   return json.dump();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "swiftlet/control/planning/bernstein.hpp"
+
 namespace swiftlet::ground {
 namespace {
 
@@ -79,6 +81,20 @@ control::PolynomialSegment FlightPath::part(double start_s, double duration_s) c
   part.y = shifted(piece.segment.y, since_s);
   part.z = shifted(piece.segment.z, since_s);
   return part;
+}
+
+double greatest_speed(const control::PolynomialSegment& segment) {
+  const auto rate = [&](const control::Polynomial& axis) {
+    return control::bernstein(axis, segment.duration_s, 1);
+  };
+  return std::sqrt(control::squared_length(rate(segment.x), rate(segment.y), rate(segment.z)).greatest());
+}
+
+double greatest_speed(const FlightPath& path) {
+  double greatest = 0.0;
+  for (const FlightPath::Piece& piece : path.pieces())
+    greatest = std::max(greatest, greatest_speed(piece.segment));
+  return greatest;
 }
 
 }  // namespace swiftlet::ground

@@ -41,4 +41,8 @@ class FlightPath {
   std::vector<Piece> pieces_;
 };
 
+// m/s: an upper bound of the speed on a segment, and on a path.
+double greatest_speed(const control::PolynomialSegment& segment);
+double greatest_speed(const FlightPath& path);
+
 }  // namespace swiftlet::ground

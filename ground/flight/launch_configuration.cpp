@@ -37,14 +37,7 @@ constexpr double kMessagesBytes = 500.0;  // of all messages, compressed, for ea
 constexpr double kOtherFilesBytes = 1e6;  // settings, logs, pictures
 constexpr double kGroundTimeS = 10.0;     // recorded before take-off and after landing
 
-fs::path default_folder(const std::string& mission) {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&now, &local);
-  char stamp[32];
-  std::strftime(stamp, sizeof stamp, "%Y%m%d-%H%M%S", &local);
-  return fs::path("flights") / (std::string(stamp) + "-" + mission);
-}
+std::string absolute_path(const fs::path& path) { return fs::absolute(path).string(); }
 
 void require_takeoff_and_land(const MissionFile& mission, const fs::path& file) {
   if (!mission.takes_off())
@@ -62,7 +55,117 @@ double dry_run_duration_s(const LaunchConfiguration& plan) {
                                flown.reason));
 }
 
-std::string absolute_path(const fs::path& path) { return fs::absolute(path).string(); }
+// The vehicles of a fleet that are of one vehicle file: one plant and one control serve them.
+struct Group {
+  std::vector<std::size_t> members;
+  std::string suffix;  // of the names of its processes
+};
+
+std::vector<Group> groups_of(const Fleet& fleet) {
+  std::vector<Group> groups;
+  for (std::size_t i = 0; i < fleet.plans.size(); ++i) {
+    const auto is_same = [&](const Group& group) {
+      return fleet.plans[group.members.front()].vehicle_file == fleet.plans[i].vehicle_file;
+    };
+    auto group = std::find_if(groups.begin(), groups.end(), is_same);
+    if (group == groups.end()) group = groups.insert(group, Group{{}, ""});
+    group->members.push_back(i);
+  }
+  if (groups.size() == 1) return groups;
+  for (Group& group : groups) group.suffix = "-" + fleet.plans[group.members.front()].vehicle.name;
+  return groups;
+}
+
+class ProcessBuilder {
+ public:
+  ProcessBuilder(const Fleet& fleet, const comms::NodeSettings& network)
+      : fleet_(fleet), first_(fleet.plans.front()) {
+    common_ = {"--domain", std::to_string(network.domain), "--transport", to_string(network.transport)};
+    if (network.localhost_only) common_.emplace_back("--localhost-only");
+    if (!network.network_key_file.empty())
+      append(common_, {"--network-key", absolute_path(network.network_key_file)});
+    if (!network.security.empty()) append(common_, {"--security", absolute_path(network.security)});
+  }
+
+  ProcessSettings plant(const Group& group) const {
+    if (first_.px4_instance) {
+      return process("swiftlet-px4", first_.vehicle_program,
+                     {"--vehicle", vehicle_of(group), "--levels", level(), "--instance",
+                      std::to_string(*first_.px4_instance)},
+                     group);
+    }
+    std::vector<std::string> arguments = {
+        "--vehicle",    vehicle_of(group),
+        "--simulation", absolute_path(first_.simulation_file),
+        "--seed",       std::to_string(fleet_.plans[group.members.front()].seed),
+        "--start"};
+    for (const std::size_t i : group.members) {
+      const Eigen::Vector2d& start_ned = fleet_.plans[i].start_ned;
+      append(arguments, {runtime::exact(start_ned.x()), runtime::exact(start_ned.y())});
+    }
+    if (first_.imu_rate_option_hz > 0)
+      append(arguments, {"--imu-rate", std::to_string(first_.imu_rate_option_hz)});
+    append(arguments, {"--level", level(), "--clock", runtime::to_string(first_.clock)});
+    if (first_.simulation.odometry.source != plant::OdometrySource::kNone) {
+      const bool fuses_mocap = first_.simulation.odometry.source == plant::OdometrySource::kMocap;
+      append(arguments, {"--odometry", fuses_mocap ? "mocap" : "own"});
+    }
+    const plant::RadioSettings& radio = first_.simulation.radio;
+    if (radio.on()) {
+      append(arguments, {"--radio-delay", runtime::exact(radio.delay_s), "--radio-jitter",
+                         runtime::exact(radio.jitter_s), "--radio-loss", runtime::exact(radio.loss)});
+    }
+    if (first_.clock == runtime::Clock::kLockstep) {
+      arguments.emplace_back("--paused");
+      const bool several = fleet_.plans.size() > 1;
+      const fs::path trace =
+          several ? fleet_.folder / "{}" / first_.trace_file().filename() : first_.trace_file();
+      if (first_.trace) append(arguments, {"--trace", absolute_path(trace)});
+    }
+    if (first_.speed) append(arguments, {"--speed", runtime::exact(*first_.speed)});
+    return process("swiftlet-plant", first_.vehicle_program, std::move(arguments), group);
+  }
+
+  ProcessSettings mocap(const std::vector<Group>& groups) const {
+    Group all;
+    for (const Group& group : groups)
+      all.members.insert(all.members.end(), group.members.begin(), group.members.end());
+    return process("swiftlet-mocap", first_.mocap_program,
+                   {"--simulation", absolute_path(first_.simulation_file), "--seed",
+                    std::to_string(first_.seed), "--clock", runtime::to_string(first_.clock)},
+                   all);
+  }
+
+  ProcessSettings control(const Group& group) const {
+    return process("swiftlet-control", first_.control_program,
+                   {"--vehicle", vehicle_of(group), "--control", absolute_path(first_.control_file),
+                    "--level", level(), "--clock", runtime::to_string(first_.clock)},
+                   group);
+  }
+
+ private:
+  static void append(std::vector<std::string>& arguments, const std::vector<std::string>& more) {
+    arguments.insert(arguments.end(), more.begin(), more.end());
+  }
+  std::string vehicle_of(const Group& group) const {
+    return absolute_path(fleet_.plans[group.members.front()].vehicle_file);
+  }
+  std::string level() const { return plant::to_string(first_.simulation.control_levels.lowest()); }
+
+  ProcessSettings process(const std::string& program_name, const fs::path& program,
+                          std::vector<std::string> arguments, const Group& group) const {
+    append(arguments, common_);
+    std::vector<std::string> names;
+    for (const std::size_t i : group.members) names.push_back(fleet_.vehicles[i]);
+    append(arguments, {"--vehicle-name", fmt::format("{}", fmt::join(names, ","))});
+    const std::string name = program_name + group.suffix;
+    return {name, program, std::move(arguments), fleet_.folder / (name + ".log")};
+  }
+
+  const Fleet& fleet_;
+  const LaunchConfiguration& first_;  // its settings are those of all
+  std::vector<std::string> common_;
+};
 
 }  // namespace
 
@@ -75,6 +178,15 @@ double require_flyable(const LaunchConfiguration& plan, const plant::Vehicle& ve
                                                   plan.control, check, conditions);
   if (!refusal.empty()) throw InputError(plan.mission_file.string() + ": " + refusal);
   return check.duration_s;
+}
+
+fs::path default_record_folder(const std::string& name) {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char stamp[32];
+  std::strftime(stamp, sizeof stamp, "%Y%m%d-%H%M%S", &local);
+  return fs::path("flights") / (std::string(stamp) + "-" + name);
 }
 
 LaunchConfiguration plan_flight(const FlyOptions& options) {
@@ -120,7 +232,8 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
   plan.mission_file = runtime::configuration_file(runtime::kinds::kMission, options.mission);
   plan.mission = load_mission(plan.mission_file, options.reading, plan.vehicle, plan.control);
   plan.start_ned = options.start_ned;
-  plan.mission.mission = shifted(std::move(plan.mission.mission), options.start_ned, plan.control.limits);
+  if (options.mission_at_start)
+    plan.mission.mission = shifted(std::move(plan.mission.mission), options.start_ned, plan.control.limits);
   if (const control::Outcome outcome = control::check(plan.mission.mission, plan.control.limits);
       !outcome.accepted)
     throw InputError(fmt::format("{}: started at {:g} m north and {:g} m east of the origin: {}",
@@ -136,7 +249,7 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
     plan.mocap_program = program_beside("swiftlet-mocap");
     plan.control_program = program_beside("swiftlet-control");
   }
-  plan.folder = options.record.empty() ? default_folder(plan.mission.name) : fs::path(options.record);
+  plan.folder = options.record.empty() ? default_record_folder(plan.mission.name) : fs::path(options.record);
   plan.trace = options.trace;
   plan.px4_instance = options.px4_instance;
   plan.sensors = options.sensors;
@@ -200,70 +313,13 @@ Eigen::Vector2d start_of(std::size_t i, std::size_t vehicles, double spacing_m, 
 std::vector<ProcessSettings> processes(const Fleet& fleet, const comms::NodeSettings& network) {
   const LaunchConfiguration& first = fleet.plans.front();
   if (first.launch_mode != LaunchMode::kStarted) return {};
-  std::vector<std::string> common = {"--domain",       std::to_string(network.domain),
-                                     "--vehicle-name", fmt::format("{}", fmt::join(fleet.vehicles, ",")),
-                                     "--transport",    to_string(network.transport)};
-  if (network.localhost_only) common.emplace_back("--localhost-only");
-  if (!network.network_key_file.empty())
-    common.insert(common.end(), {"--network-key", absolute_path(network.network_key_file)});
-  if (!network.security.empty()) common.insert(common.end(), {"--security", absolute_path(network.security)});
-  const std::vector<std::string> clock = {"--clock", runtime::to_string(first.clock)};
-  const auto process = [&](const std::string& name, const fs::path& program,
-                           std::vector<std::string> arguments) {
-    arguments.insert(arguments.end(), common.begin(), common.end());
-    return ProcessSettings{name, program, std::move(arguments), fleet.folder / (name + ".log")};
-  };
-  const std::string vehicle = absolute_path(first.vehicle_file);
-  const std::string simulation = absolute_path(first.simulation_file);
-  const std::string seed = std::to_string(first.seed);
-  const char* const level = plant::to_string(first.simulation.control_levels.lowest());
-  const std::vector<std::string> control = {
-      "--vehicle", vehicle, "--control", absolute_path(first.control_file),
-      "--level",   level,   clock[0],    clock[1]};
-  const std::vector<std::string> mocap = {"--simulation", simulation, "--seed", seed, clock[0], clock[1]};
-  if (first.px4_instance) {
-    return {
-        process("swiftlet-px4", first.vehicle_program,
-                {"--vehicle", vehicle, "--levels", level, "--instance", std::to_string(*first.px4_instance)}),
-        process("swiftlet-mocap", first.mocap_program, mocap),
-        process("swiftlet-control", first.control_program, control)};
-  }
-  std::vector<std::string> plant = {"--vehicle",
-                                    vehicle,
-                                    "--simulation",
-                                    simulation,
-                                    "--seed",
-                                    seed,
-                                    "--start",
-                                    runtime::exact(first.start_ned.x()),
-                                    runtime::exact(first.start_ned.y())};
-  const bool several = fleet.vehicles.size() > 1;
-  if (several) plant.insert(plant.end(), {"--spacing", runtime::exact(fleet.spacing_m)});
-  if (several && fleet.per_row > 0) plant.insert(plant.end(), {"--per-row", std::to_string(fleet.per_row)});
-  if (first.imu_rate_option_hz > 0) {
-    plant.insert(plant.end(), {"--imu-rate", std::to_string(first.imu_rate_option_hz)});
-  }
-  plant.insert(plant.end(), {"--level", level, clock[0], clock[1]});
-  if (first.simulation.odometry.source != plant::OdometrySource::kNone) {
-    const bool fuses_mocap = first.simulation.odometry.source == plant::OdometrySource::kMocap;
-    plant.insert(plant.end(), {"--odometry", fuses_mocap ? "mocap" : "own"});
-  }
-  const plant::RadioSettings& radio = first.simulation.radio;
-  if (radio.on()) {
-    plant.insert(plant.end(), {"--radio-delay", runtime::exact(radio.delay_s), "--radio-jitter",
-                               runtime::exact(radio.jitter_s), "--radio-loss", runtime::exact(radio.loss)});
-  }
-  if (first.clock == runtime::Clock::kLockstep) {
-    plant.emplace_back("--paused");
-    const fs::path trace = several ? fleet.folder / "{}" / first.trace_file().filename() : first.trace_file();
-    if (first.trace) plant.insert(plant.end(), {"--trace", absolute_path(trace)});
-  }
-  if (first.speed) plant.insert(plant.end(), {"--speed", runtime::exact(*first.speed)});
-  return {
-      process("swiftlet-plant", first.vehicle_program, std::move(plant)),
-      process("swiftlet-mocap", first.mocap_program, mocap),
-      process("swiftlet-control", first.control_program, control),
-  };
+  const ProcessBuilder builder(fleet, network);
+  const std::vector<Group> groups = groups_of(fleet);
+  std::vector<ProcessSettings> processes;
+  for (const Group& group : groups) processes.push_back(builder.plant(group));
+  processes.push_back(builder.mocap(groups));
+  for (const Group& group : groups) processes.push_back(builder.control(group));
+  return processes;
 }
 
 }  // namespace swiftlet::ground

@@ -49,11 +49,12 @@ struct FlyOptions {
   plant::OdometrySource odometry = plant::OdometrySource::kNone;    // brought by the simulated vehicle
   std::optional<double> radio_delay_s, radio_jitter_s, radio_loss;  // unset: as in the simulation file
   comms::NodeSettings network;
-  // m, initial position; the mission is shifted by it.
+  // m, initial position, by which the mission is shifted
   Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();
-  int vehicles = 1;        // above 1: kl1, kl2 ... instead of network.vehicle
-  double spacing_m = 1.0;  // distance between several vehicles, to the east
-  int per_row = 0;         // several vehicles: further rows stand to the north; 0: all in one row
+  bool mission_at_start = true;  // false: the mission is not shifted
+  int vehicles = 1;              // above 1: kl1, kl2 ... instead of network.vehicle
+  double spacing_m = 1.0;        // distance between several vehicles, to the east
+  int per_row = 0;               // several vehicles: further rows stand to the north; 0: all in one row
   // kStarted: swiftlet-px4 in place of plant, for this instance of PX4, which runs already; of several vehicles each
   // has the next one.
   std::optional<int> px4_instance;
@@ -104,18 +105,20 @@ LaunchConfiguration plan_flight(const FlyOptions& options);
 double require_flyable(const LaunchConfiguration& plan, const plant::Vehicle& vehicle,
                        const FileOptions& reading);
 
+// flights/<date-time>-<name>
+std::filesystem::path default_record_folder(const std::string& name);
+
 ExistingRecord existing_record(const FlyOptions& options);
 
 // Samples the vehicle and simulation to fly with this seed; the controller is designed for plan.vehicle.
 // Throws as draw() of dispersion.hpp does.
 DispersionSample draw(const LaunchConfiguration& plan, std::uint64_t seed);
 
-// The vehicles of one command, with the i-th plan for the i-th name. They differ in mission, seed and start only.
+// The vehicles of one command, with the i-th plan for the i-th name. They differ in vehicle file, mission, seed and start
+// only. Vehicles of one file have consecutive seeds in their order.
 struct Fleet {
   std::vector<std::string> vehicles;
   std::vector<LaunchConfiguration> plans;
-  double spacing_m = 1.0;
-  int per_row = 0;
   std::filesystem::path folder;  // of the record; that of the plan of a single vehicle
   std::string program;           // with its version, for the record
 };
@@ -123,7 +126,8 @@ struct Fleet {
 // Where the i-th of several vehicles starts, m: in rows about the origin.
 Eigen::Vector2d start_of(std::size_t i, std::size_t vehicles, double spacing_m, int per_row);
 
-// The three processes that serve a fleet of kStarted, on this network; empty for other launch modes.
+// The processes that serve a fleet of kStarted, on this network: plant and control for each vehicle file, and motion
+// capture for all. Empty for other launch modes.
 std::vector<ProcessSettings> processes(const Fleet& fleet, const comms::NodeSettings& network);
 
 // A report with the fields of the plan filled in.

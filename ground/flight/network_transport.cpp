@@ -21,6 +21,10 @@ constexpr auto kReadyTimeout = 20s;
 constexpr auto kRequestTimeout = 10s;
 constexpr auto kRetryPeriod = 200ms;
 constexpr auto kStep = 50ms;
+constexpr auto kClockTime = 500ms;  // of messages from which the vehicle's clock is learnt
+constexpr std::int64_t kStartAheadNs =
+    200'000'000;  // in lockstep: the start, after the last vehicle is ready
+constexpr std::int64_t kRealtimeStartAheadNs = 1'000'000'000;
 constexpr auto kLastFiguresTimeout = 1500ms;
 constexpr auto kEndTimeout = 2s;
 constexpr auto kResultTimeout = 1s;    // of control_status after mission_status
@@ -54,6 +58,10 @@ std::string missing_peer(const View& view) {
     if (peer == view.peers.end() || !peer->second) return name;
   }
   return {};
+}
+
+std::int64_t monotonic_ns(Clock::time_point time) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(time.time_since_epoch()).count();
 }
 
 // Simulated time since `since_ns`. The time limits of a flight are in the vehicle's time.
@@ -182,9 +190,41 @@ void NetworkTransport::wait(std::int64_t duration_ns, const std::string& reason)
                [this](const View&) { return watch_.interrupts() > 0; });
 }
 
+std::int64_t NetworkTransport::at_vehicle_rate(std::int64_t host_ns) const {
+  return watch_.speed == 1.0 ? host_ns : std::llround(static_cast<double>(host_ns) * watch_.speed);
+}
+
+// Messages take time to come, so the vehicle's clock is ahead of each stamp when it arrives. The quickest message tells
+// most: on a local network it is late by a fraction of a millisecond, and that alike for all vehicles.
+void NetworkTransport::learn_clock() {
+  std::int64_t offset_ns = std::numeric_limits<std::int64_t>::min();
+  const auto learn = [&](const auto& latest) {
+    if (latest.seen())
+      offset_ns =
+          std::max(offset_ns, latest.message.stamp_ns() - at_vehicle_rate(monotonic_ns(latest.received)));
+  };
+  client_.wait(kClockTime, [&](const View& view) {
+    learn(view.estimate);
+    learn(view.truth);
+    return false;
+  });
+  clock_offset_ns_ = offset_ns;
+}
+
+Result NetworkTransport::upload() {
+  return client_.upload(mission_.mission, kRequestTimeout,
+                        [this] { return watch_.exited_process() || watch_.interrupts() > 0; });
+}
+
 void NetworkTransport::wait_for_other_vehicles() {
   if (watch_.barrier == nullptr) return;
-  watch_.barrier->ready();
+  if (!lockstep_) learn_clock();
+  if (const Result answer = upload(); !answer.accepted()) {
+    require_alive();
+    if (lockstep_) client_.simulation_clock().without_end();  // disarming needs time to advance
+    abandon(watch_.interrupts() > 0 ? "interrupted" : "mission refused: " + answer.reason);
+  }
+  watch_.barrier->ready(lockstep_ ? paused_at_ns_ : monotonic_ns(Clock::now()));
   while (!watch_.barrier->wait_for_all(kStep)) {
     require_alive();
     const auto failure = watch_.barrier->failure();
@@ -194,14 +234,20 @@ void NetworkTransport::wait_for_other_vehicles() {
     }
     progress_.update(kBeforeFlight, "armed, waiting for the other vehicles");
   }
+  const std::int64_t all_ready_ns = watch_.barrier->ready_ns();
+  start_ns_ = lockstep_ ? all_ready_ns + kStartAheadNs
+                        : at_vehicle_rate(all_ready_ns + kRealtimeStartAheadNs) + clock_offset_ns_;
 }
 
 MissionTransport::Reply NetworkTransport::start_mission() {
   const auto cancelled = [this] { return watch_.exited_process() || watch_.interrupts() > 0; };
-  Result answer = client_.upload(mission_.mission, kRequestTimeout, cancelled);
+  Result answer = watch_.barrier == nullptr ? upload() : Result{Result::Kind::kAccepted, ""};
   if (answer.accepted()) {
-    answer = client_.mission_command(msg::Command_Constants::MISSION_START, client_.mission_id(),
-                                     kRequestTimeout, cancelled);
+    msg::Command start;
+    start.kind(msg::Command_Constants::MISSION_START);
+    start.mission_id(client_.mission_id());
+    start.start_ns(start_ns_);
+    answer = client_.command(start, kRequestTimeout, cancelled);
   }
   require_alive();
   start_ = answer;

@@ -17,8 +17,9 @@ namespace swiftlet::ground {
 
 // Lands the vehicle where a flight fails in the air and landing is possible, but not an attached one that another
 // ground tool has taken over. The first interrupt lands it, the second
-// ends the flight at once. Together with other vehicles the mission starts when all are armed, and the failure of
-// another one lands this one.
+// ends the flight at once. Together with other vehicles all missions start at one time of a common clock, when all are
+// armed, and the failure of another one lands this one. The common clock is the simulated time, in real time the monotonic
+// clock of this host.
 class NetworkTransport final : public MissionTransport {
  public:
   struct Watch {
@@ -26,6 +27,7 @@ class NetworkTransport final : public MissionTransport {
     std::function<int()> interrupts;                             // by the user, so far
     StartBarrier* barrier = nullptr;                             // with other vehicles; null: alone
     bool attached = false;                                       // to processes that outlive the flight
+    double speed = 1.0;                                          // of the vehicle's clock in real time
   };
 
   // In lockstep the plant was started paused.
@@ -58,6 +60,9 @@ class NetworkTransport final : public MissionTransport {
     double lasted_s_ = 0.0;
   };
 
+  Result upload();
+  std::int64_t at_vehicle_rate(std::int64_t host_ns) const;
+  void learn_clock();
   void wait_until(const std::function<bool(const View&)>& holds, const std::string& what_not);
   void wait_until_samples_come();
   void wait_until_paused_at(std::int64_t stamp_ns);
@@ -72,7 +77,10 @@ class NetworkTransport final : public MissionTransport {
   const MissionFile& mission_;
   bool lockstep_;
   std::int64_t paused_at_ns_ = 0;  // in lockstep, before the mission
-  Result start_;                   // the answer to the request that started the mission
+  std::int64_t clock_offset_ns_ =
+      0;  // in real time: the vehicle's clock minus the monotonic one of this host at its speed
+  std::int64_t start_ns_ = 0;  // on the vehicle's clock; 0: at once
+  Result start_;               // the answer to the request that started the mission
   Watch watch_;
   Progress& progress_;
   Silence control_silence_, vehicle_silence_;

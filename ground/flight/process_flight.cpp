@@ -56,9 +56,9 @@ void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* barrier, Pro
   Client& client = *client_;
   const auto start = Clock::now();
   try {
-    const NetworkTransport::Watch watch{[this] { return processes_.exited_process(); },
-                                        [&] { return interrupts.count(); }, barrier,
-                                        plan_.launch_mode == LaunchMode::kAttached};
+    const NetworkTransport::Watch watch{
+        [this] { return processes_.exited_process(); }, [&] { return interrupts.count(); }, barrier,
+        plan_.launch_mode == LaunchMode::kAttached, plan_.speed.value_or(1.0)};
     NetworkTransport vehicle(client, record_, plan_.mission, plan_.clock, watch, progress);
     ground::fly_mission(vehicle, plan_.planned_duration_s);
     vehicle.wait_for_last_figures();

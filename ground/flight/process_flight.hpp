@@ -32,6 +32,8 @@ class ProcessFlight {
   // std::runtime_error if the record cannot be written.
   void finish(const std::vector<std::string>& end_errors, Progress& progress);
 
+  // Until finish().
+  Client& client() { return *client_; }
   const FlightReport& report() const { return report_; }
   const std::string& vehicle_name() const { return network_.vehicle; }
 

@@ -376,6 +376,7 @@ Fault from_message(const msg::Command& in, control::Request& out) {
   out.yaw_free = in.yaw_free();
   if (moves) out.speed = in.speed();
   out.mission_id = in.mission_id();
+  out.start_ns = in.start_ns();
   return {};
 }
 
@@ -387,6 +388,7 @@ msg::Command to_message(const control::Request& in) {
   out.yaw(in.yaw_rad);
   out.speed(in.speed);
   out.mission_id(in.mission_id);
+  out.start_ns(in.start_ns);
   return out;
 }
 

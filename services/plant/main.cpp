@@ -43,7 +43,7 @@ struct Options {
   std::string vehicle = "kaylion";
   std::string simulation = "default";
   std::uint64_t seed = 1;
-  std::array<double, 2> start{};  // m, north and east
+  std::vector<double> start = {0.0, 0.0};  // m, north and east
   double spacing_m = 1.0;
   int per_row = 0;  // 0: all in one row
   std::string levels = "actuators";
@@ -127,7 +127,10 @@ void add_options(runtime::CommandLine app, Options& options) {
                  "Random seed of noise, biases and gusts; of several vehicles each has the next number")
       .range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max())
       .show_default();
-  app.add_option("--start", options.start, "Initial position on the ground, m north and m east of the origin")
+  app.add_option(
+         "--start", options.start,
+         "Initial position on the ground, m north and m east of the origin; of several vehicles that of "
+         "the first, or that of each in turn")
       .range(-1e3, 1e3);
   app.add_option("--spacing", options.spacing_m,
                  "Distance between the start positions of several vehicles, m to the east")
@@ -187,6 +190,11 @@ constexpr double kSecurePatienceS = 10.0;
 // Throws std::invalid_argument for lockstep options without --clock lockstep, and for one trace of several vehicles.
 void check(const Options& options, std::size_t vehicles) {
   const bool lockstep = options.clock == runtime::Clock::kLockstep;
+  if (options.start.size() != 2 && options.start.size() != 2 * vehicles) {
+    throw std::invalid_argument(fmt::format(
+        "--start: has {} numbers, must have 2{}", options.start.size(),
+        vehicles > 1 ? fmt::format(", or {} for {} vehicles", 2 * vehicles, vehicles) : std::string()));
+  }
   if (!lockstep && options.lockstep.paused) throw std::invalid_argument("--paused: needs --clock lockstep");
   if (!lockstep && !options.lockstep.trace.empty())
     throw std::invalid_argument("--trace: needs --clock lockstep");
@@ -263,16 +271,24 @@ PlantSettings load(const Options& options) {
   return settings;
 }
 
+// m, north and east, of the i-th of several vehicles.
+Eigen::Vector2d place_in_rows(std::size_t i, const Options& options) {
+  const std::size_t row = options.per_row > 0 ? i / static_cast<std::size_t>(options.per_row) : 0;
+  const std::size_t column = i - row * static_cast<std::size_t>(options.per_row);
+  return {options.start[0] + static_cast<double>(row) * options.spacing_m,
+          options.start[1] + static_cast<double>(column) * options.spacing_m};
+}
+
 // The settings of the i-th vehicle.
 PlantSettings settings_of(const std::vector<std::string>& names, std::size_t i, const Options& options,
                           PlantSettings settings) {
   settings.seed = options.seed + i;
   settings.phase = runtime::group_phase(i, names.size());
-  const std::size_t row = options.per_row > 0 ? i / static_cast<std::size_t>(options.per_row) : 0;
-  const std::size_t column = i - row * static_cast<std::size_t>(options.per_row);
-  settings.initial.position_ned.head<2>() =
-      Eigen::Vector2d(options.start[0] + static_cast<double>(row) * options.spacing_m,
-                      options.start[1] + static_cast<double>(column) * options.spacing_m);
+  if (options.start.size() > 2) {
+    settings.initial.position_ned.head<2>() = Eigen::Vector2d(options.start[2 * i], options.start[2 * i + 1]);
+  } else {
+    settings.initial.position_ned.head<2>() = place_in_rows(i, options);
+  }
   settings.lockstep.trace = trace_of(names[i], options.lockstep.trace);
   if (settings.autopilot) settings.autopilot->port += static_cast<int>(i);
   return settings;

@@ -6,12 +6,13 @@
 
 namespace swiftlet::ground {
 
-Command add_fleet_command(runtime::CommandLine root) {
+Command add_fleet_command(runtime::CommandLine root, const std::string& version) {
   const runtime::CommandLine fleet =
-      root.add_subcommand("fleet", "Check the flight of several vehicles in one room, from a fleet file");
+      root.add_subcommand("fleet", "Check and fly several vehicles in one room, from a fleet file");
   fleet.require_subcommand(1, 1);
-  fleet.footer("example: swiftlet fleet check swap6");
-  const std::vector<Command> commands = {add_fleet_check_command(fleet)};
+  fleet.footer("example: swiftlet fleet check swap6 && swiftlet fleet fly swap6");
+  const std::vector<Command> commands = {add_fleet_check_command(fleet),
+                                         add_fleet_fly_command(fleet, version)};
   return {fleet, [commands] {
             for (const Command& command : commands) {
               if (command.app.parsed()) return command.run();

@@ -1,10 +1,14 @@
 // The subcommands of `swiftlet fleet`.
 #pragma once
 
+#include <string>
+
 #include "swiftlet/ground/command_line/command.hpp"
 
 namespace swiftlet::ground {
 
 Command add_fleet_check_command(runtime::CommandLine fleet);
+// version: of the program, for the record.
+Command add_fleet_fly_command(runtime::CommandLine fleet, const std::string& version);
 
 }  // namespace swiftlet::ground

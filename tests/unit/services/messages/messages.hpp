@@ -73,6 +73,7 @@ inline control::Request request() {
   request.yaw_rad = 0.3;
   request.yaw_free = false;
   request.speed = 0.4;
+  request.start_ns = 7'000'000'000;
   return request;
 }
 inline std::vector<control::PolynomialSegment> polynomials(std::size_t count) {

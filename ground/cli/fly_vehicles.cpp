@@ -1,0 +1,171 @@
+#include "swiftlet/ground/cli/fly_vehicles.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <deque>
+#include <exception>
+#include <future>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "swiftlet/ground/cli/check/preflight.hpp"
+#include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/ground/flight/attached_vehicle.hpp"
+#include "swiftlet/ground/flight/fleet_watch.hpp"
+#include "swiftlet/ground/flight/flight_outcome.hpp"
+#include "swiftlet/ground/flight/interrupts.hpp"
+#include "swiftlet/ground/flight/message_record.hpp"
+#include "swiftlet/ground/flight/process_flight.hpp"
+#include "swiftlet/ground/flight/process_group.hpp"
+#include "swiftlet/ground/terminal/fleet_progress.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
+#include "swiftlet/services/dds/discovery/flight_reservation.hpp"
+#include "swiftlet/services/dds/shared_memory.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+// Makes the folder of the record, with one inside for each of several vehicles.
+std::unique_ptr<RecordFolder> make_record(const FlyOptions& options, const std::vector<std::string>& vehicles,
+                                          std::vector<LaunchConfiguration>& plans) {
+  std::uintmax_t needed_bytes = 0;
+  for (const LaunchConfiguration& plan : plans) needed_bytes += plan.record_bytes();
+  require_space(plans.front().folder, needed_bytes);
+  std::vector<std::filesystem::path> inputs;
+  for (const LaunchConfiguration& plan : plans) {
+    const std::vector<std::filesystem::path> files = plan.input_files();
+    inputs.insert(inputs.end(), files.begin(), files.end());
+  }
+  auto folder =
+      std::make_unique<RecordFolder>(plans.front().folder, existing_record(options), "--record", inputs);
+  for (std::size_t i = 0; i < plans.size(); ++i)
+    plans[i].folder = plans.size() == 1 ? folder->path() : folder->folder_of(vehicles[i]);
+  return folder;
+}
+
+// Calls work(i) for each flight, each in a thread of its own. Throws the exception of the first that fails.
+template <class Work>
+void for_each_at_once(std::size_t flights, const Work& work) {
+  std::vector<std::future<void>> working;
+  for (std::size_t i = 0; i < flights; ++i)
+    working.push_back(std::async(std::launch::async, [&work, i] { work(i); }));
+  for (std::future<void>& one : working) one.wait();
+  for (std::future<void>& one : working) one.get();
+}
+
+// Flies all vehicles at the same time, ends the processes and writes the records.
+void fly_together(std::deque<ProcessFlight>& flights, ProcessGroup& processes,
+                  std::optional<FleetMonitor> monitor, const Interrupts& interrupts, ProgressLine& progress) {
+  std::vector<std::string> names;
+  names.reserve(flights.size());
+  for (const ProcessFlight& flight : flights) names.push_back(flight.vehicle_name());
+  FleetProgress shares(progress, names);
+  StartBarrier barrier(flights.size());
+  std::optional<FleetWatch> watch;
+  if (monitor) {
+    std::vector<FleetWatch::Watched> watched;
+    for (std::size_t i = 0; i < flights.size(); ++i) watched.push_back({&flights[i].client(), &shares.of(i)});
+    watch.emplace(std::move(*monitor), std::move(watched));
+  }
+  std::exception_ptr fault;
+  try {
+    for_each_at_once(flights.size(),
+                     [&](std::size_t i) { flights[i].fly(interrupts, &barrier, shares.of(i)); });
+  } catch (const std::exception&) {
+    fault = std::current_exception();  // once the records are written
+  }
+  watch.reset();
+  std::vector<std::string> errors = processes.stop();
+  const bool any_failed = std::any_of(flights.begin(), flights.end(), [](const ProcessFlight& flight) {
+    return !flight.report().reason.empty();
+  });
+  if (any_failed) {  // the exit status of a process that serves several may be due to that flight
+    for (const std::string& error : errors) progress.say(error);
+    errors.clear();
+  }
+  for_each_at_once(flights.size(), [&](std::size_t i) { flights[i].finish(errors, shares.of(i)); });
+  if (fault) std::rethrow_exception(fault);
+}
+
+// Throws unless the running vehicles are on the ground and can fly their missions. What is not known of one is said.
+void require_flyable_by_running(const comms::NodeSettings& network, const std::vector<std::string>& vehicles,
+                                const std::vector<LaunchConfiguration>& plans, const FileOptions& reading) {
+  const std::vector<std::optional<ReportedModel>> models = require_on_ground(network, vehicles);
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    const KnownVehicle vehicle = known_vehicle(models[i]);
+    if (vehicle.model) {
+      require_flyable(plans[i], *vehicle.model, reading);
+    } else {
+      std::fprintf(stderr, "%s: its rotors are not checked: %s\n", vehicles[i].c_str(),
+                   vehicle.unknown.c_str());
+    }
+  }
+}
+
+}  // namespace
+
+int fly_vehicles(const FlyOptions& options, const std::vector<std::string>& vehicles,
+                 std::vector<LaunchConfiguration> planned, std::optional<FleetMonitor> monitor) {
+  Fleet fleet{vehicles, std::move(planned), {}, options.program};
+  std::vector<LaunchConfiguration>& plans = fleet.plans;
+
+  const bool attached = options.launch_mode == LaunchMode::kAttached;
+  std::optional<comms::DomainLock> domain_lock;
+  if (options.domain < 0 && !attached) domain_lock.emplace();
+  comms::NodeSettings network = options.network;
+  network.domain = domain_lock ? domain_lock->domain() : std::max(options.domain, 0);
+  const bool is_alone = !attached && !options.px4_instance;  // all processes are started here
+  network.localhost_only = network.localhost_only || is_alone;
+  if (attached) require_flyable_by_running(network, vehicles, plans, options.reading);
+  if (attached && !options.skip_check) require_sound_vehicles(network, vehicles);
+  // In a domain that others may use, the vehicles must not live already.
+  std::optional<comms::FlightReservation> reservation;
+  if (!domain_lock && !attached) reservation.emplace(network, vehicles);
+  const std::unique_ptr<RecordFolder> record = make_record(options, vehicles, plans);
+
+  fleet.folder = record->path();
+
+  ProgressLine progress;
+  const Interrupts interrupts;
+  std::optional<MessageRecord> messages;  // receives from the first message on
+  if (options.mcap) messages.emplace(network, fleet);
+  ProcessGroup processes(ground::processes(fleet, network));
+  comms::NodeSettings own = network;
+  own.deadlines = options.clock != runtime::Clock::kLockstep;
+  const comms::Participant participant(own, vehicles);
+  std::deque<ProcessFlight> flights;
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    const LaunchConfiguration& plan = plans[i];
+    for (const std::string& assumption : plan.mission.assumptions)
+      progress.say(plan.mission.name + ": " + assumption);
+    network.vehicle = vehicles[i];
+    progress.say("flying " + plan.mission.name +
+                 (plan.launch_mode == LaunchMode::kAttached ? "" : " with " + plan.vehicle.name) + ": " +
+                 network.vehicle + " in domain " + std::to_string(network.domain) +
+                 (network.localhost_only ? " (--localhost-only)" : "") + ", record in " +
+                 plan.folder.string());
+    own.vehicle = vehicles[i];
+    flights.emplace_back(std::move(plans[i]), own, processes, participant);
+  }
+  if (flights.size() == 1) {
+    flights.front().fly(interrupts, nullptr, progress);
+    flights.front().finish(processes.stop(), progress);
+  } else {
+    fly_together(flights, processes, std::move(monitor), interrupts, progress);
+  }
+  std::string incomplete;
+  if (messages) incomplete = messages->finish();
+  if (!incomplete.empty()) progress.say("swiftlet: the record of the messages is incomplete: " + incomplete);
+  // A killed process leaves its shared memory segments behind.
+  if (network.transport == comms::Transport::kSharedMemory) comms::remove_stale_shared_memory();
+
+  if (flights.size() == 1) return print_report(flights.front().report(), options.json, progress);
+  std::vector<FlightReport> reports;
+  reports.reserve(flights.size());
+  for (const ProcessFlight& flight : flights) reports.push_back(flight.report());
+  return print_report(reports, options.json, progress);
+}
+
+}  // namespace swiftlet::ground

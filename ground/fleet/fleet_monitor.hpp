@@ -1,0 +1,77 @@
+// Keeps the vehicles of a fleet apart in flight, when one of them stops, is late, leaves its path or is no longer heard.
+//
+//   on its path, late       those that come after it (right_of_way.hpp) stop on their paths, and go on when it has passed
+//   off its path, or lost   it may land or fall: nobody enters the column below it; who is in it steps aside
+//
+// Of two vehicles off their paths the one of lower priority steps aside. Pure logic: it is told what is known, and says
+// what each vehicle should do.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "swiftlet/ground/fleet/flight_path.hpp"
+#include "swiftlet/ground/fleet/right_of_way.hpp"
+#include "swiftlet/ground/fleet/separation.hpp"
+
+namespace swiftlet::ground {
+
+// One vehicle as the monitor is told of it at the start.
+struct MonitoredVehicle : RightOfWay::Vehicle {
+  double stop_s = 0.5;  // path time in which it stops after it is told to, with the delay until it hears that
+  int priority = 1;
+};
+
+// What is known of a vehicle at one time.
+struct VehicleNews {
+  Eigen::Vector3d reference_ned = Eigen::Vector3d::Zero();  // m
+  Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();   // m, estimated
+  double age_s = 0.0;                                       // of these
+  bool flies_plan = true;   // its mission runs or is paused by this monitor; false: it does something else
+  bool rotors_off = false;  // it stands, or falls
+};
+
+struct Order {
+  enum class Kind { kFly, kPause, kStepAside };
+  Kind kind = Kind::kFly;
+  Eigen::Vector3d place_ned = Eigen::Vector3d::Zero();  // kStepAside: where to
+  std::size_t because_of = 0;                           // unless kFly: index of the other vehicle
+};
+
+class FleetMonitor {
+ public:
+  explicit FleetMonitor(std::vector<MonitoredVehicle> vehicles);
+
+  // now_s: since the common start, not decreasing. news: of all vehicles. Returns an order for each.
+  std::vector<Order> step(double now_s, const std::vector<VehicleNews>& news);
+
+  // s, the path time that each vehicle has reached, as far as known.
+  const std::vector<double>& progress_s() const { return progress_s_; }
+
+  // The least slack of the plan, and what the second vehicle needs of it: FleetMonitor stops nobody in a flight on time, and
+  // lets no vehicles wait for each other, while the slack is at least what is needed.
+  RightOfWay::Slack least_slack() const;
+  double needed_slack_s(std::size_t vehicle) const;
+
+ private:
+  enum class Status { kOnPath, kOffPath, kLost, kDown };
+
+  void follow(std::size_t i, double elapsed_s, const VehicleNews& news);
+  Status status_of(std::size_t i, const VehicleNews& news) const;
+  std::vector<Eigen::Vector3d> places_of(std::size_t i, const VehicleNews& news) const;
+  bool in_column(std::size_t i, const Eigen::Vector3d& place_ned, std::size_t of,
+                 const Eigen::Vector3d& top_ned, double share) const;
+  void keep_out_of_column(std::size_t of, const std::vector<VehicleNews>& news,
+                          const std::vector<Status>& status, std::vector<Order>& orders) const;
+
+  std::vector<MonitoredVehicle> vehicles_;
+  RightOfWay right_of_way_;
+  std::vector<double> progress_s_;
+  std::vector<bool> paused_;
+  double now_s_ = 0.0;
+};
+
+}  // namespace swiftlet::ground
