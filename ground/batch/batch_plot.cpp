@@ -14,8 +14,9 @@ namespace {
 using plot::Colour;
 using plot::Style;
 
-constexpr std::size_t kMostScatters = 3;
-constexpr double kLongTail = 4.0;  // maximum over median, above which the error axis is logarithmic
+constexpr std::size_t kMostScatters = 3;  // side by side
+constexpr std::size_t kFirstScatter = 2;  // its panel
+constexpr double kLongTail = 4.0;         // maximum over median, above which the error axis is logarithmic
 
 std::string headline(const BatchReport& report) {
   const std::size_t failed = report.batch.failed();
@@ -98,22 +99,24 @@ plot::Panel scatter_panel(const BatchReport& report, const ParameterEffect& effe
   return panel;
 }
 
-plot::Figure batch_figure(const BatchReport& report) {
+}  // namespace
+
+plot::Figure batch_figure(const BatchReport& report, std::size_t scatters) {
   plot::Figure figure{headline(report), 1600, 1100, {error_panel(report), margin_panel(report.batch)}};
-  for (std::size_t i = 0; i < std::min(kMostScatters, report.effects.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(scatters, report.effects.size()); ++i) {
     if (report.effects[i].strength() < 0.0) break;
     const double left = 0.060 + 0.3225 * static_cast<double>(i);
     figure.panels.push_back(scatter_panel(report, report.effects[i], {left, left + 0.260, 0.085, 0.445}));
-    if (i > 0) figure.panels.back().y.label.clear();
   }
   return figure;
 }
 
-}  // namespace
-
 std::string draw_batch(const std::filesystem::path& folder, const BatchReport& report) {
   if (report.rms_3d_m.count == 0) return "no picture was drawn: no run has a tracking error";
-  return plot::draw_png_if_installed(batch_figure(report), folder / "batch.png");
+  plot::Figure figure = batch_figure(report, kMostScatters);
+  for (std::size_t i = kFirstScatter + 1; i < figure.panels.size(); ++i)
+    figure.panels[i].y.label.clear();  // beside it
+  return plot::draw_png_if_installed(figure, folder / "batch.png");
 }
 
 }  // namespace swiftlet::ground

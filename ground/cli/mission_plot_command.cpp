@@ -1,10 +1,14 @@
 #include <cstdio>
+#include <filesystem>
+#include <string>
 #include <vector>
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
+#include "swiftlet/ground/mission/mission_page.hpp"
 #include "swiftlet/ground/mission/mission_plot.hpp"
 #include "swiftlet/ground/mission/pace.hpp"
+#include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
@@ -32,7 +36,13 @@ int run(const Options& options) {
   if (!flown.completed)
     std::fprintf(stderr, "swiftlet: mission %s: %s\n", file.name.c_str(), flown.reason.c_str());
   if (flown.legs.empty()) return kFailed;
-  const std::string fault = draw_mission(options.output, file, flown, settings.limits);
+  const bool page = std::filesystem::path(options.output).extension() == ".html";
+  std::string fault;
+  if (page) {
+    runtime::write_atomically(options.output, mission_page(file, flown, settings.limits));
+  } else {
+    fault = draw_mission(options.output, file, flown, settings.limits);
+  }
   if (!fault.empty()) {
     std::fprintf(stderr, "swiftlet: %s\n", fault.c_str());
     return kFailed;
@@ -48,7 +58,9 @@ Command add_mission_plot_command(runtime::CommandLine mission) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app =
       mission.add_subcommand("plot", "Plot the path of a mission file with its limits and fence");
-  app.footer("example: swiftlet mission plot square -o square.png");
+  app.footer(
+      "example: swiftlet mission plot square -o square.png\n"
+      "example: swiftlet mission plot square -o square.html");
   app.add_option("file", options->file,
                  "mission file, or the name of one in config/missions; also CSV or QGroundControl .plan")
       .type_name(runtime::kinds::kMission.value)
@@ -58,7 +70,9 @@ Command add_mission_plot_command(runtime::CommandLine mission) {
                  "vehicle of --as-fast-as-possible: a file, or the name of one in config/vehicles")
       .type_name(runtime::kinds::kVehicle.value)
       .show_default();
-  app.add_option("-o,--out", options->output, "output file, PNG").show_default();
+  app.add_option("-o,--out", options->output,
+                 "output file: FILE.html is a page with the path in space, any other name a PNG picture")
+      .show_default();
   app.add_option("--control", options->control,
                  "control settings file, or the name of one in config/control: its limits and fence apply")
       .type_name(runtime::kinds::kControl.value)

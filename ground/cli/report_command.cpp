@@ -10,6 +10,7 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/log/log_commands.hpp"
 #include "swiftlet/ground/pages/flight_page.hpp"
+#include "swiftlet/ground/pages/recorded/recorded_flight.hpp"
 #include "swiftlet/ground/report/flight_comparison.hpp"
 #include "swiftlet/ground/report/recorded_messages.hpp"
 #include "swiftlet/io/atomic_write.hpp"
@@ -48,9 +49,13 @@ int write_page(const ReportOptions& options, const std::vector<std::filesystem::
     for (pages::FlightLog& flight : pages::flights_in(mcap::Reader(file), name_of(file)))
       flights.push_back(std::move(flight));
   }
-  runtime::write_atomically(options.page, pages::flight_page(flights));
-  std::printf("report: wrote %s, %zu %s\n", options.page.c_str(), flights.size(),
-              flights.size() == 1 ? "flight" : "flights");
+  std::string title = flights.size() == 1 ? "Flight" : "Flights";
+  for (std::size_t i = 0; i < flights.size(); ++i) title += (i == 0 ? " " : ", ") + flights[i].name;
+  const std::string note = "Time is 0 at take-off. Errors count from take-off to landing.";
+  const std::string page = pages::flight_page(title, note, flights);
+  runtime::write_atomically(options.page, page);
+  std::printf("report: wrote %s, %zu %s, %.1f MB\n", options.page.c_str(), flights.size(),
+              flights.size() == 1 ? "flight" : "flights", static_cast<double>(page.size()) / 1e6);
   return kDone;
 }
 

@@ -132,16 +132,15 @@ std::string horizon_table(const FlightIdentification& found) {
 }
 
 // A row with a text, numbers and a unit.
-plot::Page::Row row_of(plot::Page::Row texts, std::initializer_list<double> numbers,
-                       const std::string& unit) {
+pages::Row row_of(pages::Row texts, std::initializer_list<double> numbers, const std::string& unit) {
   for (const double number : numbers) texts.push_back(fmt::format("{:.4g}", number));
   texts.push_back(unit_cell(unit));
   return texts;
 }
 
-void add_comparison(plot::Page& page, const FlightIdentification& found) {
+void add_comparison(pages::Page& page, const FlightIdentification& found) {
   if (found.comparisons.empty()) return;
-  std::vector<plot::Page::Row> rows;
+  std::vector<pages::Row> rows;
   for (const FileComparison& row : found.comparisons) {
     const ParameterEstimate& e = row.identified;
     rows.push_back(row_of({e.parameter, e.symbol}, {e.value, e.half_width, row.file, row.ratio()}, e.unit));
@@ -150,8 +149,8 @@ void add_comparison(plot::Page& page, const FlightIdentification& found) {
   page.table({"parameter", "symbol", "identified", "\u00b1 (95 %)", "file", "ratio", "unit"}, rows);
 }
 
-void add_prediction(plot::Page& page, const FlightIdentification& found) {
-  std::vector<plot::Page::Row> rows;
+void add_prediction(pages::Page& page, const FlightIdentification& found) {
+  std::vector<pages::Row> rows;
   for (const PredictionError& e : found.errors)
     rows.push_back(row_of({e.quantity},
                           {e.one_step, e.persistence_one_step, e.half_second, e.persistence_half_second},
@@ -269,9 +268,9 @@ std::string flight_identification_json(const FlightIdentificationReport& report)
   return out.dump();
 }
 
-plot::Page flight_identification_page(const FlightIdentificationReport& report) {
+pages::Page flight_identification_page(const FlightIdentificationReport& report) {
   const FlightIdentification& found = report.found;
-  plot::Page page("Identification of " + found.vehicle.name + " from flights");
+  pages::Page page("Identification of " + found.vehicle.name + " from flights");
   std::string logs;
   for (const std::string& log : report.logs) logs += " " + log;
   page.paragraph(

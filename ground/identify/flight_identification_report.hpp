@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "swiftlet/ground/plot/page.hpp"
+#include "swiftlet/ground/pages/page.hpp"
 #include "swiftlet/identification/flight/flight.hpp"
 
 namespace swiftlet::ground {
@@ -30,6 +30,6 @@ std::string flight_identification_table(const FlightIdentificationReport& report
 std::string flight_identification_json(const FlightIdentificationReport& report);
 
 // The same, and figures of predictions and measurements.
-plot::Page flight_identification_page(const FlightIdentificationReport& report);
+pages::Page flight_identification_page(const FlightIdentificationReport& report);
 
 }  // namespace swiftlet::ground

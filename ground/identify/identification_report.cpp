@@ -107,12 +107,12 @@ std::vector<int> outlier_lines(const IdentificationReport& report, const Part& p
   return lines;
 }
 
-void add_outliers(plot::Page& page, const IdentificationReport& report, const Part& part) {
+void add_outliers(pages::Page& page, const IdentificationReport& report, const Part& part) {
   const std::vector<int> lines = outlier_lines(report, part);
   if (lines.empty()) return;
   page.add(fmt::format("<details{}><summary>{} of {} rows are outliers and are left out</summary>\n",
                        lines.size() <= kFewOutliers ? " open" : "", lines.size(), part.fit->measured.size()));
-  std::vector<plot::Page::Row> rows;
+  std::vector<pages::Row> rows;
   for (std::size_t i = 0; i < std::min(lines.size(), kMostOutliersShown); ++i) {
     const std::size_t row = part.fit->outliers[i];
     rows.push_back({std::to_string(lines[i]), fmt::format("{:.5g}", part.fit->measured[row]),
@@ -124,7 +124,7 @@ void add_outliers(plot::Page& page, const IdentificationReport& report, const Pa
   page.add("</details>\n");
 }
 
-void add_part(plot::Page& page, const IdentificationReport& report, const Part& part) {
+void add_part(pages::Page& page, const IdentificationReport& report, const Part& part) {
   const Experiment& fit = *part.fit;
   page.heading(part.title);
   page.paragraph(
@@ -139,14 +139,14 @@ void add_part(plot::Page& page, const IdentificationReport& report, const Part& 
   page.figures(part.figures);
 }
 
-void add_summary(plot::Page& page, const IdentificationReport& report) {
+void add_summary(pages::Page& page, const IdentificationReport& report) {
   page.paragraph(
       "95 % intervals by Student's t, from the spread of the readings. Parameters that are not listed were "
       "not "
       "measured and are those of the base vehicle " +
           report.base_vehicle + ".",
       "quiet");
-  std::vector<plot::Page::Row> rows;
+  std::vector<pages::Row> rows;
   for (const plant::ParameterUncertainty& p : report.found.uncertainty.parameters)
     rows.push_back({p.parameter, fmt::format("{:.5g}", 0.5 * (p.low + p.high)),
                     fmt::format("{:.5g} to {:.5g}", p.low, p.high), report.found.sources.at(p.parameter)});
@@ -156,8 +156,8 @@ void add_summary(plot::Page& page, const IdentificationReport& report) {
 
 }  // namespace
 
-plot::Page identification_page(const IdentificationReport& report) {
-  plot::Page page("Identification of " + report.found.vehicle.name);
+pages::Page identification_page(const IdentificationReport& report) {
+  pages::Page page("Identification of " + report.found.vehicle.name);
   page.paragraph("from the bench data in " + report.bench_folder +
                      "; equations and figures are numbered as in Phang, Li, Wang, Chen, Lee, Explicit Model "
                      "Identification and Control of a Micro Aerial Vehicle, ICUAS 2014",

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "swiftlet/ground/identify/bench_files.hpp"
-#include "swiftlet/ground/plot/page.hpp"
+#include "swiftlet/ground/pages/page.hpp"
 #include "swiftlet/identification/bench/bench.hpp"
 
 namespace swiftlet::ground {
@@ -19,7 +19,7 @@ struct IdentificationReport {
 
 // The paper's Figs. 2, 3, 4, 6 and 7 from these data, fits, intervals,
 // residuals, outliers by line, findings and warnings.
-plot::Page identification_page(const IdentificationReport& report);
+pages::Page identification_page(const IdentificationReport& report);
 
 // A row for each parameter, then outliers, findings and warnings. Ends in a newline.
 std::string identification_table(const IdentificationReport& report);

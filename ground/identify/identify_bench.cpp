@@ -9,7 +9,6 @@
 #include "swiftlet/ground/identify/bench_files.hpp"
 #include "swiftlet/ground/identify/identification_report.hpp"
 #include "swiftlet/ground/identify/identify_actions.hpp"
-#include "swiftlet/ground/identify/report_page.hpp"
 #include "swiftlet/ground/terminal/progress_line.hpp"
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/config_error.hpp"
@@ -93,7 +92,7 @@ int identify_bench(const IdentifyBenchOptions& options) {
   const std::string text =
       runtime::vehicle_text(report.found.vehicle, sources, report.found.uncertainty, comment);
   runtime::parse_vehicle(text, options.out);
-  if (!options.report.empty()) write_page(identification_page(report), options.report);
+  if (!options.report.empty()) runtime::write_atomically(options.report, identification_page(report).html());
   runtime::write_atomically(options.out, text);
 
   if (options.json) {

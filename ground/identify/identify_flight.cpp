@@ -11,7 +11,6 @@
 #include "swiftlet/ground/identify/flight_identification_report.hpp"
 #include "swiftlet/ground/identify/identify_actions.hpp"
 #include "swiftlet/ground/identify/identify_ulog.hpp"
-#include "swiftlet/ground/identify/report_page.hpp"
 #include "swiftlet/ground/terminal/progress_line.hpp"
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/configuration.hpp"
@@ -92,7 +91,8 @@ int identify_flight(IdentifyFlightOptions options) {
   } else {
     std::printf("%s", flight_identification_table(report).c_str());
   }
-  if (!options.report.empty()) write_page(flight_identification_page(report), options.report);
+  if (!options.report.empty())
+    runtime::write_atomically(options.report, flight_identification_page(report).html());
   if (!report.found.converged)
     throw std::runtime_error(options.out.empty() ? "the fit did not converge within its bounds"
                                                  : "the fit did not converge within its bounds: " +

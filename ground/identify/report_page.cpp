@@ -1,13 +1,10 @@
 #include "swiftlet/ground/identify/report_page.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include <boost/algorithm/string/replace.hpp>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
-
-#include "swiftlet/io/atomic_write.hpp"
 
 namespace swiftlet::ground {
 
@@ -27,20 +24,14 @@ nlohmann::ordered_json json_of(const identification::ParameterEstimate& estimate
           {"unit", estimate.unit}};
 }
 
-void add_estimates(plot::Page& page, const std::vector<identification::ParameterEstimate>& estimates) {
-  std::vector<plot::Page::Row> rows;
+void add_estimates(pages::Page& page, const std::vector<identification::ParameterEstimate>& estimates) {
+  std::vector<pages::Row> rows;
   for (const identification::ParameterEstimate& e : estimates) {
     const double percent = e.value != 0.0 ? 100.0 * e.half_width / std::abs(e.value) : 0.0;
     rows.push_back({e.parameter, e.symbol, fmt::format("{:.5g} \u00b1 {:.2g}", e.value, e.half_width),
                     unit_cell(e.unit), fmt::format("\u00b1 {:.2g} %", percent)});
   }
   page.table({"parameter", "", "estimate, 95 % interval", "unit", "interval"}, rows);
-}
-
-void write_page(const plot::Page& page, const std::string& file) {
-  const plot::Page::Html html = page.html();
-  runtime::write_atomically(file, html.text);
-  if (!html.fault.empty()) std::fprintf(stderr, "swiftlet: %s: %s\n", file.c_str(), html.fault.c_str());
 }
 
 }  // namespace swiftlet::ground

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "swiftlet/ground/plot/page.hpp"
+#include "swiftlet/ground/pages/page.hpp"
 #include "swiftlet/identification/fitting/estimate.hpp"
 
 namespace swiftlet::ground {
@@ -21,10 +21,6 @@ std::string unit_cell(const std::string& unit);
 nlohmann::ordered_json json_of(const identification::ParameterEstimate& estimate);
 
 // Adds a table with a row for each estimate.
-void add_estimates(plot::Page& page, const std::vector<identification::ParameterEstimate>& estimates);
-
-// Writes the page. Prints the reason if its figures cannot be drawn. Throws std::runtime_error if the file
-// cannot be written.
-void write_page(const plot::Page& page, const std::string& file);
+void add_estimates(pages::Page& page, const std::vector<identification::ParameterEstimate>& estimates);
 
 }  // namespace swiftlet::ground

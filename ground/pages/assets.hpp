@@ -8,6 +8,7 @@ namespace swiftlet::pages {
 
 std::string_view style();           // CSS
 std::string_view chart_scripts();   // dygraphs, and charts on it
-std::string_view flight_scripts();  // three.js, and the page of flights
+std::string_view figure_scripts();  // figures of figure.hpp; after the scripts of charts
+std::string_view flight_scripts();  // three.js, and the page of flights; likewise
 
 }  // namespace swiftlet::pages

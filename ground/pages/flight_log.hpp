@@ -1,11 +1,12 @@
-// A recorded flight of one vehicle as signals and events over time, for the page of flights.
+// A flight of one vehicle as signals and events over time: what the page of flights shows.
 #pragma once
 
+#include <array>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
-
-#include "swiftlet/io/mcap/reader.hpp"
 
 namespace swiftlet::pages {
 
@@ -27,23 +28,26 @@ struct ModeChange {
   std::string mode;
 };
 
-// Times are 0 at the take-off, or at the first message if there is none.
+// Corners of a box, NED, m.
+struct Fence {
+  std::array<double, 3> min_ned{};
+  std::array<double, 3> max_ned{};
+};
+
+// Times are 0 at the take-off, or at the start if there is none.
 struct FlightLog {
   std::string name;        // of the file, with the vehicle if there are several
   std::string vehicle;     // "kl1"
   bool has_truth = false;  // the path is the ground truth, else the estimate
-  double start_s = 0.0;    // of the first message
+  double start_s = 0.0;
   double end_s = 0.0;
   double wall_start_s = 0.0;  // s since 1970 at time 0; 0 for simulated time
   // By the names that assets/flight_panels.js shows: path, reference, error, rates, ...
   std::map<std::string, SignalTable> tables;
+  std::optional<Fence> fence;
   std::vector<ModeChange> modes;
   std::vector<FlightEvent> events;                           // ascending in time
   std::vector<std::pair<std::string, std::string>> summary;  // label and value
 };
-
-// One for each vehicle in the file. name: for the reader. Throws ConfigError for a damaged file, and for one without
-// any estimate or ground truth.
-std::vector<FlightLog> flights_in(const mcap::Reader& file, const std::string& name);
 
 }  // namespace swiftlet::pages

@@ -33,7 +33,7 @@ constexpr const char* kControls = R"(<div class="controls">
 )";
 
 constexpr const char* kHint =
-    "Time is 0 at take-off. Errors count from take-off to landing. Drag in a chart to zoom all charts, with "
+    "Drag in a chart to zoom all charts, with "
     "Shift to move, double-click for the whole flight. "
     "Drag in the picture to turn it, Ctrl and wheel to zoom. Dashed lines are references, dotted ones bounds "
     "and limits; "
@@ -55,6 +55,11 @@ class Columns {
   std::string elements_;
 };
 
+Json fence_of(const FlightLog& flight) {
+  if (!flight.fence) return nullptr;
+  return {{"min", flight.fence->min_ned}, {"max", flight.fence->max_ned}};
+}
+
 Json json_of(const FlightLog& flight, Columns& columns) {
   Json tables = Json::object();
   for (const auto& [name, table] : flight.tables) {
@@ -70,8 +75,9 @@ Json json_of(const FlightLog& flight, Columns& columns) {
   Json events = Json::array();
   for (const FlightEvent& event : flight.events)
     events.push_back({event.time_s, event.kind, event.text, event.warning});
-  return {{"name", flight.name},         {"start", flight.start_s},   {"end", flight.end_s},
-          {"tables", std::move(tables)}, {"modes", std::move(modes)}, {"events", std::move(events)}};
+  return {{"name", flight.name},        {"start", flight.start_s},     {"end", flight.end_s},
+          {"fence", fence_of(flight)},  {"tables", std::move(tables)}, {"modes", std::move(modes)},
+          {"events", std::move(events)}};
 }
 
 std::string summary_table(const std::vector<FlightLog>& flights) {
@@ -120,24 +126,18 @@ std::string event_table(const std::vector<FlightLog>& flights) {
   return out + "</table></div>\n";
 }
 
-std::string title_of(const std::vector<FlightLog>& flights) {
-  std::string title = flights.size() == 1 ? "Flight " : "Flights ";
-  for (std::size_t i = 0; i < flights.size(); ++i) title += (i == 0 ? "" : ", ") + flights[i].name;
-  return title;
-}
-
 }  // namespace
 
-std::string flight_page(const std::vector<FlightLog>& flights) {
+std::string flight_page(const std::string& title, const std::string& note,
+                        const std::vector<FlightLog>& flights) {
   Columns columns;
   Json data = Json::array();
   for (const FlightLog& flight : flights) data.push_back(json_of(flight, columns));
   // In a script element only '<' could end the text.
   const std::string json = boost::algorithm::replace_all_copy(data.dump(), "<", "\\u003c");
-  const std::string title = title_of(flights);
   const std::string body = element("h1", title) + "\n<div class=\"top\">" + summary_table(flights) +
                            "<div id=\"scene\"></div></div>\n" + kControls +
-                           "<div id=\"timeline\"></div>\n<p class=\"quiet\">" + kHint +
+                           "<div id=\"timeline\"></div>\n<p class=\"quiet\">" + escaped(note) + " " + kHint +
                            "</p>\n<div id=\"charts\"></div>\n" + element("h2", "Events") +
                            event_table(flights) + data_element("flights", json) + columns.elements();
   return document(title, body, {chart_scripts(), flight_scripts()});

@@ -15,7 +15,6 @@
 #include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 
-#include "swiftlet/ground/plot/page.hpp"
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/runtime/child_process.hpp"
@@ -197,18 +196,15 @@ void add_panel(std::string& script, const Panel& panel, std::size_t number) {
   script += (panel.in_space ? "splot" : "plot") + (plots.empty() ? " NaN notitle" : plots) + "\n";
 }
 
-// True if the file has the last element of a PNG or SVG picture. gnuplot succeeds where it can write only the
-// beginning of one.
+// True if the file has the last element of a PNG picture. gnuplot succeeds where it can write only the beginning of
+// one.
 bool is_whole(const std::string& picture) {
   constexpr std::string_view kLastPngChunk("\0\0\0\0IEND\xae\x42\x60\x82", 12);
-  const std::size_t at = picture.find_last_not_of("\r\n ");
-  const std::string_view text = std::string_view(picture).substr(0, at == std::string::npos ? 0 : at + 1);
-  return ends_with(picture, kLastPngChunk) || ends_with(text, "</svg>");
+  return ends_with(picture, kLastPngChunk);
 }
 
-// Runs the script in a temporary folder. Returns the files 0, 1, ... that it writes there. Throws
-// std::runtime_error.
-std::vector<std::string> run_gnuplot(const std::string& script, std::size_t files) {
+// Runs the script in a temporary folder. Returns the file 0 that it writes there. Throws std::runtime_error.
+std::string run_gnuplot(const std::string& script) {
   const fs::path gnuplot = ground::find_program("gnuplot");
   if (gnuplot.empty()) throw std::runtime_error(kNotInstalled);
   std::string name = fs::temp_directory_path() / "swiftlet-plot.XXXXXX";
@@ -225,25 +221,20 @@ std::vector<std::string> run_gnuplot(const std::string& script, std::size_t file
   if (!end) throw std::runtime_error(no_picture + fmt::format("took longer than {} s", kLongest.count()));
   if (end->by_signal || end->code != 0)
     throw std::runtime_error(no_picture + end->to_string() + ": " + process.last_log_line());
-  std::vector<std::string> out;
-  for (std::size_t i = 0; i < files; ++i) {
-    out.push_back(runtime::read_text_file(folder / std::to_string(i)));
-    if (!is_whole(out.back()))
-      throw std::runtime_error(no_picture + "wrote a truncated file; is " +
-                               fs::temp_directory_path().string() + " full?");
-  }
-  return out;
+  std::string picture = runtime::read_text_file(folder / "0");
+  if (!is_whole(picture))
+    throw std::runtime_error(no_picture + "wrote a truncated file; is " + fs::temp_directory_path().string() +
+                             " full?");
+  return picture;
 }
 
 }  // namespace
 
-std::string gnuplot_script(const Figure& figure, Format format, const std::string& output) {
-  const bool png = format == Format::kPng;
+std::string gnuplot_script(const Figure& figure, const std::string& output) {
   std::string script = fmt::format(
-      "set encoding utf8\nset terminal {} noenhanced size {},{}\nset output {}\nset multiplot {}\n",
-      png ? "pngcairo font 'DejaVu Sans,12'" : "svg dynamic font 'sans-serif,13' background '#ffffff'",
-      figure.width, figure.height, quoted(output),
-      png ? "title " + quoted(figure.title) + " font ',15'" : "");
+      "set encoding utf8\nset terminal pngcairo font 'DejaVu Sans,12' noenhanced size {},{}\nset output {}\n"
+      "set multiplot title {} font ',15'\n",
+      figure.width, figure.height, quoted(output), quoted(figure.title));
   for (std::size_t i = 0; i < figure.panels.size(); ++i) add_panel(script, figure.panels[i], i + 1);
   return script + "unset multiplot\nunset output\n";
 }
@@ -252,9 +243,9 @@ std::string draw_png(const Figure& figure, const fs::path& png, bool with_script
   const fs::path script = fs::path(png).replace_extension(".gp");
   try {
     if (with_script)
-      runtime::write_atomically(script, "# Run gnuplot on this file, in its folder.\n" +
-                                            gnuplot_script(figure, Format::kPng, png.filename()));
-    runtime::write_atomically(png, run_gnuplot(gnuplot_script(figure, Format::kPng, "0"), 1).front());
+      runtime::write_atomically(
+          script, "# Run gnuplot on this file, in its folder.\n" + gnuplot_script(figure, png.filename()));
+    runtime::write_atomically(png, run_gnuplot(gnuplot_script(figure, "0")));
     return {};
   } catch (const std::exception& fault) {
     const bool hint = with_script && fault.what() == std::string_view(kNotInstalled);
@@ -266,24 +257,6 @@ std::string draw_png_if_installed(const Figure& figure, const fs::path& png) {
   std::string fault = draw_png(figure, png, true);
   if (!fault.empty() && !ground::find_program("gnuplot").empty()) throw std::runtime_error(fault);
   return fault;
-}
-
-Drawings draw_svg(const std::vector<Figure>& figures) {
-  constexpr std::string_view kEndOfHead = "</desc>";
-  Drawings out;
-  std::string script;
-  for (std::size_t i = 0; i < figures.size(); ++i)
-    script += gnuplot_script(figures[i], Format::kSvg, std::to_string(i));
-  try {
-    out.svg = run_gnuplot(script, figures.size());
-  } catch (const std::exception& fault) {
-    out.fault = fault.what();
-  }
-  for (std::size_t i = 0; i < out.svg.size(); ++i)  // the prolog, namespaces and size are those of a file
-    out.svg[i] = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\"><title>{}</title>{}", figures[i].width,
-                             figures[i].height, html_escaped(figures[i].title),
-                             out.svg[i].substr(out.svg[i].find(kEndOfHead) + kEndOfHead.size()));
-  return out;
 }
 
 }  // namespace swiftlet::plot

@@ -3,17 +3,14 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "swiftlet/ground/plot/figure.hpp"
 
 namespace swiftlet::plot {
 
-enum class Format { kPng, kSvg };
-
-// A gnuplot script with the data of the figure, which draws it to the file `output`. Texts of the figure are
+// A gnuplot script with the data of the figure, which draws it to the PNG file `output`. Texts of the figure are
 // drawn as they are: gnuplot interprets nothing in them.
-std::string gnuplot_script(const Figure& figure, Format format, const std::string& output);
+std::string gnuplot_script(const Figure& figure, const std::string& output);
 
 // Draws the figure to a PNG file. Returns an empty string, or one sentence with the reason why there is no
 // picture; the file is then as before. with_script: also writes NAME.gp beside NAME.png, to draw it again.
@@ -22,12 +19,5 @@ std::string draw_png(const Figure& figure, const std::filesystem::path& png, boo
 // As draw_png() with the script. Returns a sentence if gnuplot is not installed. Throws std::runtime_error if
 // it is, and there is no whole picture.
 std::string draw_png_if_installed(const Figure& figure, const std::filesystem::path& png);
-
-struct Drawings {
-  std::vector<std::string> svg;  // <svg> elements for an HTML page, in the order of the figures
-  std::string fault;             // why there are none; empty if there are
-};
-
-Drawings draw_svg(const std::vector<Figure>& figures);
 
 }  // namespace swiftlet::plot

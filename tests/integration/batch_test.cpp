@@ -28,6 +28,11 @@ const std::string kHighMass =
     "parameters:\n"
     "  vehicle.mass: {distribution: uniform, min: 0.95, max: 1.8, unit: nominal, source: estimate}\n";
 
+std::string content(const fs::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 class SimBatch : public testing::Test {
  protected:
   std::vector<std::string> words(const std::string& command, const std::string& dispersion,
@@ -55,6 +60,8 @@ TEST_F(SimBatch, WritesFilesAndReportsFigures) {
   EXPECT_NE(result.errors.find("4/4 runs, 0 failed"), std::string::npos) << "no progress: " << result.errors;
   EXPECT_TRUE(fs::exists(out() / "batch.csv"));
   EXPECT_GT(fs::file_size(out() / "batch.png"), 20'000U);
+  EXPECT_NE(content(out() / "batch.html").find("<figcaption>phase margin (deg)</figcaption>"),
+            std::string::npos);
 }
 
 TEST_F(SimBatch, RepeatsAFailedRunExactly) {
@@ -83,11 +90,6 @@ TEST_F(SimBatch, RepeatsAFailedRunExactly) {
   EXPECT_NE(table.find(figures), std::string::npos) << figures << " is not in\n" << table;
 }
 
-std::string content(const fs::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 // Some of the runs fail, and some parameters are sampled again, so that all that is merged is in the result.
 TEST_F(SimBatch, MergedShardsAreTheBatchByteForByte) {
   const std::vector<std::string> seven = {"--runs", "7", "--seed", "11", "--json"};
@@ -108,6 +110,7 @@ TEST_F(SimBatch, MergedShardsAreTheBatchByteForByte) {
   EXPECT_EQ(merged.exit_code, 1) << merged.errors;
   EXPECT_EQ(content(folder_.path() / "merged" / "batch.csv"), content(out() / "batch.csv"));
   EXPECT_EQ(content(folder_.path() / "merged" / "batch.png"), content(out() / "batch.png"));
+  EXPECT_EQ(content(folder_.path() / "merged" / "batch.html"), content(out() / "batch.html"));
   const auto without_time = [](const std::string& text) {
     json report = json::parse(text);
     for (const char* of_this_run : {"wall_s", "out_dir"}) EXPECT_EQ(report.erase(of_this_run), 1U);

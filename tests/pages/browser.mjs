@@ -33,3 +33,21 @@ export async function withPage(browser, file, {width, scheme = 'light'}, look) {
 
 // Waits until every chart on the screen shows the range of the axis.
 export const settled = (page) => page.waitForFunction(() => swiftlet.charts.every((chart) => !chart.visible || !chart.stale));
+
+// Light and dark, on a wide screen and on a telephone. Writes pictures whose names begin with `pictures`.
+export async function checkLook(browser, file, pictures) {
+  const papers = new Set();
+  for (const scheme of ['light', 'dark']) {
+    for (const width of [1280, 390]) {
+      await withPage(browser, file, {width, scheme}, async (page) => {
+        await settled(page);
+        await page.screenshot({path: `${pictures}-${scheme}-${width}.png`});
+        const [wide, paper] = await page.evaluate(() =>
+          [document.documentElement.scrollWidth, getComputedStyle(document.body).backgroundColor]);
+        require(wide <= width, `${file}: ${wide} px wide on a screen of ${width} px`);
+        papers.add(paper);
+      });
+    }
+  }
+  require(papers.size === 2, `${file}: light and dark look the same`);
+}

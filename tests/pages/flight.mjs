@@ -1,6 +1,6 @@
 // Uses the page of flights in a browser. usage: flight.mjs PAGE OTHER_PAGE PICTURES. PAGE is of one flight, OTHER_PAGE of two.
 // Prints what it found as JSON.
-import {launch, require, settled, withPage} from './browser.mjs';
+import {checkLook, launch, require, settled, withPage} from './browser.mjs';
 
 const [one, two, pictures] = process.argv.slice(2);
 const found = {};
@@ -79,23 +79,6 @@ async function checkTexts(page) {
     rows.map((row) => [...row.children].map((cell) => cell.textContent))));
 }
 
-async function checkLook(browser, file, name) {
-  const papers = new Set();
-  for (const scheme of ['light', 'dark']) {
-    for (const width of [1280, 390]) {
-      await withPage(browser, file, {width, scheme}, async (page) => {
-        await settled(page);
-        await page.screenshot({path: `${pictures}/${name}-${scheme}-${width}.png`});
-        const [wide, paper] = await page.evaluate(() =>
-          [document.documentElement.scrollWidth, getComputedStyle(document.body).backgroundColor]);
-        require(wide <= width, `${name}: ${wide} px wide on a screen of ${width} px`);
-        papers.add(paper);
-      });
-    }
-  }
-  require(papers.size === 2, `${name}: light and dark look the same`);
-}
-
 const browser = await launch();
 try {
   await withPage(browser, one, {width: 1280}, async (page, ms) => {
@@ -109,7 +92,7 @@ try {
     found.overlaid = await page.evaluate(() => swiftlet.charts[0].spec.series.map((series) => series.label));
     found.vehicles = await page.$$eval('#timeline .timeline', (rows) => rows.length);
   });
-  await checkLook(browser, one, 'flight');
+  await checkLook(browser, one, `${pictures}/flight`);
 } finally {
   await browser.close();
 }

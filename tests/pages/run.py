@@ -61,12 +61,33 @@ def check_flights(swiftlet, work):
           "light and dark, 1280 and 390 px")
 
 
+def check_figures(swiftlet, work):
+    shutil.rmtree(work / "bench", ignore_errors=True)
+    run(swiftlet, "identify", "simulate", "--vehicle", "kaylion", "--noise", "0.01", "--outliers", "0.04", "--seed", "3", "--out", "bench",
+        cwd=work)
+    run(swiftlet, "identify", "bench", "--out", "mine.yaml", "--report", "bench.html", cwd=work)
+    run(swiftlet, "sim", "batch", "hop.yaml", "--runs", "30", "--dispersion", "kaylion", "--out", "batch", "--replace", cwd=work)
+    found = json.loads(run("node", work / "figures.mjs", work, work / "bench.html", work / "batch" / "batch.html", cwd=work))
+    require(sum(caption.startswith("Fig. ") for caption in found["bench.html"]) == 5, f"figures: {found['bench.html']}")
+    require("phase margin (deg)" in found["batch.html"], f"figures: {found['batch.html']}")
+    print(f"pages: {sum(map(len, found.values()))} figures of an identification and a batch")
+
+
+def check_mission(swiftlet, work):
+    run(swiftlet, "mission", "plot", "hop.yaml", "-o", "mission.html", cwd=work)
+    found = json.loads(run("node", work / "mission.mjs", work / "mission.html", work, cwd=work))
+    require({"Position", "Speed", "Acceleration", "Tilt of the thrust"} <= set(found["charts"]), f"charts: {found['charts']}")
+    require(found["speed"] == ["speed", "speed limit"] and found["fence"], f"limits: {found}")
+    print("pages: a mission with its limits and fence")
+
+
 def main(programs, work):
     work.mkdir(parents=True, exist_ok=True)
     for file in HERE.glob("*.*js*"):
         shutil.copy(file, work)
     run("npm", "ci", "--omit=dev", "--no-audit", "--no-fund", "--ignore-scripts", cwd=work)
-    check_flights(programs / "swiftlet", work)
+    for check in (check_flights, check_mission, check_figures):
+        check(programs / "swiftlet", work)
 
 
 if __name__ == "__main__":

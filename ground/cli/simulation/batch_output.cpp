@@ -8,14 +8,16 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/ground/batch/batch_page.hpp"
 #include "swiftlet/ground/batch/batch_plot.hpp"
 #include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/io/atomic_write.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::uintmax_t kPictureBytes = 1'000'000;
-constexpr std::uintmax_t kRunBytes = 1'500;  // a row of batch.csv and its part of batch.gp
+constexpr std::uintmax_t kPictureBytes = 1'500'000;  // with the libraries of the page
+constexpr std::uintmax_t kRunBytes = 1'500;  // a row of batch.csv and its part of batch.gp and batch.html
 
 // Returns a sentence if a file cannot be written whole.
 std::string write_files(const std::filesystem::path& folder, const BatchReport& report,
@@ -23,6 +25,7 @@ std::string write_files(const std::filesystem::path& folder, const BatchReport& 
   std::string fault;
   try {
     write_batch_csv(folder / "batch.csv", report);
+    runtime::write_atomically(folder / "batch.html", batch_page(report));
   } catch (const std::exception& error) {
     fault = error.what();
   }

@@ -117,9 +117,10 @@ Command add_sim_batch_command(runtime::CommandLine sim, const std::string& versi
          "fly only part I of N of the runs, from 1; `swiftlet sim merge` joins the parts, which may be "
          "flown on several computers")
       .type_name("I/N");
-  const runtime::Option out = app.add_option("--out", flight.record,
-                                             "new folder for batch.csv and batch.png, or for shard.json of a "
-                                             "shard; default: flights/<date>-<mission>");
+  const runtime::Option out =
+      app.add_option("--out", flight.record,
+                     "new folder for batch.csv, batch.html and batch.png, or for shard.json of a "
+                     "shard; default: flights/<date>-<mission>");
   app.add_flag("--replace", flight.replace, "delete the record that the folder of --out holds first")
       .needs(out);
   app.add_flag("--json", flight.json, "print one JSON object instead of the table");

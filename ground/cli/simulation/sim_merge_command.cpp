@@ -43,9 +43,10 @@ Command add_sim_merge_command(runtime::CommandLine sim) {
                  "folders that `swiftlet sim batch --shard` wrote, all of one batch")
       .type_name("FOLDER")
       .required();
-  const runtime::Option out = app.add_option("--out", options->out, "new folder for batch.csv and batch.png")
-                                  .type_name("FOLDER")
-                                  .required();
+  const runtime::Option out =
+      app.add_option("--out", options->out, "new folder for batch.csv, batch.html and batch.png")
+          .type_name("FOLDER")
+          .required();
   app.add_flag("--replace", options->replace, "delete the record that the folder of --out holds first")
       .needs(out);
   app.add_flag("--json", options->json, "print one JSON object instead of the table");

@@ -22,6 +22,7 @@ swiftlet.columns = (() => {
     return bytes.buffer;
   }
 
+  // Resolves to the numbers of a column.
   async function numbers(id) {
     return new Float32Array(words(await inflated(id)));
   }
@@ -62,5 +63,5 @@ swiftlet.columns = (() => {
     return low - 1;
   }
 
-  return {signal, indexAt};
+  return {numbers, signal, indexAt};
 })();

@@ -39,7 +39,7 @@ swiftlet.flightPage = (() => {
     };
     const position = ['north', 'east', 'down'];
     const [t, north, east, down, ...q] = await columns('path', [...position, 'q[0]', 'q[1]', 'q[2]', 'q[3]']);
-    const out = {name: flight.name, colour, path: {t, north, east, down, q}};
+    const out = {name: flight.name, colour, path: {t, north, east, down, q}, fence: flight.fence};
     if (has(flight, 'reference', 'north')) {
       const [rt, rn, re, rd] = await columns('reference', position);
       out.reference = {t: rt, north: rn, east: re, down: rd};

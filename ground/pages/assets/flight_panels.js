@@ -28,6 +28,18 @@ swiftlet.flightPanels = (() => {
       parts: parts(axes, (axis) => [['path', `v_${axis}`, 'value'], ['reference', `v_${axis}`, 'reference', 'reference']]),
     },
     {
+      group: 'Position', title: 'Speed', unit: 'm/s',
+      parts: single('speed', ['path', 'speed', 'value'], ['limits', 'speed', 'limit', 'limit']),
+    },
+    {
+      group: 'Position', title: 'Acceleration', unit: 'm/s²',
+      parts: single('acceleration', ['path', 'acceleration', 'value'], ['limits', 'acceleration', 'limit', 'limit']),
+    },
+    {
+      group: 'Position', title: 'Tilt of the thrust', unit: '°',
+      parts: single('tilt', ['path', 'tilt', 'value'], ['limits', 'tilt', 'limit', 'limit']),
+    },
+    {
       group: 'Attitude', title: 'Attitude', unit: '°',
       parts: parts(['roll', 'pitch', 'yaw'], (angle) => [['path', angle, 'value'], ['reference', angle, 'reference', 'setpoint']]),
     },

@@ -2,7 +2,7 @@
 'use strict';
 
 swiftlet.Scene = class {
-  // flights: [{name, colour, path: {t, north, east, down, q: [w, x, y, z]}, reference}], columns of numbers.
+  // flights: [{name, colour, path: {t, north, east, down, q: [w, x, y, z]}, reference, fence}], columns of numbers.
   constructor(parent, flights, axis) {
     this.flights = flights;
     this.axis = axis;
@@ -72,8 +72,9 @@ swiftlet.Scene = class {
     this.vehicles = this.flights.map((flight) => this.addFlight(flight));
   }
 
-  addFlight({colour, path, reference}) {
+  addFlight({colour, path, reference, fence}) {
     const main = swiftlet.theme.series(colour);
+    if (fence) this.scene.add(this.fence(fence));
     this.scene.add(this.line(path, main));
     if (reference) this.scene.add(this.line(reference, swiftlet.theme.colour('muted')));
     const vehicle = this.vehicle(main);
@@ -88,6 +89,11 @@ swiftlet.Scene = class {
       if (!Number.isNaN(north[i])) points.push(swiftlet.Scene.fromNed(north[i], east[i], down[i]));
     }
     return new THREE.Line(new THREE.BufferGeometry().setFromPoints(points), new THREE.LineBasicMaterial({color: colour}));
+  }
+
+  fence({min, max}) {
+    const box = new THREE.Box3().setFromPoints([swiftlet.Scene.fromNed(...min), swiftlet.Scene.fromNed(...max)]);
+    return new THREE.Box3Helper(box, swiftlet.theme.colour('limit'));
   }
 
   // Arms and rotors, the front ones in the limits' colour; drawn larger than it is if the path is long.

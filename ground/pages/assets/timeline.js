@@ -11,7 +11,7 @@ swiftlet.Timeline = class {
       const row = swiftlet.element('div', {class: 'timeline'});
       flight.modes.forEach(([time, mode], i) => {
         const end = i + 1 < flight.modes.length ? flight.modes[i + 1][0] : flight.end;
-        const band = swiftlet.element('span', {class: 'band', title: mode}, mode);
+        const band = swiftlet.element('span', {class: 'mode', title: mode}, mode);
         band.style.setProperty('--band', `var(--mode-${mode.replace(/ /g, '-')}, var(--grid))`);
         row.append(band);
         this.marks.push({element: band, time, end});

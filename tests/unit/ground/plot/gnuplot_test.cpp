@@ -12,7 +12,6 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/ground/plot/page.hpp"
 #include "swiftlet/services/runtime/child_process.hpp"
 #include "tests/support/program_path.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -38,10 +37,27 @@ Figure parabola(double x_scale, double y_scale) {
   return with(Style::kDots, points);
 }
 
+std::string text_of(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+// The picture as SVG, which holds places and texts that a test can read.
 std::string svg(const Figure& figure) {
-  const Drawings drawings = draw_svg({figure});
-  EXPECT_EQ(drawings.fault, "");
-  return drawings.svg.empty() ? "" : drawings.svg[0];
+  const tests::TemporaryFolder folder;
+  std::string script = gnuplot_script(figure, "picture.svg");
+  const std::size_t from = script.find("set terminal");
+  const std::size_t to = script.find("set multiplot");
+  script.replace(from, script.find('\n', to) - from,
+                 "set terminal svg dynamic font 'sans-serif,13' noenhanced size " +
+                     std::to_string(figure.width) + "," + std::to_string(figure.height) +
+                     "\nset output 'picture.svg'\nset multiplot");
+  folder.write("script", script);
+  ground::ChildProcess process(
+      {"gnuplot", ground::find_program("gnuplot"), {"script"}, folder.path() / "log", folder.path()});
+  EXPECT_TRUE(process.wait(std::chrono::seconds(30)));
+  return text_of(folder.path() / "picture.svg");
 }
 
 // Where dots and texts are, px.
@@ -57,12 +73,6 @@ std::vector<Point> dots(const std::string& drawn) {
 }
 std::vector<Point> texts(const std::string& drawn, const std::string& text) {
   return places(drawn, "translate\\(([0-9.]+),([0-9.]+)\\)[^>]*>\\s*<text>" + text + "</text>");
-}
-
-std::string text_of(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
 }
 
 class GnuplotTest : public testing::Test {
@@ -95,7 +105,7 @@ TEST_F(GnuplotTest, DrawsTextsAsTheyAre) {
 TEST_F(GnuplotTest, DrawsAHeadlineAsItIs) {
   Figure figure = parabola(1.0, 1.0);
   figure.title = kTricky + "\n\t\x7f; set output";
-  const std::string script = gnuplot_script(figure, Format::kPng, "it's.png");
+  const std::string script = gnuplot_script(figure, "it's.png");
   EXPECT_NE(script.find("set output 'it''s.png'\n"), std::string::npos);
   EXPECT_NE(
       script.find(
@@ -222,20 +232,6 @@ TEST_F(GnuplotTest, DrawsDataWithoutExtent) {
   EXPECT_NE(svg(Figure{}), "");
 }
 
-TEST_F(GnuplotTest, WritesElementsForAPage) {
-  const Drawings drawings = draw_svg({parabola(1.0, 1.0), with(Style::kLine, {{0.0, 0.0}, {1.0, 1.0}})});
-  ASSERT_EQ(drawings.svg.size(), 2U);
-  for (const std::string& drawn : drawings.svg) {
-    EXPECT_EQ(drawn.find("<svg viewBox=\"0 0 640 400\" role=\"img\"><title>a &lt; b &amp; c</title>"), 0U);
-    EXPECT_EQ(drawn.substr(drawn.find("</svg>")), "</svg>\n\n");
-    for (const char* const foreign : {"<?xml", "http", "src=", "<script", "url("})
-      EXPECT_EQ(drawn.find(foreign), std::string::npos) << foreign;
-  }
-  EXPECT_GT(dots(drawings.svg[0]).size(), 10U);
-  EXPECT_EQ(dots(drawings.svg[1]).size(), 0U);
-  EXPECT_TRUE(draw_svg({}).svg.empty());
-}
-
 TEST_F(GnuplotTest, WritesAPngAndTheScriptThatDrawsIt) {
   Figure figure = parabola(1.0, 1.0);
   figure.width = 801;
@@ -260,8 +256,6 @@ TEST_F(GnuplotTest, KeepsTheOldPictureIfGnuplotFails) {
             "no picture was drawn: gnuplot ended with exit status 3: out of paper");
   EXPECT_EQ(text_of(folder_ / "some.png"), "old");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2) << "nothing half-written is left";
-  EXPECT_EQ(draw_svg({parabola(1.0, 1.0)}).fault,
-            "no picture was drawn: gnuplot ended with exit status 3: out of paper");
 }
 
 TEST_F(GnuplotTest, RefusesATruncatedPicture) {
@@ -282,9 +276,6 @@ TEST_F(GnuplotTest, ReportsThatGnuplotIsNotInstalled) {
   EXPECT_TRUE(fs::is_empty(folder_));
   EXPECT_EQ(draw_png_if_installed(parabola(1.0, 1.0), folder_ / "some.png"),
             "no picture was drawn: gnuplot is not installed (some.gp draws it)");
-  const Drawings drawings = draw_svg({parabola(1.0, 1.0)});
-  EXPECT_EQ(drawings.fault, "no picture was drawn: gnuplot is not installed");
-  EXPECT_TRUE(drawings.svg.empty());
 }
 
 TEST_F(GnuplotTest, ReportsAFileThatCannotBeWritten) {

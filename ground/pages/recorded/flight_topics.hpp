@@ -4,7 +4,7 @@
 #include <string>
 
 #include "swiftlet/ground/pages/flight_log.hpp"
-#include "swiftlet/ground/pages/topic_table.hpp"
+#include "swiftlet/ground/pages/recorded/topic_table.hpp"
 
 namespace swiftlet::pages {
 

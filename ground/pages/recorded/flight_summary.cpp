@@ -7,7 +7,7 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/ground/pages/flight_topics.hpp"
+#include "swiftlet/ground/pages/recorded/flight_topics.hpp"
 
 namespace swiftlet::pages {
 namespace {

@@ -11,7 +11,7 @@
 #include <Eigen/Geometry>
 
 #include "swiftlet/control/types/mode.hpp"
-#include "swiftlet/ground/pages/flight_topics.hpp"
+#include "swiftlet/ground/pages/recorded/flight_topics.hpp"
 #include "swiftlet/math/euler.hpp"
 #include "swiftlet/math/rotation_vector.hpp"
 

@@ -1,10 +1,10 @@
-#include "swiftlet/ground/pages/flight_log.hpp"
+#include "swiftlet/ground/pages/recorded/recorded_flight.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <set>
 
-#include "swiftlet/ground/pages/flight_topics.hpp"
+#include "swiftlet/ground/pages/recorded/flight_topics.hpp"
 #include "swiftlet/ground/recording/log_table.hpp"
 #include "swiftlet/io/config_error.hpp"
 

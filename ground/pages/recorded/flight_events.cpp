@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 
 #include "swiftlet/control/types/mode.hpp"
-#include "swiftlet/ground/pages/flight_topics.hpp"
+#include "swiftlet/ground/pages/recorded/flight_topics.hpp"
 
 namespace swiftlet::pages {
 namespace {

@@ -1,10 +1,10 @@
-#include "swiftlet/ground/pages/flight_page.hpp"
+#include "swiftlet/ground/pages/recorded/recorded_flight.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/ground/pages/flight_log.hpp"
+#include "swiftlet/ground/pages/flight_page.hpp"
 #include "swiftlet/ground/recording/cdr_writer.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/mcap/writer.hpp"
@@ -129,8 +129,8 @@ TEST_F(FlightPage, HoldsEachVehicleAndEscapesTexts) {
   const std::vector<FlightLog> both = flights();
   ASSERT_EQ(both.size(), 2U);
   EXPECT_EQ(both[1].name, "test b");
-  const std::string page = flight_page(both);
-  EXPECT_NE(page.find("<title>Flights test a, test b</title>"), std::string::npos);
+  const std::string page = flight_page("Flights <of> test", "note", both);
+  EXPECT_NE(page.find("<title>Flights &lt;of&gt; test</title>"), std::string::npos);
   EXPECT_EQ(page.find("</script><b>"), std::string::npos);
   EXPECT_NE(page.find("<td>stopped: &lt;/script&gt;&lt;b&gt;</td>"), std::string::npos);
   EXPECT_EQ(page.find("<script src"), std::string::npos) << "loads another file";

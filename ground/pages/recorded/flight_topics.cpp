@@ -1,4 +1,4 @@
-#include "swiftlet/ground/pages/flight_topics.hpp"
+#include "swiftlet/ground/pages/recorded/flight_topics.hpp"
 
 #include <algorithm>
 #include <limits>

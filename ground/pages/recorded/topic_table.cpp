@@ -1,4 +1,4 @@
-#include "swiftlet/ground/pages/topic_table.hpp"
+#include "swiftlet/ground/pages/recorded/topic_table.hpp"
 
 #include <algorithm>
 #include <limits>
