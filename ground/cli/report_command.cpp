@@ -10,6 +10,7 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/log/log_commands.hpp"
 #include "swiftlet/ground/pages/flight_page.hpp"
+#include "swiftlet/ground/pages/recorded/process_logs.hpp"
 #include "swiftlet/ground/pages/recorded/recorded_flight.hpp"
 #include "swiftlet/ground/report/flight_comparison.hpp"
 #include "swiftlet/ground/report/recorded_messages.hpp"
@@ -25,10 +26,12 @@ struct ReportOptions {
   bool json = false;
 };
 
+constexpr const char* kInRecord = "flight.mcap";  // in the folder of a record
+
 // The MCAP file of a record: the file itself, or the one in its folder.
 std::filesystem::path recorded_messages(const std::filesystem::path& record) {
   if (!std::filesystem::is_directory(record)) return record;
-  const std::filesystem::path file = record / "flight.mcap";
+  const std::filesystem::path file = record / kInRecord;
   if (!std::filesystem::exists(file))
     throw InputError(record.string() + ": holds no flight.mcap; fly with --mcap for a page of the flight");
   return file;
@@ -37,7 +40,7 @@ std::filesystem::path recorded_messages(const std::filesystem::path& record) {
 // "20261121-093909-square" of .../20261121-093909-square/flight.mcap, "hover" of hover.mcap.
 std::string name_of(const std::filesystem::path& file) {
   const std::filesystem::path whole = std::filesystem::absolute(file);
-  return file.stem() == "flight" ? whole.parent_path().filename() : file.stem();
+  return file.filename() == kInRecord ? whole.parent_path().filename() : file.stem();
 }
 
 int write_page(const ReportOptions& options, const std::vector<std::filesystem::path>& records) {
@@ -46,8 +49,11 @@ int write_page(const ReportOptions& options, const std::vector<std::filesystem::
   for (const std::filesystem::path& record : records) files.push_back(recorded_messages(record));
   require_new(options.page, options.replace, files);
   for (const std::string& file : files) {
-    for (pages::FlightLog& flight : pages::flights_in(mcap::Reader(file), name_of(file)))
+    const std::filesystem::path path = std::filesystem::absolute(file);
+    for (pages::FlightLog& flight : pages::flights_in(mcap::Reader(file), name_of(file))) {
+      if (path.filename() == kInRecord) pages::add_process_logs(path.parent_path(), flight);
       flights.push_back(std::move(flight));
+    }
   }
   std::string title = flights.size() == 1 ? "Flight" : "Flights";
   for (std::size_t i = 0; i < flights.size(); ++i) title += (i == 0 ? " " : ", ") + flights[i].name;

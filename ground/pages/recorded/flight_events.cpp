@@ -12,7 +12,6 @@ namespace swiftlet::pages {
 namespace {
 
 constexpr double kNsPerS = 1e9;
-constexpr double kWarningLevel = 3.0;  // of foxglove.Log
 
 // By the values of Command.kind.
 constexpr std::array<const char*, 12> kRequests = {
@@ -96,16 +95,6 @@ class Events {
     }
   }
 
-  void add_log() {
-    const TopicTable& lines = topics_.log_lines;
-    for (std::size_t i = 0; i < lines.rows(); ++i) {
-      const std::string name = lines.text("name", i);
-      add_at(lines.log_ns[i] - topics_.log_minus_stamp_ns, "log",
-             (name.empty() ? "" : name + ": ") + lines.text("message", i),
-             lines.number("level", i) >= kWarningLevel);
-    }
-  }
-
  private:
   double time_of(const TopicTable& table, std::size_t row) const { return time_at(table.stamp_ns[row]); }
   double time_at(std::int64_t stamp_ns) const { return static_cast<double>(stamp_ns - zero_ns_) / kNsPerS; }
@@ -139,7 +128,6 @@ void add_events(const FlightTopics& topics, std::int64_t zero_ns, FlightLog& fli
   events.add_mission();
   events.add_requests();
   events.add_estimator();
-  events.add_log();
   std::stable_sort(flight.events.begin(), flight.events.end(),
                    [](const FlightEvent& a, const FlightEvent& b) { return a.time_s < b.time_s; });
 }

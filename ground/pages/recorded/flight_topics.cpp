@@ -70,7 +70,6 @@ FlightTopics read_flight_topics(const mcap::Reader& file, const std::string& veh
                                          "sense_to_actuate_p99_us", "sense_to_actuate_max_us", "unanswered"});
   topics.requests = read("command", {"kind"});
   topics.request_results = read("command_ack", {"accepted", "reason"});
-  topics.log_lines = read("log", {"level", "name", "message"});
   topics.simulated_time = metadata_value(file, kRecorder, "time") == "vehicle";
   const TopicTable& stamped = topics.estimate.rows() > 0 ? topics.estimate : topics.truth;
   if (stamped.rows() == 0)

@@ -10,7 +10,7 @@ namespace swiftlet::pages {
 
 struct FlightTopics {
   TopicTable truth, estimate, reference, imu, command, rotor_speeds, battery, pose, status, mission, vehicle,
-      requests, request_results, log_lines;
+      requests, request_results;
   // From the clock of the log to that of the vehicle: log time minus stamp, of the message with the least delay.
   std::int64_t log_minus_stamp_ns = 0;
   bool simulated_time = false;  // the log times are stamps
