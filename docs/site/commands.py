@@ -6,7 +6,7 @@ import subprocess
 from manual_text import ManualError
 
 PROGRAMS = ["swiftlet", "swiftlet-plant", "swiftlet-mocap", "swiftlet-control", "swiftlet-vehicle-template",
-            "swiftlet-microcontroller", "swiftlet-px4"]
+            "swiftlet-microcontroller", "swiftlet-px4", "swiftlet-ros"]
 
 
 def help_of(folder, words):

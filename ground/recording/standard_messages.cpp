@@ -14,7 +14,13 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr const char* kMap = "map";
+constexpr const char* kPoseTopic = "pose";
+constexpr const char* kOdometryTopic = "odometry";
+constexpr const char* kPathTopic = "path";
+constexpr const char* kReferenceTopic = "reference_pose";
+constexpr const char* kImuTopic = "imu_flu";
+constexpr const char* kBatteryTopic = "battery_state";
+constexpr const char* kTransformTopic = "/tf";
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kPathPeriod_ns = kSecond_ns;
 constexpr std::int64_t kPathStep_ns = kSecond_ns / 10;
@@ -45,6 +51,17 @@ constexpr comms::MessageSchema kPath{
     "nav_msgs/msg/Path",
     "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n" SWIFTLET_HEADER SWIFTLET_SEPARATOR
     "MSG: geometry_msgs/PoseStamped\nstd_msgs/Header header\ngeometry_msgs/Pose pose\n" SWIFTLET_POSE,
+    -1};
+constexpr comms::MessageSchema kOdometry{
+    "nav_msgs/msg/Odometry",
+    "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"
+    "geometry_msgs/TwistWithCovariance twist\n" SWIFTLET_HEADER SWIFTLET_SEPARATOR
+    "MSG: geometry_msgs/PoseWithCovariance\ngeometry_msgs/Pose pose\nfloat64[36] covariance\n" SWIFTLET_POSE
+        SWIFTLET_SEPARATOR
+    "MSG: geometry_msgs/TwistWithCovariance\ngeometry_msgs/Twist twist\nfloat64[36] "
+    "covariance\n" SWIFTLET_SEPARATOR
+    "MSG: geometry_msgs/Twist\ngeometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 "
+    "angular\n" SWIFTLET_VECTOR3,
     -1};
 constexpr comms::MessageSchema kTransforms{
     "tf2_msgs/msg/TFMessage",
@@ -87,6 +104,14 @@ void put_covariance(CdrWriter& out, double first) {
   for (int i = 0; i < kOthers; ++i) out.put(0.0);
 }
 
+// Of six independent quantities: the diagonal of a matrix of 6 x 6.
+void put_variances(CdrWriter& out, const std::array<double, 6>& variances) {
+  for (std::size_t row = 0; row < variances.size(); ++row) {
+    for (std::size_t column = 0; column < variances.size(); ++column)
+      out.put(row == column ? variances[row] : 0.0);
+  }
+}
+
 Vector3d vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 Quaterniond quaternion(const std::array<double, 4>& q) { return {q[0], q[1], q[2], q[3]}; }
 
@@ -103,6 +128,16 @@ Quaterniond q_enu_from_flu(const Quaterniond& q_ned_from_frd) {
 
 StandardMessages::StandardMessages(std::string vehicle) : vehicle_(std::move(vehicle)) {}
 
+std::vector<std::pair<std::string, const comms::MessageSchema*>> StandardMessages::topics() const {
+  return {{topic_of(kPoseTopic), &kPoseStamped},
+          {topic_of(kOdometryTopic), &kOdometry},
+          {topic_of(kPathTopic), &kPath},
+          {kTransformTopic, &kTransforms},
+          {topic_of(kReferenceTopic), &kPoseStamped},
+          {topic_of(kImuTopic), &kImu},
+          {topic_of(kBatteryTopic), &kBatteryState}};
+}
+
 std::vector<StandardMessage> StandardMessages::of(const std::string& topic, const mcap::Message& message) {
   if (topic == comms::topics::kEstimate.name) return of_estimate(message);
   if (topic == comms::topics::kReference.name) return of_reference(message);
@@ -113,12 +148,12 @@ std::vector<StandardMessage> StandardMessages::of(const std::string& topic, cons
 
 StandardMessage StandardMessages::named(const char* name, const comms::MessageSchema& schema,
                                         mcap::Bytes payload) const {
-  return {"/" + vehicle_ + "/" + name, &schema, std::move(payload)};
+  return {topic_of(name), &schema, std::move(payload)};
 }
 
 StandardMessage StandardMessages::pose_message(const char* name, const Pose& pose) const {
   CdrWriter out;
-  put_header(out, pose.time_ns, kMap);
+  put_header(out, pose.time_ns, kMapFrame);
   put_vector(out, pose.position_enu);
   put_quaternion(out, pose.q_enu_from_flu);
   return named(name, kPoseStamped, out.take());
@@ -127,23 +162,48 @@ StandardMessage StandardMessages::pose_message(const char* name, const Pose& pos
 StandardMessage StandardMessages::transform_message(const Pose& pose) const {
   CdrWriter out;
   out.put(std::uint32_t{1});
-  put_header(out, pose.time_ns, kMap);
+  put_header(out, pose.time_ns, kMapFrame);
   out.text(vehicle_);
   put_vector(out, pose.position_enu);
   put_quaternion(out, pose.q_enu_from_flu);
-  return {"/tf", &kTransforms, out.take()};
+  return {kTransformTopic, &kTransforms, out.take()};
+}
+
+// The pose in the map, the velocity in the vehicle's frame, as ROS has it.
+StandardMessage StandardMessages::odometry_message(const Pose& pose,
+                                                   const comms::msg::Estimate& estimate) const {
+  const auto variance = [&estimate](std::size_t state) {
+    const double deviation = estimate.standard_deviation()[state];
+    return deviation * deviation;
+  };
+  const Vector3d velocity_flu =
+      pose.q_enu_from_flu.conjugate() * enu_from_ned(vector(estimate.velocity_ned()));
+  // States: NED position 0 to 2, velocity 3 to 5, rotation 6 to 8, gyro bias 9 to 11. Those of the velocity are the
+  // mean of the three axes, whatever the attitude.
+  const double velocity_variance = (variance(3) + variance(4) + variance(5)) / 3.0;
+  CdrWriter out;
+  put_header(out, pose.time_ns, kMapFrame);
+  out.text(vehicle_);
+  put_vector(out, pose.position_enu);
+  put_quaternion(out, pose.q_enu_from_flu);
+  put_variances(out, {variance(1), variance(0), variance(2), variance(7), variance(6), variance(8)});
+  put_vector(out, velocity_flu);
+  put_vector(out, flu_from_frd(vector(estimate.body_rates_frd())));
+  put_variances(out, {velocity_variance, velocity_variance, velocity_variance, variance(9), variance(10),
+                      variance(11)});
+  return named(kOdometryTopic, kOdometry, out.take());
 }
 
 StandardMessage StandardMessages::path_message(std::int64_t time_ns) const {
   CdrWriter out;
-  put_header(out, time_ns, kMap);
+  put_header(out, time_ns, kMapFrame);
   out.put(static_cast<std::uint32_t>(path_.size()));
   for (const Pose& pose : path_) {
-    put_header(out, pose.time_ns, kMap);
+    put_header(out, pose.time_ns, kMapFrame);
     put_vector(out, pose.position_enu);
     put_quaternion(out, pose.q_enu_from_flu);
   }
-  return named("path", kPath, out.take());
+  return named(kPathTopic, kPath, out.take());
 }
 
 std::vector<StandardMessage> StandardMessages::of_estimate(const mcap::Message& message) {
@@ -152,7 +212,8 @@ std::vector<StandardMessage> StandardMessages::of_estimate(const mcap::Message& 
   const std::int64_t time_ns = message.log_time_ns;
   const Pose pose{time_ns, enu_from_ned(vector(estimate.position_ned())),
                   q_enu_from_flu(quaternion(estimate.q_ned_from_frd()))};
-  std::vector<StandardMessage> messages = {pose_message("pose", pose), transform_message(pose)};
+  std::vector<StandardMessage> messages = {pose_message(kPoseTopic, pose), transform_message(pose),
+                                           odometry_message(pose, estimate)};
   if (path_.empty() || time_ns - path_.back().time_ns >= kPathStep_ns) path_.push_back(pose);
   while (time_ns - path_.front().time_ns > kPathLength_ns) path_.pop_front();
   if (time_ns - path_sent_ns_ >= kPathPeriod_ns) {
@@ -165,8 +226,8 @@ std::vector<StandardMessage> StandardMessages::of_estimate(const mcap::Message& 
 std::vector<StandardMessage> StandardMessages::of_reference(const mcap::Message& message) const {
   comms::msg::Reference reference;
   if (!comms::from_payload(message.payload.data, message.payload.size, reference)) return {};
-  return {pose_message("reference_pose", {message.log_time_ns, enu_from_ned(vector(reference.position_ned())),
-                                          q_enu_from_flu(quaternion(reference.attitude_setpoint()))})};
+  return {pose_message(kReferenceTopic, {message.log_time_ns, enu_from_ned(vector(reference.position_ned())),
+                                         q_enu_from_flu(quaternion(reference.attitude_setpoint()))})};
 }
 
 std::vector<StandardMessage> StandardMessages::of_imu(const mcap::Message& message) const {
@@ -180,7 +241,7 @@ std::vector<StandardMessage> StandardMessages::of_imu(const mcap::Message& messa
   put_covariance(out, kUnknown);
   put_vector(out, flu_from_frd(vector(imu.specific_force_frd())));
   put_covariance(out, kUnknown);
-  return {named("imu_flu", kImu, out.take())};
+  return {named(kImuTopic, kImu, out.take())};
 }
 
 std::vector<StandardMessage> StandardMessages::of_battery(const mcap::Message& message) const {
@@ -198,7 +259,7 @@ std::vector<StandardMessage> StandardMessages::of_battery(const mcap::Message& m
   out.put(static_cast<float>(battery.state_of_charge()));
   out.put(kDischarging).put(kUnknownHealth).put(kLithiumPolymer).put(std::uint8_t{1});
   out.put(std::uint32_t{0}).put(std::uint32_t{0}).text("").text("");  // cells, location, serial number
-  return {named("battery_state", kBatteryState, out.take())};
+  return {named(kBatteryTopic, kBatteryState, out.take())};
 }
 
 }  // namespace swiftlet::ground

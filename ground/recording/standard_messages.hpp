@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -12,8 +13,11 @@
 
 #include "swiftlet/io/mcap/records.hpp"
 #include "swiftlet/services/messages/schemas.hpp"
+#include "swiftlet/services/messages/topics.hpp"
 
 namespace swiftlet::ground {
+
+constexpr const char* kMapFrame = "map";  // ENU, at the origin of NED
 
 Eigen::Vector3d enu_from_ned(const Eigen::Vector3d& v_ned);
 Eigen::Vector3d flu_from_frd(const Eigen::Vector3d& v_frd);
@@ -27,7 +31,7 @@ struct StandardMessage {
 };
 
 // Of one vehicle:
-//   estimate   -> pose (geometry_msgs/PoseStamped), /tf (tf2_msgs/TFMessage: map to the vehicle's name), and each second
+//   estimate   -> pose (geometry_msgs/PoseStamped), odometry (nav_msgs/Odometry), /tf (tf2_msgs/TFMessage: map to the vehicle's name), and each second
 //                 path (nav_msgs/Path: its last half minute)
 //   reference  -> reference_pose (geometry_msgs/PoseStamped)
 //   imu        -> imu_flu (sensor_msgs/Imu)
@@ -35,6 +39,9 @@ struct StandardMessage {
 class StandardMessages {
  public:
   explicit StandardMessages(std::string vehicle);
+
+  // Their topics and types.
+  std::vector<std::pair<std::string, const comms::MessageSchema*>> topics() const;
 
   // The messages that follow from one of the vehicle's, at its log time. topic: "estimate", "imu" ...
   std::vector<StandardMessage> of(const std::string& topic, const mcap::Message& message);
@@ -49,9 +56,11 @@ class StandardMessages {
   std::vector<StandardMessage> of_reference(const mcap::Message& message) const;
   std::vector<StandardMessage> of_imu(const mcap::Message& message) const;
   std::vector<StandardMessage> of_battery(const mcap::Message& message) const;
+  std::string topic_of(const char* name) const { return "/" + vehicle_ + "/" + name; }
   StandardMessage named(const char* name, const comms::MessageSchema& schema, mcap::Bytes payload) const;
   StandardMessage pose_message(const char* name, const Pose& pose) const;
   StandardMessage transform_message(const Pose& pose) const;
+  StandardMessage odometry_message(const Pose& pose, const comms::msg::Estimate& estimate) const;
   StandardMessage path_message(std::int64_t time_ns) const;
   std::string vehicle_;
   std::deque<Pose> path_;

@@ -12,7 +12,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include "swiftlet/io/network_key.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
 
 namespace swiftlet::comms {
@@ -47,15 +46,6 @@ Announcement announcement_of(const NodeSettings& settings, const std::string& ve
 double random_share() {
   std::random_device random;
   return std::uniform_real_distribution<double>(0.0, 1.0)(random);
-}
-
-std::shared_ptr<DatagramGuard> guard_of(const NodeSettings& settings) {
-  DatagramLimits limits;
-  limits.discovery_servers = !settings.network.discovery_servers.empty();
-  limits.security = !settings.security.empty();
-  const std::string& file = settings.network_key_file;
-  return std::make_shared<DatagramGuard>(
-      file.empty() ? runtime::NetworkKeys() : runtime::read_network_keys(file), limits);
 }
 
 std::string named(const std::string& name, const rtps::GuidPrefix_t& participant) {

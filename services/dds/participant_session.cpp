@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "swiftlet/io/network_key.hpp"
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
@@ -69,6 +70,15 @@ dds::DomainParticipant* join(const NodeSettings& settings, const Announcement& a
 }
 
 }  // namespace
+
+std::shared_ptr<DatagramGuard> guard_of(const NodeSettings& settings) {
+  DatagramLimits limits;
+  limits.discovery_servers = !settings.network.discovery_servers.empty();
+  limits.security = !settings.security.empty();
+  const std::string& file = settings.network_key_file;
+  return std::make_shared<DatagramGuard>(
+      file.empty() ? runtime::NetworkKeys() : runtime::read_network_keys(file), limits);
+}
 
 ParticipantSession::ParticipantSession(const NodeSettings& settings, const Announcement& announcement,
                                        const std::shared_ptr<DatagramGuard>& guard,

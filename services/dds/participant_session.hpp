@@ -22,6 +22,9 @@
 
 namespace swiftlet::comms {
 
+// What checks the datagrams of a session with these settings. Throws runtime::ConfigError for a bad key file.
+std::shared_ptr<DatagramGuard> guard_of(const NodeSettings& settings);
+
 // A participant with its publisher, subscriber and topics. Its destructor announces to the peers that it
 // leaves.
 class ParticipantSession {

@@ -57,11 +57,15 @@ int output_error() {
 
 }  // namespace
 
-void add_process_options(CommandLine app, ProcessOptions& options) {
-  app.add_option("--log-level", options.log.level, "Lowest severity to log")
+void add_log_options(CommandLine app, LogSettings& log) {
+  app.add_option("--log-level", log.level, "Lowest severity to log")
       .one_of({"trace", "debug", "info", "warning", "error", "off"})
       .show_default();
-  app.add_option("--log-file", options.log.file, "Log to this file as well as to stderr");
+  app.add_option("--log-file", log.file, "Log to this file as well as to stderr");
+}
+
+void add_process_options(CommandLine app, ProcessOptions& options) {
+  add_log_options(app, options.log);
   app.add_flag("!--no-realtime", options.realtime.enabled, "Do not lock memory or request SCHED_FIFO");
   app.add_option("--priority", options.realtime.priority, "SCHED_FIFO priority of the real-time thread")
       .range(1, 99)

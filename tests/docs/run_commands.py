@@ -37,7 +37,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "docs" / "s
 from commands import help_of, subcommands_of  # noqa: E402
 from manual_text import ManualError, fences  # noqa: E402
 
-SERVICES = ("swiftlet-plant", "swiftlet-mocap", "swiftlet-control", "swiftlet-vehicle-template", "swiftlet-microcontroller", "swiftlet-px4")
+SERVICES = ("swiftlet-plant", "swiftlet-mocap", "swiftlet-control", "swiftlet-vehicle-template", "swiftlet-microcontroller", "swiftlet-px4", "swiftlet-ros")
 PROGRAMS = ("swiftlet", "swiftlet-identify", *SERVICES)
 FIRST_DOMAIN, LAST_DOMAIN = 20, 99  # as in services/dds/discovery/domain_lock.hpp
 
@@ -223,7 +223,7 @@ case "$name ${1-} ${2-}" in
     add --localhost-only
     [[ $DOCS_CLOCK == realtime ]] || add --clock lockstep
     ;;
-  "swiftlet-vehicle-template "* | "swiftlet-microcontroller "* | "swiftlet-px4 "*) add --localhost-only ;;  # they have no lockstep
+  "swiftlet-vehicle-template "* | "swiftlet-microcontroller "* | "swiftlet-px4 "* | "swiftlet-ros "*) add --localhost-only ;;  # they have no lockstep
   "swiftlet fly "*)
     if has --attach; then
       add --localhost-only

@@ -9,7 +9,7 @@ function(expect_file path)
 endfunction()
 
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix} --component programs)
-foreach(program swiftlet swiftlet-identify swiftlet-plant swiftlet-mocap swiftlet-control swiftlet-vehicle-template swiftlet-microcontroller swiftlet-px4)
+foreach(program swiftlet swiftlet-identify swiftlet-plant swiftlet-mocap swiftlet-control swiftlet-vehicle-template swiftlet-microcontroller swiftlet-px4 swiftlet-ros)
   run(${prefix}/bin/${program} --help)
 endforeach()
 expect_file(share/swiftlet/config/vehicles/kaylion.yaml)

@@ -48,6 +48,12 @@ class Processes:
             [self.programs / name, *map(str, words), "--domain", str(self.domain), "--localhost-only"], cwd=self.work,
             stdout=path.open("w"), stderr=subprocess.STDOUT))
 
+    def run(self, name, *words):
+        done = subprocess.run([self.programs / name, *words, "--domain", str(self.domain), "--localhost-only"], cwd=self.work,
+                              capture_output=True, text=True, timeout=PATIENCE_S, check=False)
+        if done.returncode != 0:
+            sys.exit(f"interop: {name} {' '.join(words)}: exit code {done.returncode}: {done.stderr}")
+
     def __enter__(self):
         return self
 
@@ -116,6 +122,19 @@ class Interop:
         return set(output.split())
 
 
+    def join_ros(self):
+        """A program of ROS 2, as it is on the wire, beside swiftlet-ros: standard types, nodes, a goal, velocities."""
+        with Processes(self.programs, self.work) as processes:
+            processes.start("swiftlet-plant", "--no-realtime")
+            processes.start("swiftlet-mocap", "--no-realtime")
+            processes.start("swiftlet-control", "--no-realtime")
+            processes.start("swiftlet-ros", "--time", "vehicle", "--goal-speed", "1")
+            for command in (["arm"], ["takeoff", "0.6"]):
+                processes.run("swiftlet", *command)
+            output = self.finish(self.peer("ros", processes.domain, "kl1", PATIENCE_S), "the program of ROS 2")
+        print("".join(f"interop: ROS 2: {line}\n" for line in output.splitlines()), end="")
+
+
 def main(programs, work):
     interop = Interop(programs, work)
     topics = set(re.findall(r'TOPIC\("(\w+)"', (HERE / "topics.c").read_text()))
@@ -123,6 +142,7 @@ def main(programs, work):
     if missing:
         sys.exit(f"interop: never decoded: {', '.join(sorted(missing))}")
     print(f"interop: Cyclone DDS decoded all {len(topics)} topics", flush=True)
+    interop.join_ros()
     package = subprocess.run([DEBIAN_PYTHON, "-B", HERE / "ros2_package.py", "--rosidl"], text=True, stdout=subprocess.PIPE, check=True)
     print(package.stdout.splitlines()[-1])  # rosidl names each file
 

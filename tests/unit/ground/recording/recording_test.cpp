@@ -1,5 +1,6 @@
 #include <cmath>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -100,13 +101,16 @@ std::vector<StandardMessage> following(StandardMessages& standard, const std::st
   return standard.of(topic, {0, 1, time_ns, time_ns, {payload.data(), payload.size()}});
 }
 
-TEST(StandardMessages, OfAnEstimateArePoseTransformAndPath) {
+TEST(StandardMessages, OfAnEstimateArePoseTransformOdometryAndPath) {
   StandardMessages standard("kl1");
   comms::msg::Estimate estimate;
   estimate.position_ned({1.0, 2.0, -3.0});
-  estimate.q_ned_from_frd({1.0, 0.0, 0.0, 0.0});
+  estimate.q_ned_from_frd({std::sqrt(0.5), 0.0, 0.0, std::sqrt(0.5)});  // heads east
+  estimate.velocity_ned({0.5, 0.25, -0.125});
+  estimate.body_rates_frd({0.1, 0.2, 0.3});
+  estimate.standard_deviation({0.1, 0.2, 0.3, 0.4, 0.4, 0.4});
   const auto first = following(standard, "estimate", estimate, 5'000'000'007);
-  ASSERT_EQ(first.size(), 3U);
+  ASSERT_EQ(first.size(), 4U);
   EXPECT_EQ(first[0].topic, "/kl1/pose");
   const auto pose = decoded(first[0]);
   EXPECT_EQ(pose.at("header.stamp.sec"), mcap::Value(std::int64_t{5}));
@@ -117,16 +121,29 @@ TEST(StandardMessages, OfAnEstimateArePoseTransformAndPath) {
   EXPECT_EQ(pose.at("pose.position.z"), mcap::Value(3.0));
   EXPECT_EQ(first[1].topic, "/tf");
   EXPECT_EQ(decoded(first[1]).at("transforms.length"), mcap::Value(std::uint64_t{1}));
-  EXPECT_EQ(first[2].topic, "/kl1/path");
+  EXPECT_EQ(first[2].topic, "/kl1/odometry");
+  const auto odometry = decoded(first[2]);
+  const auto number = [&odometry](const char* name) { return std::get<double>(odometry.at(name)); };
+  EXPECT_EQ(odometry.at("child_frame_id"), mcap::Value(std::string("kl1")));
+  EXPECT_EQ(number("pose.pose.position.x"), 2.0);
+  EXPECT_NEAR(std::abs(number("pose.pose.orientation.w")), 1.0, 1e-12);
+  EXPECT_NEAR(number("pose.covariance[0]"), 0.04, 1e-12) << "of the east";
+  EXPECT_NEAR(number("pose.covariance[7]"), 0.01, 1e-12) << "of the north";
+  EXPECT_NEAR(number("twist.twist.linear.x"), 0.25, 1e-12) << "forward: east";
+  EXPECT_NEAR(number("twist.twist.linear.y"), 0.5, 1e-12) << "left: north";
+  EXPECT_NEAR(number("twist.twist.linear.z"), 0.125, 1e-12);
+  EXPECT_EQ(number("twist.twist.angular.z"), -0.3);
+  EXPECT_NEAR(number("twist.covariance[14]"), 0.16, 1e-12);
+  EXPECT_EQ(first[3].topic, "/kl1/path");
   // The path follows each second, and keeps half a minute at 10 Hz.
   std::vector<StandardMessage> last;
   std::size_t paths = 0;
   for (int i = 1; i <= 6000; ++i) {
     last = following(standard, "estimate", estimate, 5'000'000'007 + i * std::int64_t{10'000'000});
-    paths += last.size() == 3 ? 1 : 0;
+    paths += last.size() == 4 ? 1 : 0;
   }
   EXPECT_EQ(paths, 60U);
-  EXPECT_EQ(decoded(last[2]).at("poses.length"), mcap::Value(std::uint64_t{301}));
+  EXPECT_EQ(decoded(last[3]).at("poses.length"), mcap::Value(std::uint64_t{301}));
 }
 
 TEST(StandardMessages, OfImuAndBatteryAreInFluAndSi) {
