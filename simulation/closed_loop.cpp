@@ -70,6 +70,7 @@ void ClosedLoop::answer(const plant::TelemetryPacket& packet) {
   sent = packet.odometry ? controller.on_odometry(*packet.odometry) : controller.on_imu(packet.imu);
   answered = packet.imu;
   if (sensors != nullptr) record_sensors(packet);
+  if (on_answered) on_answered(packet, pose_);
   pose_.reset();
   if (control_connected && command_path.send(sent, plant.stamp_ns())) firmware.accept(sent, plant.stamp_ns());
 }

@@ -51,6 +51,7 @@ class LoopTransport final : public MissionTransport {
   }
   void advance() override {
     loop_.step();
+    if (observer_.stepped) observer_.stepped();
     if (!observe()) throw FlightFailure("it was cancelled");
   }
   Status status() const override {
@@ -66,6 +67,7 @@ class LoopTransport final : public MissionTransport {
     request.kind = kind;
     if (kind == control::RequestKind::kMissionUpload) request.mission = &mission_;
     const control::Outcome outcome = loop_.controller.request(request);
+    if (observer_.requested) observer_.requested(request, outcome);
     return {outcome.accepted, !outcome.accepted, outcome.reason};
   }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "swiftlet/control/types/mission.hpp"
+#include "swiftlet/control/types/request.hpp"
 #include "swiftlet/recording/flight_record.hpp"
 #include "swiftlet/recording/flight_trace.hpp"
 #include "swiftlet/simulation/closed_loop.hpp"
@@ -23,6 +24,8 @@ struct FlightObserver {
   FlightRecord* record = nullptr;  // ground truth at each IMU sample, the rest at the telemetry rate
   runtime::FlightTrace* trace = nullptr;
   std::function<bool()> cancelled;  // polled at the telemetry rate; true ends the flight
+  std::function<void()> stepped;    // after each step of the loop
+  std::function<void(const control::Request&, const control::Outcome&)> requested;  // after each request
 };
 
 // Arms, flies the mission and lands. The loop must be newly constructed. The mission must have an id other

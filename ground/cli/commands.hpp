@@ -73,7 +73,7 @@ Command add_gains_command(runtime::CommandLine root);
 Command add_mission_check_command(runtime::CommandLine mission);
 Command add_mission_plot_command(runtime::CommandLine mission);
 Command add_sim_command(runtime::CommandLine root, const std::string& version = "swiftlet");
-Command add_sim_fly_command(runtime::CommandLine sim);
+Command add_sim_fly_command(runtime::CommandLine sim, const std::string& version);
 Command add_sim_batch_command(runtime::CommandLine sim, const std::string& version);
 Command add_sim_merge_command(runtime::CommandLine sim);
 Command add_sim_open_loop_command(runtime::CommandLine sim);

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "swiftlet/ground/flight/flight_outcome.hpp"
+#include "swiftlet/ground/flight/simulated_recorder.hpp"
 #include "swiftlet/recording/flight_window.hpp"
 #include "swiftlet/simulation/simulated_flight.hpp"
 
@@ -14,7 +15,7 @@ ClosedLoop closed_loop(const LaunchConfiguration& plan, const World& world, std:
 
 InProcessFlight fly_in_process(ClosedLoop& loop, const LaunchConfiguration& plan, std::uint64_t seed,
                                FlightRecord& record, runtime::FlightTrace* trace,
-                               const std::function<bool()>& cancelled) {
+                               const std::function<bool()>& cancelled, SimulatedRecorder* messages) {
   control::Mission mission = plan.mission.mission;
   mission.id = 1;
   InProcessFlight done;
@@ -23,7 +24,14 @@ InProcessFlight fly_in_process(ClosedLoop& loop, const LaunchConfiguration& plan
   report.seed = seed;
 
   const auto start = std::chrono::steady_clock::now();
-  const SimulatedFlight flight = fly(loop, mission, plan.planned_duration_s, {&record, trace, cancelled});
+  FlightObserver observer{&record, trace, cancelled, {}, {}};
+  if (messages != nullptr) {
+    observer.stepped = [messages] { messages->step(); };
+    observer.requested = [messages](const control::Request& request, const control::Outcome& outcome) {
+      messages->request(request, outcome);
+    };
+  }
+  const SimulatedFlight flight = fly(loop, mission, plan.planned_duration_s, observer);
   report.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
   report.simulated_s = flight.simulated_s;

@@ -12,6 +12,8 @@
 
 namespace swiftlet::ground {
 
+class SimulatedRecorder;
+
 struct InProcessFlight {
   FlightReport report;
   Window window;  // in which the errors are evaluated
@@ -22,9 +24,9 @@ struct InProcessFlight {
 ClosedLoop closed_loop(const LaunchConfiguration& plan, const World& world, std::uint64_t seed);
 
 // Flies the plan's mission. loop: new, of the same seed. record: empty, of plan.record_capacity(). trace: may
-// be null.
+// and messages may be null.
 InProcessFlight fly_in_process(ClosedLoop& loop, const LaunchConfiguration& plan, std::uint64_t seed,
                                FlightRecord& record, runtime::FlightTrace* trace,
-                               const std::function<bool()>& cancelled);
+                               const std::function<bool()>& cancelled, SimulatedRecorder* messages = nullptr);
 
 }  // namespace swiftlet::ground

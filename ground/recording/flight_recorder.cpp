@@ -1,12 +1,10 @@
 #include "swiftlet/ground/recording/flight_recorder.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <exception>
 #include <limits>
 #include <map>
-#include <unistd.h>
 #include <utility>
 
 #include "swiftlet/services/messages/all_topics.hpp"
@@ -18,7 +16,6 @@ using namespace std::chrono_literals;
 
 constexpr auto kBatchPeriod = 100ms;
 constexpr auto kFlushPeriod = 500ms;
-constexpr const char* kRecorder = "swiftlet/recorder";
 constexpr const char* kCounts = "swiftlet/counts";
 constexpr const char* kClocks = "swiftlet/clocks";
 
@@ -49,7 +46,6 @@ struct FlightRecorder::Vehicle {
 
   std::string name;
   std::unique_ptr<comms::Node> node;
-  StandardMessages standard{name};  // of the thread that writes
   std::atomic<std::int64_t> newest_stamp_ns{0};
   // Of an IMU sample: its arrival by the wall clock minus its stamp, the least of all.
   std::atomic<std::int64_t> least_age_ns{std::numeric_limits<std::int64_t>::max()};
@@ -73,14 +69,9 @@ FlightRecorder::FlightRecorder(const comms::Participant& participant, std::files
     : settings_(std::move(settings)),
       participant_(participant),
       queue_(settings_.queue_bytes),
-      file_(std::move(file), settings_.file),
+      file_(std::move(file), settings_.file, settings_.standard_messages),
       writer_([this] { write_until_stopped(); }) {
-  std::array<char, 256> host{};
-  ::gethostname(host.data(), host.size() - 1);
-  add(mcap::Metadata{kRecorder,
-                     {{"host", host.data()},
-                      {"started_ns", std::to_string(wall_now_ns())},
-                      {"time", settings_.clock == RecordClock::kVehicle ? "vehicle" : "wall"}}});
+  add(recorder_metadata(settings_.clock));
 }
 
 FlightRecorder::~FlightRecorder() { stop(); }
@@ -100,11 +91,11 @@ void FlightRecorder::use_file(const Work& work) {
 }
 
 void FlightRecorder::add(const mcap::Metadata& metadata) {
-  use_file([&](mcap::Writer& file) { file.write(metadata); });
+  use_file([&](MessageFile& file) { file.write(metadata); });
 }
 
 void FlightRecorder::add(const mcap::Attachment& attachment) {
-  use_file([&](mcap::Writer& file) { file.write(attachment); });
+  use_file([&](MessageFile& file) { file.write(attachment); });
 }
 
 void FlightRecorder::add_vehicle(const std::string& name) {
@@ -119,7 +110,7 @@ void FlightRecorder::subscribe(Vehicle& vehicle, const comms::Topic<T>& topic) {
   const comms::MessageSchema& schema = comms::schema_of<T>();
   const std::string name = "/" + vehicle.name + "/" + topic.name;
   std::uint16_t id = 0;
-  use_file([&](mcap::Writer& file) { id = file.add_channel(name, schema_in(file, schema), "cdr", {}); });
+  use_file([&](MessageFile& file) { id = file.add_channel(vehicle.name, topic.name, schema); });
   const Writers writers = topic.qos == comms::Qos::kOwnedStream ? Writers::kStrongest : Writers::kAll;
   Channel* channel = nullptr;
   {
@@ -127,7 +118,6 @@ void FlightRecorder::subscribe(Vehicle& vehicle, const comms::Topic<T>& topic) {
     channels_.push_back(std::unique_ptr<Channel>(
         new Channel{vehicle, topic.name, name, id, schema.stamp_offset, GapCounter(writers)}));
     channel = channels_.back().get();
-    channel_by_id_[id] = channel;
   }
   vehicle.subscriptions.push_back(vehicle.node->subscribe_raw<T>(
       topic, [this, channel](const comms::RawSample& sample) { receive(*channel, sample); },
@@ -157,46 +147,17 @@ void FlightRecorder::receive(Channel& channel, const comms::RawSample& sample) {
   if (failed_ || !queue_.put(message)) channel.dropped.fetch_add(1, std::memory_order_relaxed);
 }
 
-std::uint16_t FlightRecorder::schema_in(mcap::Writer& file, const comms::MessageSchema& schema) {
-  const auto known = schemas_.find(&schema);
-  if (known != schemas_.end()) return known->second;
-  return schemas_[&schema] = file.add_schema(schema.name, "ros2msg", schema.definition);
-}
-
-std::uint16_t FlightRecorder::standard_channel(mcap::Writer& file, const StandardMessage& message) {
-  const auto known = standard_channels_.find(message.topic);
-  if (known != standard_channels_.end()) return known->second;
-  return standard_channels_[message.topic] =
-             file.add_channel(message.topic, schema_in(file, *message.schema), "cdr", {});
-}
-
-void FlightRecorder::write(mcap::Writer& file, const mcap::Message& message) {
-  file.write(message);
-  if (!settings_.standard_messages) return;
-  Channel* source = nullptr;
-  {
-    const std::lock_guard<std::mutex> lock(channels_mutex_);
-    source = channel_by_id_.at(message.channel_id);
-  }
-  for (const StandardMessage& follows : source->vehicle.standard.of(source->name, message)) {
-    mcap::Message standard = message;
-    standard.channel_id = standard_channel(file, follows);
-    standard.payload = {follows.payload.data(), follows.payload.size()};
-    file.write(standard);
-  }
-}
-
 void FlightRecorder::write_until_stopped() {
   auto flushed = std::chrono::steady_clock::now();
   for (bool last = false; !last;) {
     last = stopping_;  // what was put before is taken once more
     queue_.take_all(last ? 0ms : kBatchPeriod, [this](const mcap::Message& message) {
-      use_file([&](mcap::Writer& file) { write(file, message); });
+      use_file([&](MessageFile& file) { file.write(message); });
     });
     const auto now = std::chrono::steady_clock::now();
     if (now - flushed < kFlushPeriod) continue;
     flushed = now;
-    use_file([](mcap::Writer& file) { file.flush(); });
+    use_file([](MessageFile& file) { file.flush(); });
   }
 }
 
@@ -206,7 +167,7 @@ void FlightRecorder::stop() {
   stopping_ = true;
   writer_.join();
   write_counts();
-  use_file([](mcap::Writer& file) { file.close(); });
+  use_file([](MessageFile& file) { file.close(); });
 }
 
 void FlightRecorder::write_counts() {

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -15,19 +14,12 @@
 #include <vector>
 
 #include "swiftlet/ground/recording/gap_counter.hpp"
+#include "swiftlet/ground/recording/message_file.hpp"
 #include "swiftlet/ground/recording/sample_queue.hpp"
-#include "swiftlet/ground/recording/standard_messages.hpp"
 #include "swiftlet/io/mcap/writer.hpp"
 #include "swiftlet/services/dds/node.hpp"
-#include "swiftlet/services/messages/schemas.hpp"
 
 namespace swiftlet::ground {
-
-// The times of the recorded messages.
-enum class RecordClock {
-  kWall,     // when they arrived, ns since 1970
-  kVehicle,  // their stamps; of a message without one the newest stamp of its vehicle. For simulated time
-};
 
 struct RecorderSettings {
   mcap::WriterSettings file{};
@@ -75,9 +67,6 @@ class FlightRecorder {
   template <class T>
   void subscribe(Vehicle& vehicle, const comms::Topic<T>& topic);
   void receive(Channel& channel, const comms::RawSample& sample);
-  void write(mcap::Writer& file, const mcap::Message& message);
-  std::uint16_t standard_channel(mcap::Writer& file, const StandardMessage& message);
-  std::uint16_t schema_in(mcap::Writer& file, const comms::MessageSchema& schema);
   void write_until_stopped();
   void write_counts();
   template <class Work>
@@ -87,16 +76,13 @@ class FlightRecorder {
   const comms::Participant participant_;
   SampleQueue queue_;
   mutable std::mutex mutex_;  // guards file_ and fault_; held while a batch is written
-  mcap::Writer file_;
+  MessageFile file_;
   std::optional<std::string> fault_;
   std::atomic<bool> failed_{false};
   std::atomic<bool> stopping_{false};
   std::atomic<std::uint64_t> file_bytes_{0};
-  std::map<const comms::MessageSchema*, std::uint16_t> schemas_;  // in the file; guarded by mutex_
-  std::map<std::string, std::uint16_t> standard_channels_;        // likewise
-  mutable std::mutex channels_mutex_;                             // guards the two below
+  mutable std::mutex channels_mutex_;  // guards channels_
   std::vector<std::unique_ptr<Channel>> channels_;
-  std::map<std::uint16_t, Channel*> channel_by_id_;  // in the file
   std::thread writer_;
   std::vector<std::unique_ptr<Vehicle>> vehicles_;  // last: their callbacks use all members above
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/mcap/series.hpp"
@@ -92,13 +93,14 @@ bool equal_messages(const mcap::Reader& a, const mcap::Reader& b, const std::str
 
 // Differs between any two flights.
 bool is_identifier(const std::string& name) {
-  constexpr std::array kNames = {"client", "id", "controller", "mission_id", "term", "command_term"};
+  constexpr std::array kNames = {"client",       "id",          "controller",      "mission_id",   "term",
+                                 "command_term", "request_ids", "request_clients", "settings_name"};
   const auto ends_with = [&](const std::string& end) {
     return name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
   };
   const std::size_t dot = name.rfind('.');
   const std::string last = dot == std::string::npos ? name : name.substr(dot + 1);
-  return ends_with("stamp_ns") || ends_with("sequence_number") ||
+  return ends_with("_ns") || ends_with("sequence_number") ||
          std::find(kNames.begin(), kNames.end(), last) != kNames.end();
 }
 
@@ -200,7 +202,8 @@ std::optional<SignalDifference> compare(const Series& a, const Series& b, const 
   const ColumnsOfSignal in_a = columns_of(a, signal);
   const ColumnsOfSignal in_b = columns_of(b, signal);
   const bool held = signal.kind != mcap::Column::Kind::kFloat;
-  SignalDifference difference{signal.name};
+  SignalDifference difference;
+  difference.name = signal.name;
   double squares = 0.0;
   std::size_t count = 0;
   for (const Match& match : matches) {
@@ -219,11 +222,10 @@ std::optional<SignalDifference> compare(const Series& a, const Series& b, const 
   return difference;
 }
 
-// The signals that both files have.
-std::vector<mcap::SignalArray> common_signals(const mcap::Reader& a, const mcap::Reader& b,
-                                              const std::string& topic) {
-  std::vector<mcap::SignalArray> signals = mcap::signal_arrays(mcap::TopicDecoder(a, topic).columns());
-  const std::vector<mcap::SignalArray> others = mcap::signal_arrays(mcap::TopicDecoder(b, topic).columns());
+// The signals that both have.
+std::vector<mcap::SignalArray> common_signals(const Series& a, const Series& b) {
+  std::vector<mcap::SignalArray> signals = mcap::signal_arrays(a.columns());
+  const std::vector<mcap::SignalArray> others = mcap::signal_arrays(b.columns());
   const auto only_in_a = [&](const mcap::SignalArray& signal) {
     return std::none_of(others.begin(), others.end(), [&](const mcap::SignalArray& other) {
       return other.name == signal.name && other.count == signal.count && other.kind == signal.kind;
@@ -247,21 +249,31 @@ std::vector<TopicDifference> difference(const mcap::Reader& a, const mcap::Reade
     const std::optional<Series> in_a = series_of(a, topic);
     const std::optional<Series> in_b = series_of(b, topic);
     if (!in_a && !in_b) throw runtime::ConfigError(a.name(), 0, topic, "is in neither of the files");
-    TopicDifference& now = differences.emplace_back();
+    TopicDifference now;
     now.topic = topic;
+    if (in_a && in_b) {
+      now.equal = equal_messages(a, b, topic);
+      if (!now.equal) now = difference(*in_a, *in_b, starts_a.of(*in_a), starts_b.of(*in_b));
+    }
     now.messages_a = in_a ? in_a->size() : 0;
     now.messages_b = in_b ? in_b->size() : 0;
-    if (!in_a || !in_b) continue;
-    now.equal = equal_messages(a, b, topic);
-    if (now.equal) continue;
-    const std::vector<Match> matches =
-        matches_of(timed_rows(*in_a, starts_a.of(*in_a)), timed_rows(*in_b, starts_b.of(*in_b)));
-    now.compared = matches.size();
-    for (const mcap::SignalArray& signal : common_signals(a, b, topic)) {
-      if (const auto found = compare(*in_a, *in_b, signal, matches)) now.signals.push_back(*found);
-    }
+    differences.push_back(std::move(now));
   }
   return differences;
+}
+
+TopicDifference difference(const Series& a, const Series& b, std::int64_t start_a_ns,
+                           std::int64_t start_b_ns) {
+  TopicDifference now;
+  now.topic = a.topic();
+  now.messages_a = a.size();
+  now.messages_b = b.size();
+  const std::vector<Match> matches = matches_of(timed_rows(a, start_a_ns), timed_rows(b, start_b_ns));
+  now.compared = matches.size();
+  for (const mcap::SignalArray& signal : common_signals(a, b)) {
+    if (const auto found = compare(a, b, signal, matches)) now.signals.push_back(*found);
+  }
+  return now;
 }
 
 }  // namespace swiftlet::ground

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "swiftlet/io/mcap/reader.hpp"
+#include "swiftlet/io/mcap/series.hpp"
 
 namespace swiftlet::ground {
 
@@ -35,5 +36,10 @@ struct TopicDifference {
 // file has a topic, or a message does not fit its schema.
 std::vector<TopicDifference> difference(const mcap::Reader& a, const mcap::Reader& b,
                                         const std::set<std::string>& topics);
+
+// The signals of one topic in two files. start_a_ns, start_b_ns: the times, by the stamps, that are compared. Sets all but
+// `equal`.
+TopicDifference difference(const mcap::Series& a, const mcap::Series& b, std::int64_t start_a_ns,
+                           std::int64_t start_b_ns);
 
 }  // namespace swiftlet::ground

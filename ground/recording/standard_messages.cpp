@@ -126,7 +126,7 @@ Quaterniond q_enu_from_flu(const Quaterniond& q_ned_from_frd) {
   return kEnuFromNed * q_ned_from_frd * kFrdFromFlu;
 }
 
-StandardMessages::StandardMessages(std::string vehicle) : vehicle_(std::move(vehicle)) {}
+StandardMessages::StandardMessages(std::string vehicle) : vehicle_(vehicle), events_(std::move(vehicle)) {}
 
 std::vector<std::pair<std::string, const comms::MessageSchema*>> StandardMessages::topics() const {
   return {{topic_of(kPoseTopic), &kPoseStamped},
@@ -143,7 +143,7 @@ std::vector<StandardMessage> StandardMessages::of(const std::string& topic, cons
   if (topic == comms::topics::kReference.name) return of_reference(message);
   if (topic == comms::topics::kImu.name) return of_imu(message);
   if (topic == comms::topics::kBattery.name) return of_battery(message);
-  return {};
+  return events_.of(topic, message);
 }
 
 StandardMessage StandardMessages::named(const char* name, const comms::MessageSchema& schema,

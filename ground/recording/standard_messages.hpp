@@ -11,6 +11,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "swiftlet/ground/recording/event_log.hpp"
+#include "swiftlet/ground/recording/standard_message.hpp"
 #include "swiftlet/io/mcap/records.hpp"
 #include "swiftlet/services/messages/schemas.hpp"
 #include "swiftlet/services/messages/topics.hpp"
@@ -23,24 +25,18 @@ Eigen::Vector3d enu_from_ned(const Eigen::Vector3d& v_ned);
 Eigen::Vector3d flu_from_frd(const Eigen::Vector3d& v_frd);
 Eigen::Quaterniond q_enu_from_flu(const Eigen::Quaterniond& q_ned_from_frd);
 
-// A message of a standard type.
-struct StandardMessage {
-  std::string topic;
-  const comms::MessageSchema* schema = nullptr;
-  mcap::Bytes payload;
-};
-
 // Of one vehicle:
-//   estimate   -> pose (geometry_msgs/PoseStamped), odometry (nav_msgs/Odometry), /tf (tf2_msgs/TFMessage: map to the vehicle's name), and each second
-//                 path (nav_msgs/Path: its last half minute)
+//   estimate   -> pose (geometry_msgs/PoseStamped), /tf (tf2_msgs/TFMessage: map to the vehicle's name), odometry
+//                 (nav_msgs/Odometry), and each second path (nav_msgs/Path: its last half minute)
 //   reference  -> reference_pose (geometry_msgs/PoseStamped)
 //   imu        -> imu_flu (sensor_msgs/Imu)
 //   battery    -> battery_state (sensor_msgs/BatteryState)
+//   control_status, mission_status, command_ack, vehicle_info -> log (foxglove Log), see event_log.hpp
 class StandardMessages {
  public:
   explicit StandardMessages(std::string vehicle);
 
-  // Their topics and types.
+  // The topics and types of ROS 2 among them.
   std::vector<std::pair<std::string, const comms::MessageSchema*>> topics() const;
 
   // The messages that follow from one of the vehicle's, at its log time. topic: "estimate", "imu" ...
@@ -63,6 +59,7 @@ class StandardMessages {
   StandardMessage odometry_message(const Pose& pose, const comms::msg::Estimate& estimate) const;
   StandardMessage path_message(std::int64_t time_ns) const;
   std::string vehicle_;
+  EventLog events_;
   std::deque<Pose> path_;
   std::int64_t path_sent_ns_ = 0;
 };

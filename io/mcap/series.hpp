@@ -25,6 +25,7 @@ class Series {
   Series(std::string file, std::string topic, const std::vector<Column>& columns);
 
   const std::string& topic() const { return topic_; }
+  const std::vector<Column>& columns() const { return columns_; }
   std::size_t size() const { return log_time_ns_.size(); }
   const std::vector<std::int64_t>& log_time_ns() const { return log_time_ns_; }
   // The messages' own stamps; their log times if the type has no stamp_ns.

@@ -6,6 +6,7 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <sys/mount.h>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -67,14 +68,18 @@ std::size_t gaps_in(const std::vector<mcap::Message>& messages) {
   return gaps;
 }
 
+// Two recorders at once: `swiftlet record`, and that of a flight with processes that run already.
 TEST_F(Log, HoldsEveryMessageOfAFlight) {
   const std::string file = path("flight.mcap");
   const auto recorder = start("swiftlet", {"record", "--output", file, "--json"});
   ASSERT_TRUE(eventually([&] { return recorder->errors().find("recording to") != std::string::npos; }));
+  start_vehicle();
+  const auto mocap = start("swiftlet-mocap");
+  const auto control = start("swiftlet-control");
   const ProgramResult flight =
       run_program("swiftlet",
-                  {"fly", folder_.write("hop.yaml", kHopMission), "--domain", std::to_string(lock_.domain()),
-                   "--record", path("record"), "--json"},
+                  on_this_domain({"fly", folder_.write("hop.yaml", kHopMission), "--attach", "--skip-check",
+                                  "--mcap", "--record", path("record"), "--json"}),
                   folder_.path(), kStuck);
   ASSERT_EQ(flight.exit_code, 0) << flight.errors;
   recorder->signal(SIGINT);
@@ -92,13 +97,19 @@ TEST_F(Log, HoldsEveryMessageOfAFlight) {
       received += count;
   }
   EXPECT_EQ(received, result.at("messages"));
-  for (const char* topic : {"/tf", "/kl1/pose", "/kl1/path", "/kl1/imu_flu", "/kl1/battery_state"})
+  for (const char* topic :
+       {"/tf", "/kl1/pose", "/kl1/path", "/kl1/odometry", "/kl1/imu_flu", "/kl1/battery_state", "/kl1/log"})
     EXPECT_EQ(heads.count(topic), 1U) << topic;
   for (const char* topic :
        {"/kl1/imu", "/kl1/actuator_command", "/kl1/mocap_pose", "/kl1/battery", "/kl1/estimate",
         "/kl1/reference", "/kl1/ground_truth", "/kl1/control_status", "/kl1/mission_status",
         "/kl1/vehicle_info", "/kl1/command", "/kl1/mission", "/kl1/command_ack"})
     ASSERT_EQ(heads.count(topic), 1U) << topic;
+  const mcap::Reader of_flight(path("record/flight.mcap"), mcap::Access::kScanned);
+  EXPECT_TRUE(of_flight.finished());
+  EXPECT_EQ(gaps_in(heads_of(of_flight).at("/kl1/imu")), 0U);
+  ASSERT_EQ(of_flight.attachments().size(), 1U) << "the running processes have the other files";
+  EXPECT_EQ(of_flight.attachments()[0].name, "mission.yaml");
   const auto& imu = heads.at("/kl1/imu");
   EXPECT_EQ(gaps_in(imu), 0U) << recorder->output();
   EXPECT_EQ(result.at("lost"), 0);
@@ -144,6 +155,41 @@ TEST_F(Log, IsPartOfTheRecordOfAFlight) {
     EXPECT_EQ(reported.at("report").at(figure), json::parse(flight.output).at(figure)) << figure;
   }
   EXPECT_TRUE(reported.at("settings").contains("control.position.x.omega_n"));
+  // The same controller does the same with its sensors, another one does not.
+  const auto replay = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"log", "replay", path("record/flight.mcap"), "--into-control", "--json"});
+    return run_program("swiftlet", more, folder_.path(), kStuck);
+  };
+  const ProgramResult same = replay({"--tolerance", "0"});
+  EXPECT_EQ(same.exit_code, 0) << same.output << same.errors;
+  const json compared = json::parse(same.output);
+  EXPECT_EQ(compared.at("control"), "recorded");
+  EXPECT_EQ(compared.at("other_answers"), 0);
+  EXPECT_EQ(compared.at("requests"), 3);
+  EXPECT_GT(compared.at("compared"), 1000);
+  EXPECT_EQ(compared.at("signals").at("throttle").at("max"), 0.0);
+  // The same flight in one process has the same messages.
+  const ProgramResult simulated = run_program(
+      "swiftlet",
+      {"sim", "fly", folder_.path() / "hop.yaml", "--seed", "5", "--mcap", "--record", path("sim")},
+      folder_.path(), kStuck);
+  ASSERT_EQ(simulated.exit_code, 0) << simulated.errors;
+  std::vector<std::string> diff = {"log", "diff", path("sim/flight.mcap"), path("record/flight.mcap"),
+                                   "--json"};
+  for (const char* topic : {"actuator_command", "mocap_pose", "ground_truth", "estimate", "reference",
+                            "battery", "rotor_speeds", "imu"})
+    diff.insert(diff.end(), {"--topic", std::string("/kl1/") + topic});
+  const ProgramResult difference = run_program("swiftlet", diff, folder_.path());
+  ASSERT_EQ(difference.exit_code, 0) << difference.errors;
+  for (const json& topic : json::parse(difference.output).at("topics")) {
+    EXPECT_GT(topic.at("compared"), 10) << topic;
+    for (const auto& [name, signal] : topic.at("signals").items())
+      EXPECT_EQ(signal.at("max"), 0.0) << topic.at("topic") << " " << name;
+  }
+  EXPECT_GT(heads_of(mcap::Reader(path("sim/flight.mcap"))).at("/kl1/log").size(), 5U);
+  const ProgramResult other = replay({"--control", "paper"});
+  EXPECT_EQ(other.exit_code, 1) << other.output << other.errors;
+  EXPECT_GT(json::parse(other.output).at("signals").at("throttle").at("max"), 0.01);
 }
 
 // GIVEN a body that is calibrated by hand WHEN a recorded flight is given THEN what it tells is added to the room file.
@@ -202,6 +248,26 @@ TEST_F(Log, OnAFullDiskEndsWithAnErrorAndIsReadable) {
   EXPECT_TRUE(recorded.damages().empty());
   EXPECT_GT(recorded.statistics().message_count, 500U);
   EXPECT_FALSE(vehicle_->exit_code().has_value());
+}
+
+TEST_F(Log, OnAFullFileSystemEndsWithAnErrorAndIsReadable) {
+  const std::string small = path("small");
+  fs::create_directory(small);
+  if (::mount("tmpfs", small.c_str(), "tmpfs", 0, "size=200k") != 0)
+    GTEST_SKIP() << "mounting a small file system needs root";
+  start_vehicle();
+  const ProgramResult recorder = run_program(
+      "swiftlet", on_this_domain({"record", "--output", small + "/full.mcap"}), folder_.path(), kStuck);
+  EXPECT_EQ(recorder.exit_code, 1);
+  EXPECT_NE(recorder.errors.find("full.mcap: cannot be written: No space left on device"), std::string::npos)
+      << recorder.errors;
+  {
+    const mcap::Reader recorded(small + "/full.mcap");
+    EXPECT_TRUE(recorded.damages().empty());
+    EXPECT_GT(recorded.statistics().message_count, 500U);
+  }
+  EXPECT_FALSE(vehicle_->exit_code().has_value());
+  EXPECT_EQ(::umount(small.c_str()), 0);
 }
 
 TEST_F(Log, OfAllVehiclesHasThoseThatAppearLater) {
@@ -277,6 +343,32 @@ TEST_F(LogTools, CutAndMergeToTheSameMessages) {
   EXPECT_EQ(imu.exit_code, 0) << imu.errors;
   EXPECT_EQ(heads_of(mcap::Reader(path("imu.mcap"))).size(), 1U);
   EXPECT_EQ(log({"cut", file_, "-o", file_, "--replace"}).exit_code, 2);
+}
+
+TEST_F(LogTools, PublishTheMessagesAgain) {
+  const ProgramResult refused =
+      run_program("swiftlet", on_this_domain({"log", "replay", file_}), folder_.path());
+  EXPECT_EQ(refused.exit_code, 1) << "a vehicle of this name lives";
+  vehicle_.reset();
+  const std::string again = path("again.mcap");
+  const auto recorder = start("swiftlet", {"record", "--output", again});
+  ASSERT_TRUE(eventually([&] { return recorder->errors().find("recording to") != std::string::npos; }));
+  const ProgramResult replayed =
+      run_program("swiftlet", on_this_domain({"log", "replay", file_, "--json"}), folder_.path(), kStuck);
+  ASSERT_EQ(replayed.exit_code, 0) << replayed.errors;
+  recorder->signal(SIGINT);
+  ASSERT_EQ(recorder->wait(kStuck), 0) << recorder->errors();
+  const auto before = heads_of(mcap::Reader(file_));
+  const auto after = heads_of(mcap::Reader(again));
+  const auto& imu = before.at("/kl1/imu");
+  ASSERT_EQ(after.at("/kl1/imu").size(), imu.size());
+  const auto length_ns = [](const std::vector<mcap::Message>& messages) {
+    return messages.back().log_time_ns - messages.front().log_time_ns;
+  };
+  EXPECT_NEAR(static_cast<double>(length_ns(after.at("/kl1/imu"))), static_cast<double>(length_ns(imu)),
+              0.2 * kSecond_ns);
+  const ProgramResult difference = log({"diff", file_, again, "--topic", "/kl1/imu", "--json"});
+  EXPECT_EQ(json::parse(difference.output).at("equal"), true) << difference.output;
 }
 
 TEST_F(LogTools, WriteTheValuesOfATopic) {

@@ -28,13 +28,13 @@ void require_new(const std::string& output, bool replace, const std::vector<std:
 }
 
 Command add_log_command(runtime::CommandLine root) {
-  const runtime::CommandLine app =
-      root.add_subcommand("log", "Inspect, cut, merge, repair, export and compare recorded MCAP files");
+  const runtime::CommandLine app = root.add_subcommand(
+      "log", "Inspect, cut, merge, repair, export, compare and replay recorded MCAP files");
   app.require_subcommand(1, 1);
-  const std::vector<Command> commands = {add_log_info_command(app),   add_log_ls_command(app),
-                                         add_log_cut_command(app),    add_log_merge_command(app),
-                                         add_log_repair_command(app), add_log_csv_command(app),
-                                         add_log_npz_command(app),    add_log_diff_command(app)};
+  const std::vector<Command> commands = {
+      add_log_info_command(app),  add_log_ls_command(app),     add_log_cut_command(app),
+      add_log_merge_command(app), add_log_repair_command(app), add_log_csv_command(app),
+      add_log_npz_command(app),   add_log_diff_command(app),   add_log_replay_command(app)};
   app.footer("example: swiftlet log info flight.mcap");
   return {app, [commands] {
             for (const Command& command : commands) {

@@ -18,6 +18,7 @@ Command add_log_repair_command(runtime::CommandLine log);
 Command add_log_csv_command(runtime::CommandLine log);
 Command add_log_npz_command(runtime::CommandLine log);
 Command add_log_diff_command(runtime::CommandLine log);
+Command add_log_replay_command(runtime::CommandLine log);
 
 // The part of a file that an option selects: times in s from its first message.
 struct TimeRange {

@@ -45,8 +45,13 @@ void print(const std::vector<TopicDifference>& differences) {
   fmt::print("{:<{}} {:>10} {:>10} {:>11} {:>11} {:>9}\n", "topic", width, "messages A", "B", "RMS B - A",
              "max", "at, s");
   for (const TopicDifference& topic : differences) {
+    const bool alike =
+        topic.compared > 0 && std::all_of(topic.signals.begin(), topic.signals.end(),
+                                          [](const SignalDifference& signal) { return signal.max == 0.0; });
     fmt::print("{:<{}} {:>10} {:>10}{}\n", topic.topic, width, topic.messages_a, topic.messages_b,
-               topic.equal ? "       equal" : "");
+               topic.equal ? "       equal"
+               : alike     ? "  no difference"
+                           : "");
     for (const SignalDifference& signal : topic.signals) {
       if (signal.max == 0.0) continue;
       fmt::print("  {:<{}} {:>33.4g} {:>11.4g} {:>9.3f}\n", signal.name, width - 2, signal.rms, signal.max,

@@ -164,10 +164,44 @@ TEST(StandardMessages, OfImuAndBatteryAreInFluAndSi) {
       following(standard, "rotor_speeds", comms::to_message(comms::tests::rotor_speed_sample()), 1).empty());
 }
 
+TEST(StandardMessages, OfEventsAreLinesOfALog) {
+  StandardMessages standard("kl1");
+  const auto line_of = [](const std::vector<StandardMessage>& messages) {
+    return messages.size() == 1 ? std::get<std::string>(decoded(messages[0]).at("message")) : "";
+  };
+  comms::msg::ControlStatus status;
+  status.mode(static_cast<std::uint8_t>(4));
+  status.reason() = "mission started";
+  const auto first = following(standard, "control_status", status, 3'000'000'001);
+  ASSERT_EQ(first.size(), 1U);
+  EXPECT_EQ(first[0].topic, "/kl1/log");
+  EXPECT_EQ(decoded(first[0]).at("name"), mcap::Value(std::string("kl1/control")));
+  EXPECT_EQ(decoded(first[0]).at("timestamp.nanosec"), mcap::Value(std::uint64_t{1}));
+  EXPECT_NE(line_of(first).find(": mission started"), std::string::npos) << line_of(first);
+  EXPECT_TRUE(following(standard, "control_status", status, 4'000'000'000).empty()) << "nothing new";
+  comms::msg::CommandAck ack;
+  ack.reason() = "not armed";
+  EXPECT_EQ(line_of(following(standard, "command_ack", ack, 5)), "request refused: not armed");
+  comms::msg::VehicleInfo info;
+  EXPECT_TRUE(following(standard, "vehicle_info", info, 6).empty());
+  info.rotors_running(true);
+  EXPECT_EQ(line_of(following(standard, "vehicle_info", info, 7)), "rotors started");
+  info.fault() = "no command for 0.1 s";
+  const auto fault = following(standard, "vehicle_info", info, 8);
+  EXPECT_EQ(line_of(fault), "no command for 0.1 s");
+  EXPECT_EQ(decoded(fault[0]).at("level"), mcap::Value(std::uint64_t{4}));
+  comms::msg::MissionStatus mission;
+  EXPECT_TRUE(following(standard, "mission_status", mission, 9).empty()) << "none yet";
+  mission.state(comms::msg::MissionStatus_Constants::ABORTED);
+  mission.reason() = "pilot";
+  EXPECT_EQ(line_of(following(standard, "mission_status", mission, 10)), "mission aborted: pilot");
+}
+
 TEST(StandardMessages, OfBytesThatAreNoMessageAreNone) {
   StandardMessages standard("kl1");
   const std::string bytes = "no message";
-  for (const char* topic : {"estimate", "reference", "imu", "battery"})
+  for (const char* topic : {"estimate", "reference", "imu", "battery", "control_status", "mission_status",
+                            "command_ack", "vehicle_info"})
     EXPECT_TRUE(standard.of(topic, sample(0, bytes)).empty()) << topic;
 }
 

@@ -1,0 +1,250 @@
+#include "swiftlet/ground/flight/simulated_recorder.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <optional>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "swiftlet/ground/flight/flight_description.hpp"
+#include "swiftlet/io/logs/flight_log_files.hpp"
+#include "swiftlet/recording/telemetry_rate.hpp"
+#include "swiftlet/services/dds/payload.hpp"
+#include "swiftlet/services/messages/convert.hpp"
+#include "swiftlet/services/messages/schemas.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+namespace topics = comms::topics;
+
+constexpr const char* kVehicle = "kl1";
+constexpr std::uint64_t kClient = 1;                // the only one
+constexpr std::uint64_t kFirstRequest = 1'000'000;  // above the ids of missions
+constexpr std::int64_t kStatusPeriod_ns = 1'000'000'000;
+
+bool differ(const control::MissionProgress& a, const control::MissionProgress& b) {
+  return a.id != b.id || a.state != b.state || a.item_index != b.item_index;
+}
+
+bool is_over(control::MissionState state) {
+  return state == control::MissionState::kCompleted || state == control::MissionState::kAborted;
+}
+
+}  // namespace
+
+SimulatedRecorder::SimulatedRecorder(ClosedLoop& loop, const LaunchConfiguration& plan,
+                                     const std::string& program)
+    : loop_(loop),
+      imu_period_ns_(plant::period_ns(loop.imu_rate_hz)),
+      failsafe_(plan.control.failsafe),
+      file_(plan.folder / kMessagesFile, writer_settings(program), true) {
+  vehicle_info_.name() = plan.vehicle.name;
+  vehicle_info_.simulated(true);
+  vehicle_info_.rotor_count(static_cast<std::uint8_t>(plan.vehicle.rotor_count()));
+  vehicle_info_.mass_kg(plan.vehicle.mass_kg);
+  vehicle_info_.imu_rate_hz(loop.imu_rate_hz);
+  vehicle_info_.control_levels(plan.simulation.control_levels.bits());
+  const Fleet fleet{{kVehicle}, {plan}, 0.0, 0, plan.folder, program};
+  attempt([&] {
+    file_.write(recorder_metadata(RecordClock::kVehicle));
+    file_.write(flight_metadata(fleet));
+    for (const mcap::Attachment& attachment : flight_attachments(fleet)) file_.write(attachment);
+  });
+  write_vehicle_info();
+  if (loop.answered) {  // at stamp 0, before anything could listen
+    plant::ObeyedCommand none;
+    none.reported = true;
+    write_sample({*loop.answered, none, loop.plant.battery(), loop.plant.rotor_speeds()}, std::nullopt);
+    step();
+  }
+  loop.on_answered = [this](const plant::TelemetryPacket& packet,
+                            const std::optional<plant::PoseSample>& pose) { write_sample(packet, pose); };
+}
+
+SimulatedRecorder::~SimulatedRecorder() { loop_.on_answered = nullptr; }
+
+template <class Work>
+void SimulatedRecorder::attempt(const Work& work) {
+  if (!fault_.empty()) return;
+  try {
+    work();
+  } catch (const std::exception& fault) {
+    fault_ = fault.what();
+  }
+}
+
+template <class T>
+void SimulatedRecorder::write(const comms::Topic<T>& topic, const T& message, std::int64_t time_ns) {
+  attempt([&] {
+    auto channel = channels_.find(topic.name);
+    if (channel == channels_.end()) {
+      const std::uint16_t id = file_.add_channel(kVehicle, topic.name, comms::schema_of<T>());
+      channel = channels_.emplace(topic.name, id).first;
+    }
+    const std::vector<std::uint8_t> payload = comms::to_payload(message);
+    file_.write(mcap::Message{
+        channel->second, ++counts_[channel->second], time_ns, time_ns, {payload.data(), payload.size()}});
+  });
+}
+
+void SimulatedRecorder::write_sample(const plant::TelemetryPacket& packet,
+                                     const std::optional<plant::PoseSample>& pose) {
+  const std::int64_t now_ns = loop_.plant.stamp_ns();
+  if (packet.rotor_speeds) {
+    rotor_speeds_sequence_ = packet.rotor_speeds->sequence;
+    write(topics::kRotorSpeeds, comms::to_message(*packet.rotor_speeds), now_ns);
+  }
+  if (packet.battery) {
+    battery_sequence_ = packet.battery->sequence;
+    write(topics::kBattery, comms::to_message(*packet.battery), now_ns);
+  }
+  if (pose) {
+    pose_sequence_ = pose->sequence;
+    write(topics::kMocapPose, comms::to_message(*pose), now_ns);
+  }
+  comms::msg::Imu imu = comms::to_message(packet.imu);
+  comms::set_obeyed_command(packet.obeyed, imu);
+  imu.mocap_sequence_number(pose_sequence_);
+  imu.battery_sequence_number(battery_sequence_);
+  imu.rotor_speeds_sequence_number(rotor_speeds_sequence_);
+  write(topics::kImu, imu, now_ns);
+  write_command(now_ns);
+}
+
+void SimulatedRecorder::write_command(std::int64_t now_ns) {
+  std::visit(
+      [&](const auto& command) {
+        using Command = std::decay_t<decltype(command)>;
+        if constexpr (std::is_same_v<Command, plant::ActuatorCommand>)
+          write(topics::kActuatorCommand, comms::to_message(command), now_ns);
+        if constexpr (std::is_same_v<Command, plant::RatesSetpoint>)
+          write(topics::kRatesSetpoint, comms::to_message(command), now_ns);
+        if constexpr (std::is_same_v<Command, plant::AttitudeSetpoint>)
+          write(topics::kAttitudeSetpoint, comms::to_message(command), now_ns);
+        if constexpr (std::is_same_v<Command, plant::TrajectorySetpoint>)
+          write(topics::kTrajectorySetpoint, comms::to_message(command), now_ns);
+      },
+      loop_.sent);
+}
+
+void SimulatedRecorder::step() {
+  const std::int64_t now_ns = loop_.plant.stamp_ns();
+  if (runtime::is_telemetry_sample(loop_.plant.imu_count(), imu_period_ns_)) {
+    comms::msg::GroundTruth truth = comms::to_message(loop_.plant.truth());
+    truth.stamp_ns(now_ns);
+    truth.sequence_number(++truth_sequence_);
+    write(topics::kGroundTruth, truth, now_ns);
+  }
+  if (loop_.answered && loop_.answered->sequence != answered_sequence_) {
+    answered_sequence_ = loop_.answered->sequence;
+    if (runtime::is_telemetry_sample(answered_sequence_, imu_period_ns_)) write_telemetry();
+  }
+  write_changes();
+  const bool running = loop_.command.rotor_state == plant::RotorState::kRunning;
+  if (running != vehicle_info_.rotors_running() || now_ns - vehicle_info_ns_ >= kStatusPeriod_ns)
+    write_vehicle_info();
+}
+
+void SimulatedRecorder::write_telemetry() {
+  const control::FlightController& controller = loop_.controller;
+  const control::Status& status = controller.status();
+  const std::int64_t now_ns = loop_.plant.stamp_ns();
+  ++telemetry_sequence_;
+  comms::msg::Estimate estimate =
+      comms::to_message(controller.estimate(), controller.estimate_deviation(), status.pose_age_s);
+  estimate.sequence_number(telemetry_sequence_);
+  write(topics::kEstimate, estimate, now_ns);
+  comms::msg::Reference reference =
+      comms::to_message(controller.reference(), controller.attitude_setpoint(), status.mode);
+  reference.stamp_ns(loop_.answered->stamp_ns);
+  reference.sequence_number(telemetry_sequence_);
+  write(topics::kReference, reference, now_ns);
+}
+
+void SimulatedRecorder::write_changes() {
+  const control::Status& now = loop_.controller.status();
+  const std::int64_t now_ns = loop_.plant.stamp_ns();
+  const bool mode_changed = !status_ || now.mode != status_->mode || now.reason != status_->reason;
+  const bool mission_changed = !status_ || differ(now.mission, status_->mission);
+  if (mode_changed || now_ns - status_ns_ >= kStatusPeriod_ns) write_status(now);
+  if (mission_changed || now_ns - mission_ns_ >= kStatusPeriod_ns) write_mission(now);
+  if (mode_changed || mission_changed) status_ = now;
+}
+
+void SimulatedRecorder::write_status(const control::Status& status) {
+  status_ns_ = loop_.plant.stamp_ns();
+  comms::msg::ControlStatus message;
+  message.stamp_ns(status_ns_);
+  message.sequence_number(++status_sequence_);
+  message.mode(static_cast<std::uint8_t>(status.mode));
+  message.reason() = control::to_string(status.reason);
+  message.airborne(status.airborne);
+  message.has_pose(status.has_pose);
+  message.pose_age_s(status.pose_age_s);
+  message.supply_voltage_v(status.supply_voltage_v);
+  message.low_battery_voltage_v(failsafe_.low_battery_voltage);
+  message.critical_battery_voltage_v(failsafe_.critical_battery_voltage);
+  message.saturated(status.saturated);
+  message.rate_hz(loop_.imu_rate_hz);
+  message.control_level(plant::ControlLevels(status.level).bits());
+  message.settings() = status.settings.data();
+  message.gains_progress(status.gains_progress);
+  message.gains(comms::to_message(loop_.controller.gains()));
+  write(topics::kControlStatus, message, status_ns_);
+}
+
+void SimulatedRecorder::write_mission(const control::Status& status) {
+  mission_ns_ = loop_.plant.stamp_ns();
+  comms::msg::MissionStatus message;
+  message.stamp_ns(mission_ns_);
+  message.sequence_number(++mission_sequence_);
+  message.mission_id(status.mission.id);
+  message.state(static_cast<std::uint8_t>(status.mission.state));
+  message.item_index(static_cast<std::uint32_t>(std::max(status.mission.item_index, 0)));
+  message.item_count(static_cast<std::uint32_t>(std::max(status.mission.item_count, 0)));
+  if (is_over(status.mission.state)) message.reason() = control::to_string(status.reason);
+  write(topics::kMissionStatus, message, mission_ns_);
+}
+
+void SimulatedRecorder::write_vehicle_info() {
+  vehicle_info_ns_ = loop_.plant.stamp_ns();
+  vehicle_info_.stamp_ns(vehicle_info_ns_);
+  vehicle_info_.sequence_number(vehicle_info_.sequence_number() + 1);
+  vehicle_info_.rotors_running(loop_.command.rotor_state == plant::RotorState::kRunning);
+  write(topics::kVehicleInfo, vehicle_info_, vehicle_info_ns_);
+}
+
+void SimulatedRecorder::request(const control::Request& request, const control::Outcome& outcome) {
+  const std::int64_t now_ns = loop_.plant.stamp_ns();
+  ++request_sequence_;
+  std::uint64_t id = kFirstRequest + request_sequence_;
+  if (request.kind == control::RequestKind::kMissionUpload) {
+    comms::msg::Mission mission = comms::to_message(*request.mission);
+    mission.client(kClient);
+    id = request.mission->id;
+    mission.id(id);
+    write(topics::kMission, mission, now_ns);
+    if (outcome.accepted) write(topics::kFlownMission, mission, now_ns);
+  } else {
+    comms::msg::Command command = comms::to_message(request);
+    command.client(kClient);
+    command.id(id);
+    write(topics::kCommand, command, now_ns);
+  }
+  comms::msg::CommandAck ack;
+  ack.client(kClient);
+  ack.id(id);
+  ack.accepted(outcome.accepted);
+  ack.reason() = outcome.reason;
+  ack.stamp_ns(now_ns);
+  write(topics::kCommandAck, ack, now_ns);
+}
+
+std::string SimulatedRecorder::finish() {
+  attempt([&] { file_.close(); });
+  return fault_;
+}
+
+}  // namespace swiftlet::ground
