@@ -224,10 +224,11 @@ void fly_an_hour(const Options& options) {
   const fs::path mission = folder.path() / "hour.yaml";
   {
     std::ofstream text(mission);
-    text << "name: hour\nframe: ned\ntolerance_m: 0.1\nitems:\n  - {kind: takeoff, height_m: 1.0}\n";
+    text << "name: hour\nframe: ned\ntolerance_m: 0.1\nitems:\n  - {kind: takeoff, height_m: 1.0, speed_m_s: "
+            "0.5}\n";
     for (int i = 0; i < 6; ++i)
       text << "  - {kind: waypoint, position_m: [" << i % 2 << ", 0, -1], speed_m_s: 0.5, hold_s: 590}\n";
-    text << "  - {kind: land}\n";
+    text << "  - {kind: land, speed_m_s: 0.5}\n";
   }
   const auto begin = Steady::now();
   const fs::path log = fly(mission, 500, folder.path() / "flight");
