@@ -69,6 +69,7 @@ void ClosedLoop::answer(const plant::TelemetryPacket& packet) {
   if (packet.rotor_speeds) controller.on_rotor_speeds(*packet.rotor_speeds);
   sent = packet.odometry ? controller.on_odometry(*packet.odometry) : controller.on_imu(packet.imu);
   answered = packet.imu;
+  answered_odometry = packet.odometry;
   if (sensors != nullptr) record_sensors(packet);
   if (on_answered) on_answered(packet, pose_);
   pose_.reset();

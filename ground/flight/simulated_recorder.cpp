@@ -46,7 +46,7 @@ SimulatedRecorder::SimulatedRecorder(ClosedLoop& loop, const LaunchConfiguration
   vehicle_info_.mass_kg(plan.vehicle.mass_kg);
   vehicle_info_.imu_rate_hz(loop.imu_rate_hz);
   vehicle_info_.control_levels(plan.simulation.control_levels.bits());
-  const Fleet fleet{{kVehicle}, {plan}, 0.0, 0, plan.folder, program};
+  const Fleet fleet{{kVehicle}, {plan}, plan.folder, program};
   attempt([&] {
     file_.write(recorder_metadata(RecordClock::kVehicle));
     file_.write(flight_metadata(fleet));
@@ -54,9 +54,13 @@ SimulatedRecorder::SimulatedRecorder(ClosedLoop& loop, const LaunchConfiguration
   });
   write_vehicle_info();
   if (loop.answered) {  // at stamp 0, before anything could listen
-    plant::ObeyedCommand none;
-    none.reported = true;
-    write_sample({*loop.answered, none, loop.plant.battery(), loop.plant.rotor_speeds()}, std::nullopt);
+    plant::TelemetryPacket first;
+    first.imu = *loop.answered;
+    first.odometry = loop.answered_odometry;
+    first.obeyed.reported = true;
+    first.battery = loop.plant.battery();
+    first.rotor_speeds = loop.plant.rotor_speeds();
+    write_sample(first, std::nullopt);
     step();
   }
   loop.on_answered = [this](const plant::TelemetryPacket& packet,
@@ -104,12 +108,18 @@ void SimulatedRecorder::write_sample(const plant::TelemetryPacket& packet,
     pose_sequence_ = pose->sequence;
     write(topics::kMocapPose, comms::to_message(*pose), now_ns);
   }
-  comms::msg::Imu imu = comms::to_message(packet.imu);
-  comms::set_obeyed_command(packet.obeyed, imu);
-  imu.mocap_sequence_number(pose_sequence_);
-  imu.battery_sequence_number(battery_sequence_);
-  imu.rotor_speeds_sequence_number(rotor_speeds_sequence_);
-  write(topics::kImu, imu, now_ns);
+  const auto write_answered = [&](const auto& topic, auto message) {
+    comms::set_obeyed_command(packet.obeyed, message);
+    message.mocap_sequence_number(pose_sequence_);
+    message.battery_sequence_number(battery_sequence_);
+    message.rotor_speeds_sequence_number(rotor_speeds_sequence_);
+    write(topic, message, now_ns);
+  };
+  if (packet.odometry) {
+    write_answered(topics::kVehicleOdometry, comms::to_message(*packet.odometry));
+  } else {
+    write_answered(topics::kImu, comms::to_message(packet.imu));
+  }
   write_command(now_ns);
 }
 

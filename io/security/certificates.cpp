@@ -160,7 +160,7 @@ void limit_end(X509* certificate, const X509* authority) {
 }
 
 Key new_key() {
-  Key key(EVP_EC_gen("P-256"));
+  Key key(EVP_PKEY_Q_keygen(nullptr, nullptr, "EC", "P-256"));
   require(key != nullptr, "make a private key");
   return key;
 }

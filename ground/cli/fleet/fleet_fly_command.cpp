@@ -36,7 +36,7 @@ std::vector<FleetVehicle> by_vehicle_file(std::vector<FleetVehicle> vehicles) {
 
 FlyOptions options_of(const FleetVehicle& vehicle, const FleetCheck& check, FlyOptions options) {
   options.mission = vehicle.member.mission_file.string();
-  options.reading = vehicle.reading;
+  static_cast<FileOptions&>(options.reading) = vehicle.reading;
   options.vehicle = vehicle.member.vehicle_file.string();
   options.control = check.fleet.control_file.string();
   options.simulation = check.fleet.simulation_file.string();

@@ -126,11 +126,11 @@ FlightLog receive_motion(const comms::NodeSettings& settings, double time_s, run
     if (!recorder.record(time, interrupted)) throw std::runtime_error("mocap calibrate: interrupted");
   };
   const auto begin = std::chrono::steady_clock::now();
-  while (!recorder.hears_imu() || !recorder.newest_tracked_pose()) {
+  while (!recorder.newest_imu() || !recorder.newest_tracked_pose()) {
     record(50ms);
     if (std::chrono::steady_clock::now() - begin > std::chrono::duration<double>(kLongestWait_s))
       throw std::runtime_error(fmt::format("no {} of {} arrived in {:g} s",
-                                           recorder.hears_imu() ? "tracked mocap_pose" : "imu",
+                                           recorder.newest_imu() ? "tracked mocap_pose" : "imu",
                                            settings.vehicle, kLongestWait_s));
   }
   recorder.restart();
