@@ -62,7 +62,7 @@ class ClosedLoop {
   bool control_connected = true;             // false: the vehicle receives no commands
   std::optional<plant::ImuSample> answered;  // the last sample that the controller has processed
   std::optional<plant::OdometrySample> answered_odometry;  // that it processed in place of it
-  SensorRecord* sensors = nullptr;           // records the controller's inputs and commands; null: no record
+  SensorRecord* sensors = nullptr;  // records the controller's inputs and commands; null: no record
   // Called after each sample that the controller has processed, with the pose that came with it; may be empty.
   std::function<void(const plant::TelemetryPacket&, const std::optional<plant::PoseSample>&)> on_answered;
 

@@ -23,9 +23,9 @@ struct SimulatedFlight {
 struct FlightObserver {
   FlightRecord* record = nullptr;  // ground truth at each IMU sample, the rest at the telemetry rate
   runtime::FlightTrace* trace = nullptr;
-  std::function<bool()> cancelled;  // polled at the telemetry rate; true ends the flight
-  std::function<void()> stepped;    // after each step of the loop
-  std::function<void(const control::Request&, const control::Outcome&)> requested;  // after each request
+  std::function<bool()> cancelled = {};  // polled at the telemetry rate; true ends the flight
+  std::function<void()> stepped = {};    // after each step of the loop
+  std::function<void(const control::Request&, const control::Outcome&)> requested = {};  // after each request
 };
 
 // Arms, flies the mission and lands. The loop must be newly constructed. The mission must have an id other
