@@ -19,7 +19,7 @@
 
 namespace swiftlet::ground {
 
-// One vehicle as the monitor is told of it at the start.
+// One vehicle, as the monitor knows it at the start.
 struct MonitoredVehicle : RightOfWay::Vehicle {
   double stop_s = 0.5;  // path time in which it stops after it is told to, with the delay until it hears that
   int priority = 1;
