@@ -78,8 +78,9 @@ TEST_F(BadInput, SeveralVehicles) {
 }
 
 TEST_F(BadInput, UnknownNames) {
-  expect_refusal({"squre"},
-                 "No mission 'squre'. Did you mean 'square'? Available: identification, square, tour");
+  expect_refusal(
+      {"squre"},
+      "No mission 'squre'. Did you mean 'square'? Available: calibration, identification, square, tour");
   expect_refusal({"square", "--vehicle", "kaylon"}, "No vehicle 'kaylon'. Did you mean 'kaylion'?");
   expect_refusal({"square", "--control", "papr"}, "No control settings 'papr'. Did you mean 'paper'?");
   const std::string file = folder_.write("kind.yaml", replaced(kMission, "waypoint", "waypont"));
