@@ -4,14 +4,12 @@
 #include <array>
 #include <chrono>
 #include <condition_variable>
-#include <cstdlib>
 #include <limits>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <set>
 #include <stdexcept>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -23,6 +21,7 @@
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/mcap/message_decoder.hpp"
 #include "swiftlet/io/mcap/series.hpp"
+#include "swiftlet/io/temporary_folder.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/payload.hpp"
 #include "swiftlet/services/messages/schemas.hpp"
@@ -57,27 +56,6 @@ std::optional<T> message_in(mcap::ByteView payload) {
   if (!comms::from_payload(payload.data, payload.size, message)) return std::nullopt;
   return message;
 }
-
-// A folder for the settings and the log of the control process.
-class WorkFolder {
- public:
-  WorkFolder() {
-    std::string pattern = fs::temp_directory_path() / "swiftlet-replay-XXXXXX";
-    if (::mkdtemp(pattern.data()) == nullptr)
-      throw std::system_error(errno, std::generic_category(), pattern + " cannot be made");
-    path_ = pattern;
-  }
-  ~WorkFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 struct Level {
   const char* name;   // of the option --level
@@ -396,7 +374,7 @@ std::string settings_file(const mcap::Reader& file, const fs::path& given, const
 ControlReplay replay_into_control(const mcap::Reader& file, const ControlReplaySettings& settings,
                                   const std::function<bool(double)>& proceed) {
   const Inputs inputs(file, settings.vehicle);
-  const WorkFolder folder;
+  const auto folder = runtime::TemporaryFolder::of_the_system("swiftlet-replay");
   ControlReplay replay;
   const std::string vehicle = settings_file(file, settings.vehicle_file, "vehicle.yaml", "kaylion",
                                             folder.path(), replay.vehicle_file);

@@ -1,6 +1,7 @@
 // flight.mcap of a flight's record: every message of its vehicles.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "swiftlet/ground/flight/launch_configuration.hpp"
@@ -16,12 +17,14 @@ class MessageRecord {
   // std::runtime_error.
   MessageRecord(const comms::NodeSettings& network, const Fleet& fleet);
 
-  // Ends the file. Returns a sentence if it is not complete.
+  // Adds the lines of the processes' logs to a file in real time, and ends it. The processes have ended. Returns a sentence if it is not complete.
   std::string finish();
 
  private:
   comms::Participant participant_;
   FlightRecorder recorder_;
+  const std::filesystem::path folder_;
+  const bool simulated_time_;
 };
 
 }  // namespace swiftlet::ground

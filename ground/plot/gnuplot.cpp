@@ -4,10 +4,8 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <exception>
 #include <iterator>
-#include <memory>
 #include <stdexcept>
 #include <string_view>
 
@@ -16,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "swiftlet/io/atomic_write.hpp"
+#include "swiftlet/io/temporary_folder.hpp"
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/runtime/child_process.hpp"
 
@@ -207,13 +206,8 @@ bool is_whole(const std::string& picture) {
 std::string run_gnuplot(const std::string& script) {
   const fs::path gnuplot = ground::find_program("gnuplot");
   if (gnuplot.empty()) throw std::runtime_error(kNotInstalled);
-  std::string name = fs::temp_directory_path() / "swiftlet-plot.XXXXXX";
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + " cannot be made");
-  const fs::path folder = name;
-  const std::shared_ptr<void> removed_at_the_end(nullptr, [&](void*) {
-    std::error_code error;
-    fs::remove_all(folder, error);
-  });
+  const auto temporary = runtime::TemporaryFolder::of_the_system("swiftlet-plot");
+  const fs::path& folder = temporary.path();
   runtime::write_atomically(folder / "script", script);
   ground::ChildProcess process({"gnuplot", gnuplot, {"script"}, folder / "log", folder});
   const auto end = process.wait(kLongest);

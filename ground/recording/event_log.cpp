@@ -49,6 +49,16 @@ std::string joined(const std::string& what, const std::string& why) {
 
 }  // namespace
 
+StandardMessage log_message(const std::string& topic, std::int64_t time_ns, LogLevel level,
+                            const std::string& name, const std::string& text) {
+  CdrWriter out;
+  out.put(static_cast<std::int32_t>(time_ns / kSecond_ns))
+      .put(static_cast<std::uint32_t>(time_ns % kSecond_ns))
+      .put(static_cast<std::uint8_t>(level));
+  out.text(text).text(name).text("").put(std::uint32_t{0});
+  return {topic, &kLog, out.take()};
+}
+
 EventLog::EventLog(std::string vehicle) : vehicle_(std::move(vehicle)) {}
 
 std::vector<StandardMessage> EventLog::of(const std::string& topic, const mcap::Message& message) {
@@ -60,31 +70,27 @@ std::vector<StandardMessage> EventLog::of(const std::string& topic, const mcap::
   return lines;
 }
 
-StandardMessage EventLog::line(std::int64_t time_ns, Level level, const char* process,
+StandardMessage EventLog::line(std::int64_t time_ns, LogLevel level, const char* process,
                                const std::string& text) const {
-  CdrWriter out;
-  out.put(static_cast<std::int32_t>(time_ns / kSecond_ns))
-      .put(static_cast<std::uint32_t>(time_ns % kSecond_ns))
-      .put(static_cast<std::uint8_t>(level));
-  out.text(text).text(vehicle_ + "/" + process).text("").put(std::uint32_t{0});
-  return {"/" + vehicle_ + "/log", &kLog, out.take()};
+  return log_message("/" + vehicle_ + "/log", time_ns, level, vehicle_ + "/" + process, text);
 }
 
 void EventLog::of_control_status(const mcap::Message& message, std::vector<StandardMessage>& lines) {
   comms::msg::ControlStatus status;
   if (!read(message, status)) return;
-  const auto say = [&](Level level, const std::string& text) {
+  const auto say = [&](LogLevel level, const std::string& text) {
     lines.push_back(line(message.log_time_ns, level, "control", text));
   };
   const std::string mode =
       joined(control::to_string(static_cast<control::Mode>(status.mode())), status.reason().c_str());
-  if (mode != mode_) say(Level::kInfo, mode);
+  if (mode != mode_) say(LogLevel::kInfo, mode);
   mode_ = mode;
   const std::string conflict = status.source_conflict().c_str();
-  if (conflict != source_conflict_ && !conflict.empty()) say(Level::kWarning, conflict);
+  if (conflict != source_conflict_ && !conflict.empty()) say(LogLevel::kWarning, conflict);
   source_conflict_ = conflict;
   const std::string refusal = status.setpoint_refusal().c_str();
-  if (refusal != setpoint_refusal_ && !refusal.empty()) say(Level::kWarning, "setpoint refused: " + refusal);
+  if (refusal != setpoint_refusal_ && !refusal.empty())
+    say(LogLevel::kWarning, "setpoint refused: " + refusal);
   setpoint_refusal_ = refusal;
 }
 
@@ -96,8 +102,8 @@ void EventLog::of_mission_status(const mcap::Message& message, std::vector<Stand
   const bool first = mission_.empty() && state == control::MissionState::kNone;
   if (mission != mission_ && !first)
     lines.push_back(line(message.log_time_ns,
-                         state == control::MissionState::kAborted ? Level::kWarning : Level::kInfo, "control",
-                         mission));
+                         state == control::MissionState::kAborted ? LogLevel::kWarning : LogLevel::kInfo,
+                         "control", mission));
   mission_ = mission;
 }
 
@@ -105,7 +111,7 @@ void EventLog::of_command_ack(const mcap::Message& message, std::vector<Standard
   comms::msg::CommandAck ack;
   if (!read(message, ack)) return;
   lines.push_back(
-      line(message.log_time_ns, ack.accepted() ? Level::kInfo : Level::kWarning, "control",
+      line(message.log_time_ns, ack.accepted() ? LogLevel::kInfo : LogLevel::kWarning, "control",
            joined(ack.accepted() ? "request accepted" : "request refused", ack.reason().c_str())));
 }
 
@@ -114,10 +120,10 @@ void EventLog::of_vehicle_info(const mcap::Message& message, std::vector<Standar
   if (!read(message, info)) return;
   const std::string fault = info.fault().c_str();
   if (fault != fault_ && !fault.empty())
-    lines.push_back(line(message.log_time_ns, Level::kError, "vehicle", fault));
+    lines.push_back(line(message.log_time_ns, LogLevel::kError, "vehicle", fault));
   fault_ = fault;
   if (rotors_running_ && *rotors_running_ != info.rotors_running())
-    lines.push_back(line(message.log_time_ns, Level::kInfo, "vehicle",
+    lines.push_back(line(message.log_time_ns, LogLevel::kInfo, "vehicle",
                          info.rotors_running() ? "rotors started" : "rotors stopped"));
   rotors_running_ = info.rotors_running();
 }

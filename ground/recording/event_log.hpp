@@ -11,6 +11,12 @@
 
 namespace swiftlet::ground {
 
+enum class LogLevel : std::uint8_t { kDebug = 1, kInfo = 2, kWarning = 3, kError = 4, kFatal = 5 };
+
+// A line of type foxglove Log. time_ns: since 1970. name: who says it.
+StandardMessage log_message(const std::string& topic, std::int64_t time_ns, LogLevel level,
+                            const std::string& name, const std::string& text);
+
 // Lines follow from
 //   control_status   mode and reason when they change, refused setpoints, conflicts of sources
 //   mission_status   state of the mission when it changes
@@ -24,10 +30,8 @@ class EventLog {
   std::vector<StandardMessage> of(const std::string& topic, const mcap::Message& message);
 
  private:
-  // Values of foxglove Log.
-  enum class Level : std::uint8_t { kInfo = 2, kWarning = 3, kError = 4 };
-
-  StandardMessage line(std::int64_t time_ns, Level level, const char* process, const std::string& text) const;
+  StandardMessage line(std::int64_t time_ns, LogLevel level, const char* process,
+                       const std::string& text) const;
   void of_control_status(const mcap::Message& message, std::vector<StandardMessage>& lines);
   void of_mission_status(const mcap::Message& message, std::vector<StandardMessage>& lines);
   void of_command_ack(const mcap::Message& message, std::vector<StandardMessage>& lines) const;

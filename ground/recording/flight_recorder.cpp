@@ -98,6 +98,10 @@ void FlightRecorder::add(const mcap::Attachment& attachment) {
   use_file([&](MessageFile& file) { file.write(attachment); });
 }
 
+void FlightRecorder::add(const StandardMessage& message, std::int64_t time_ns) {
+  use_file([&](MessageFile& file) { file.write(message, time_ns); });
+}
+
 void FlightRecorder::add_vehicle(const std::string& name) {
   vehicles_.push_back(std::make_unique<Vehicle>(name));
   Vehicle& vehicle = *vehicles_.back();

@@ -52,6 +52,7 @@ class FlightRecorder {
   void add_vehicle(const std::string& name);
   void add(const mcap::Metadata& metadata);
   void add(const mcap::Attachment& attachment);
+  void add(const StandardMessage& message, std::int64_t time_ns);
 
   RecorderTotals totals() const;
   // Why it records no more, as a sentence: the disk is full.

@@ -40,6 +40,11 @@ void MessageFile::write(const mcap::Message& message) {
   }
 }
 
+void MessageFile::write(const StandardMessage& message, std::int64_t time_ns) {
+  file_.write(mcap::Message{
+      standard_channel(message), 0, time_ns, time_ns, {message.payload.data(), message.payload.size()}});
+}
+
 std::uint16_t MessageFile::schema_in(const comms::MessageSchema& schema) {
   const auto known = schemas_.find(&schema);
   if (known != schemas_.end()) return known->second;

@@ -32,6 +32,8 @@ class MessageFile {
   std::uint16_t add_channel(const std::string& vehicle, const char* topic,
                             const comms::MessageSchema& schema);
   void write(const mcap::Message& message);
+  // Without a message of a vehicle. time_ns: of the log and of the publication
+  void write(const StandardMessage& message, std::int64_t time_ns);
   void write(const mcap::Metadata& metadata) { file_.write(metadata); }
   void write(const mcap::Attachment& attachment) { file_.write(attachment); }
   void flush() { file_.flush(); }

@@ -1,5 +1,6 @@
 #include "swiftlet/ground/recording/topic_publishers.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <type_traits>
 
@@ -14,12 +15,18 @@ TopicPublishers::TopicPublishers(comms::Node& node, const std::set<std::string>&
     if (names.count(topic.name) == 0) return;
     const auto publisher = std::make_shared<comms::Publisher<Message>>(node.publish(topic));
     topics_[topic.name] = {
+        [publisher] { return publisher->matched() > 0; },
         [publisher](mcap::ByteView payload) {
           Message message;
           return comms::from_payload(payload.data, payload.size, message) && publisher->publish(message);
         },
         [publisher](std::chrono::milliseconds timeout) { return publisher->wait_until_received(timeout); }};
   });
+}
+
+bool TopicPublishers::matched() const {
+  return std::all_of(topics_.begin(), topics_.end(),
+                     [](const auto& topic) { return topic.second.matched(); });
 }
 
 bool TopicPublishers::publish(const std::string& name, mcap::ByteView payload) {

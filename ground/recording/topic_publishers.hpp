@@ -19,11 +19,14 @@ class TopicPublishers {
 
   // Returns false if the payload is no message of the topic, or was not sent.
   bool publish(const std::string& name, mcap::ByteView payload);
+  // True if each topic has a reader.
+  bool matched() const;
   // Of a reliable topic: waits until all matched readers have all samples. Returns false after the timeout.
   bool wait_until_received(const std::string& name, std::chrono::milliseconds timeout);
 
  private:
   struct Topic {
+    std::function<bool()> matched;
     std::function<bool(mcap::ByteView)> publish;
     std::function<bool(std::chrono::milliseconds)> wait_until_received;
   };

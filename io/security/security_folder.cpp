@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <cstdlib>
 #include <optional>
 #include <stdexcept>
 
@@ -11,6 +9,7 @@
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/owner_only.hpp"
 #include "swiftlet/io/security/certificates.hpp"
+#include "swiftlet/io/temporary_folder.hpp"
 #include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::runtime {
@@ -38,14 +37,6 @@ void make_folders(const fs::path& path) {
   std::error_code fault;
   fs::create_directories(path, fault);
   if (fault) throw std::runtime_error(write_fault(path, fault.value()));
-}
-
-// Makes an empty folder beside the path, for its owner only, and returns its name.
-fs::path make_unfinished_folder(const fs::path& path) {
-  if (path.has_parent_path()) make_folders(path.parent_path());
-  std::string name = path.string() + ".XXXXXX";
-  if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(write_fault(path, errno));
-  return name;
 }
 
 // "lab" for "lab/"
@@ -180,17 +171,13 @@ void make_security_folder(const SecurityFolder& folder, const std::vector<std::s
                           const SecurityDocuments& documents, int days) {
   const fs::path path = without_trailing_slash(folder.path);
   if (is_there(path)) refuse(path, "exists");
-  const SecurityFolder unfinished{make_unfinished_folder(path)};
-  try {
-    fill(unfinished, roles, documents, days);
-    std::error_code fault;
-    fs::rename(unfinished.path, path, fault);
-    if (fault) throw std::runtime_error(write_fault(path, fault.value()));
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove_all(unfinished.path, ignored);
-    throw;
-  }
+  if (path.has_parent_path()) make_folders(path.parent_path());
+  TemporaryFolder unfinished(path);
+  fill(SecurityFolder{unfinished.path()}, roles, documents, days);
+  std::error_code fault;
+  fs::rename(unfinished.path(), path, fault);
+  if (fault) throw std::runtime_error(write_fault(path, fault.value()));
+  unfinished.keep();
 }
 
 std::string renew_identity(const SecurityFolder& folder, const std::string& role, int days) {

@@ -24,10 +24,12 @@
 #include "swiftlet/ground/recording/topic_publishers.hpp"
 #include "swiftlet/io/logs/flight_log_files.hpp"
 #include "swiftlet/io/mcap/reader.hpp"
+#include "swiftlet/io/temporary_folder.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/runtime/child_process.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 #include "tests/bench/process_usage.hpp"
+#include "tests/support/eventually.hpp"
 
 namespace swiftlet {
 namespace {
@@ -48,25 +50,6 @@ struct Options {
   bool json = false;
   std::string publish;  // the file whose messages this process is to publish; empty: it records
   int domain = 0;
-};
-
-// A new folder for the files of one run.
-class WorkFolder {
- public:
-  WorkFolder()
-      : path_(fs::temp_directory_path() / ("swiftlet-recorder-bench-" + std::to_string(::getpid()))) {
-    fs::create_directories(path_);
-  }
-  ~WorkFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
 };
 
 comms::NodeSettings network(const char* name, int domain) {
@@ -140,7 +123,11 @@ void publish(const Options& options) {
   std::deque<ground::TopicPublishers> vehicles;
   for (const std::string& name : names(options.vehicles))
     vehicles.emplace_back(nodes.emplace_back(participant, name), topics);
-  std::this_thread::sleep_for(2s);  // until the recorder has discovered all of them
+  const auto discovered = [&] {
+    return std::all_of(vehicles.begin(), vehicles.end(),
+                       [](const auto& vehicle) { return vehicle.matched(); });
+  };
+  if (!tests::eventually(discovered)) throw std::runtime_error("the recorder has not found the publisher");
   const auto begin = Steady::now();
   const auto end =
       begin + std::chrono::duration_cast<Steady::duration>(std::chrono::duration<double>(options.seconds));
@@ -156,12 +143,14 @@ void publish(const Options& options) {
         vehicle.publish(message.topic, {message.payload.data(), message.payload.size()});
     }
   }
-  std::this_thread::sleep_for(500ms);  // reliable ones may be sent again
+  for (ground::TopicPublishers& vehicle : vehicles) {
+    for (const std::string& topic : topics) vehicle.wait_until_received(topic, 5s);
+  }
   std::fprintf(stderr, "the publisher was at most %.1f ms late\n", latest_s * 1e3);
 }
 
 void record(const Options& options) {
-  const WorkFolder folder;
+  const auto folder = runtime::TemporaryFolder::of_the_system("swiftlet-recorder-bench");
   const fs::path log = fly("square", options.imu_rate_hz, folder.path() / "flight");
   const comms::DomainLock domain;
   const comms::Participant participant(network("ground", domain.domain()));
@@ -173,7 +162,7 @@ void record(const Options& options) {
        {"--publish", log, "--domain", std::to_string(domain.domain()), "--vehicles",
         std::to_string(options.vehicles), "--seconds", std::to_string(options.seconds)},
        folder.path() / "publisher.log"});
-  while (recorder.totals().received < 1000 && !publisher.poll()) std::this_thread::sleep_for(20ms);
+  tests::eventually([&] { return recorder.totals().received > 0 || publisher.poll(); });
   const Usage before = usage_of(::getpid());
   const auto begin = Steady::now();
   const std::optional<ground::ProcessEnd> ended = publisher.wait(
@@ -220,7 +209,7 @@ void record(const Options& options) {
 
 // Flies an hour, and checks that each IMU sample and its command are in the file.
 void fly_an_hour(const Options& options) {
-  const WorkFolder folder;
+  const auto folder = runtime::TemporaryFolder::of_the_system("swiftlet-recorder-bench");
   const fs::path mission = folder.path() / "hour.yaml";
   {
     std::ofstream text(mission);

@@ -6,14 +6,11 @@ Both accept every example and refuse what the other refuses. The reader is that 
 for a file that is refused, and 0 or 1 for one that is read.
 """
 
-import json
 import pathlib
 import subprocess
 import sys
-import tempfile
 
-import jsonschema
-import yaml
+from schema_comparison import disagreements, report
 
 HEAD = "frame: ned\nsafety: {radius_xy_m: 0.4, radius_z_m: 0.6}\n"
 ONE = "vehicles:\n  - {name: a, start_m: [0, 0], mission: square}\n"
@@ -52,40 +49,12 @@ INVALID = {
 
 def main():
     swiftlet, source = sys.argv[1], pathlib.Path(sys.argv[2])
-    fleets = source / "config" / "fleets"
-    schema = json.loads((fleets / "fleet.schema.json").read_text())
-    jsonschema.Draft7Validator.check_schema(schema)
-    validator = jsonschema.Draft7Validator(schema)
-    failures = []
 
-    with tempfile.TemporaryDirectory() as folder:
-        written = pathlib.Path(folder) / "f.yaml"
+    def reader_fault(path):
+        result = subprocess.run([swiftlet, "fleet", "check", path], capture_output=True, text=True, check=False)
+        return result.stderr if result.returncode not in (0, 1) else ""
 
-        def reader_fault(path):
-            result = subprocess.run([swiftlet, "fleet", "check", path], capture_output=True, text=True, check=False)
-            return result.stderr if result.returncode not in (0, 1) else ""
-
-        def check(name, path, valid):
-            schema_fault = next(validator.iter_errors(yaml.safe_load(path.read_text())), None)
-            for who, fault in ("schema", schema_fault and schema_fault.message), ("reader", reader_fault(path)):
-                if valid and fault:
-                    failures.append(f"{name}: the {who}: {fault}")
-                if not valid and not fault:
-                    failures.append(f"{name}: the {who} accepts it")
-
-        examples = sorted(fleets.glob("*.yaml"))
-        if not examples:
-            failures.append(f"{fleets} holds no fleet")
-        for example in examples:
-            check(example.name, example, True)
-        for valid, texts in (True, VALID), (False, INVALID):
-            for name, text in texts.items():
-                written.write_text(text)
-                check(name, written, valid)
-    for failure in failures:
-        print(failure)
-    print(f"{len(failures)} disagree")
-    return 1 if failures else 0
+    return report(disagreements(source / "config/fleets/fleet.schema.json", reader_fault, VALID, INVALID))
 
 
 if __name__ == "__main__":

@@ -6,14 +6,11 @@ Both accept every example and refuse what the other refuses. The reader is asked
 is not there, so that a file that is read leads to another error than one that is not.
 """
 
-import json
 import pathlib
 import subprocess
 import sys
-import tempfile
 
-import jsonschema
-import yaml
+from schema_comparison import disagreements, report
 
 HEAD = "source: natnet\nframe: zup\n"
 VEHICLES = "vehicles: {kl1: {body: a}}\n"
@@ -50,40 +47,14 @@ INVALID = {
 
 def main():
     swiftlet, source = sys.argv[1], pathlib.Path(sys.argv[2])
-    rooms = source / "config" / "rooms"
-    schema = json.loads((rooms / "room.schema.json").read_text())
-    jsonschema.Draft7Validator.check_schema(schema)
-    validator = jsonschema.Draft7Validator(schema)
-    failures = []
 
-    with tempfile.TemporaryDirectory() as folder:
-        path = pathlib.Path(folder) / "r.yaml"
+    def reader_fault(path):
+        # The option is refused after the file has been read.
+        result = subprocess.run([swiftlet, "mocap", "list", "--room", path, "--source", "vicon", "--mocap-interface",
+                                 "none0"], capture_output=True, text=True, check=False)
+        return "" if "interface: is 'none0'" in result.stderr else result.stderr
 
-        def reader_fault(text):
-            path.write_text(text)
-            # The option is refused after the file has been read.
-            result = subprocess.run([swiftlet, "mocap", "list", "--room", path, "--source", "vicon", "--mocap-interface",
-                                     "none0"], capture_output=True, text=True, check=False)
-            return "" if "interface: is 'none0'" in result.stderr else result.stderr
-
-        examples = sorted(rooms.glob("*.yaml"))
-        if not examples:
-            failures.append(f"{rooms} holds no room")
-        for name, text in [(example.name, example.read_text()) for example in examples] + list(VALID.items()):
-            fault = next(validator.iter_errors(yaml.safe_load(text)), None)
-            if fault:
-                failures.append(f"{name}: the schema: {fault.message}")
-            if reader_fault(text):
-                failures.append(f"{name}: the reader: {reader_fault(text)}")
-        for name, text in INVALID.items():
-            if not next(validator.iter_errors(yaml.safe_load(text)), None):
-                failures.append(f"{name}: the schema accepts it")
-            if not reader_fault(text):
-                failures.append(f"{name}: the reader accepts it")
-    for failure in failures:
-        print(failure)
-    print(f"{len(failures)} disagree")
-    return 1 if failures else 0
+    return report(disagreements(source / "config/rooms/room.schema.json", reader_fault, VALID, INVALID))
 
 
 if __name__ == "__main__":

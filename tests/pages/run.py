@@ -81,11 +81,15 @@ def check_mission(swiftlet, work):
     print("pages: a mission with its limits and fence")
 
 
-def main(programs, work):
+def install_browser(work):
     work.mkdir(parents=True, exist_ok=True)
     for file in HERE.glob("*.*js*"):
         shutil.copy(file, work)
     run("npm", "ci", "--omit=dev", "--no-audit", "--no-fund", "--ignore-scripts", cwd=work)
+
+
+def main(programs, work):
+    install_browser(work)
     for check in (check_flights, check_mission, check_figures):
         check(programs / "swiftlet", work)
 

@@ -6,77 +6,29 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/io/configuration.hpp"
-#include "swiftlet/io/missions/mission_file.hpp"
-#include "swiftlet/io/settings/control_settings_file.hpp"
-#include "swiftlet/io/settings/simulation_file.hpp"
-#include "swiftlet/io/settings/vehicle_file.hpp"
-#include "swiftlet/recording/flight_window.hpp"
-#include "swiftlet/recording/tracking.hpp"
-#include "swiftlet/simulation/simulated_flight.hpp"
 #include "tests/support/malloc_guard.hpp"
+#include "tests/unit/simulation/default_flight.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
 using plant::ControlLevel;
 
-class Levels : public testing::TestWithParam<ControlLevel> {
+class Levels : public DefaultFlight, public testing::WithParamInterface<ControlLevel> {
  protected:
   Levels() { world_.control_levels = GetParam(); }
 
   bool own_position_loop() const { return GetParam() == ControlLevel::kTrajectory; }
-
-  // Arms, takes off to 1 m and holds.
-  void hover(ClosedLoop& loop) {
-    ASSERT_TRUE(loop.step_until([&] { return loop.time_s() > 1.0; }, 2.0));
-    control::Request request;
-    request.kind = control::RequestKind::kArm;
-    const control::Outcome armed = loop.controller.request(request);
-    ASSERT_TRUE(armed.accepted) << armed.reason;
-    request.kind = control::RequestKind::kTakeoff;
-    request.position_ned.z() = -1.0;
-    ASSERT_TRUE(loop.controller.request(request).accepted);
-    ASSERT_TRUE(loop.step_until([&] { return mode(loop) == control::Mode::kHolding; }, 10.0));
-    run(loop, 2.0);
+  TrackingErrors fly_square_with(const plant::Vehicle& vehicle) const {
+    ClosedLoop loop(vehicle, world_, settings_, 1);
+    const TrackingErrors errors = fly_square(loop, settings_);
+    EXPECT_EQ(plant::level_of(loop.sent), GetParam());
+    return errors;
   }
-  void land(ClosedLoop& loop) {
-    control::Request request;
-    request.kind = control::RequestKind::kLand;
-    ASSERT_TRUE(loop.controller.request(request).accepted);
-    ASSERT_TRUE(loop.step_until([&] { return mode(loop) == control::Mode::kDisarmed; }, 10.0));
-  }
-  void run(ClosedLoop& loop, double duration_s) {
-    const double end_s = loop.time_s() + duration_s;
-    loop.step_until([&] { return loop.time_s() >= end_s; }, duration_s + 1.0);
-  }
-  static control::Mode mode(const ClosedLoop& loop) { return loop.controller.status().mode; }
-
-  plant::Vehicle vehicle_ = runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml"));
-  plant::SimulationSettings world_ =
-      runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
-  control::ControlSettings settings_ =
-      runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml"));
 };
 
-// From take-off to the start of the landing.
-TrackingErrors fly_square(const plant::Vehicle& vehicle, const plant::SimulationSettings& world,
-                          const control::ControlSettings& settings) {
-  ClosedLoop loop(vehicle, world, settings, 1);
-  control::Mission mission =
-      load_mission_file(runtime::find_config("missions/square.yaml"), settings.limits).mission;
-  mission.id = 1;
-  FlightRecord record(60'000);
-  const SimulatedFlight done =
-      fly(loop, mission, planned_duration_s(mission, settings.limits), {&record, nullptr, {}});
-  EXPECT_TRUE(done.completed) << done.reason;
-  EXPECT_EQ(plant::level_of(loop.sent), world.control_levels.lowest());
-  EXPECT_LT(loop.plant.state().position_ned.norm(), 0.1) << "landed elsewhere";
-  return tracking_errors(record.truth, record.reference, mission_window(record, mission.id, mission).value());
-}
-
 TEST_P(Levels, TheSquareIsTracked) {
-  const TrackingErrors errors = fly_square(vehicle_, world_, settings_);
+  const TrackingErrors errors = fly_square_with(vehicle_);
   EXPECT_LT(errors.rms_3d_m, own_position_loop() ? 0.05 : 0.01);
   EXPECT_LT(errors.peak_3d_m, own_position_loop() ? 0.15 : 0.05);
 }
@@ -232,7 +184,7 @@ TEST_P(Levels, StreamsOfAttitudesAreFollowedOrRefusedByName) {
 
 TEST_P(Levels, AnotherVehicleFliesWithTheSameSettings) {
   const plant::Vehicle crazyflie = runtime::load_vehicle(runtime::find_config("vehicles/crazyflie2.yaml"));
-  EXPECT_LT(fly_square(crazyflie, world_, settings_).rms_3d_m, own_position_loop() ? 0.05 : 0.02);
+  EXPECT_LT(fly_square_with(crazyflie).rms_3d_m, own_position_loop() ? 0.05 : 0.02);
 }
 
 // The levels above actuators, whose inner loops are not behind the radio.
@@ -243,7 +195,7 @@ TEST_P(LevelsOverARadio, TrackTheSquare) {
   const plant::Vehicle crazyflie = runtime::load_vehicle(runtime::find_config("vehicles/crazyflie2.yaml"));
   for (const double delay_s : {0.01, 0.04}) {
     world_.radio = {delay_s, 0.004, 0.02};
-    const TrackingErrors errors = fly_square(crazyflie, world_, settings_);
+    const TrackingErrors errors = fly_square_with(crazyflie);
     EXPECT_LT(errors.rms_3d_m, own_position_loop() ? 0.05 : 0.01) << delay_s;
   }
 }

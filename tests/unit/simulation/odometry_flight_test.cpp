@@ -5,16 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/io/configuration.hpp"
-#include "swiftlet/io/missions/mission_file.hpp"
-#include "swiftlet/io/settings/control_settings_file.hpp"
-#include "swiftlet/io/settings/simulation_file.hpp"
-#include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/math/euler.hpp"
-#include "swiftlet/recording/flight_window.hpp"
-#include "swiftlet/recording/tracking.hpp"
-#include "swiftlet/simulation/simulated_flight.hpp"
 #include "tests/support/malloc_guard.hpp"
+#include "tests/unit/simulation/default_flight.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -24,29 +17,13 @@ using control::OdometryUse;
 using plant::ControlLevel;
 using plant::OdometrySource;
 
-class Odometry : public testing::Test {
+class Odometry : public DefaultFlight {
  protected:
   Odometry() {
     world_.control_levels = ControlLevel::kAttitude;
     world_.odometry.source = OdometrySource::kMocap;
   }
 
-  void hover(ClosedLoop& loop) {
-    ASSERT_TRUE(loop.step_until([&] { return loop.time_s() > 1.0; }, 2.0));
-    control::Request request;
-    request.kind = control::RequestKind::kArm;
-    const control::Outcome armed = loop.controller.request(request);
-    ASSERT_TRUE(armed.accepted) << armed.reason;
-    request.kind = control::RequestKind::kTakeoff;
-    request.position_ned.z() = -1.0;
-    ASSERT_TRUE(loop.controller.request(request).accepted);
-    ASSERT_TRUE(loop.step_until([&] { return mode(loop) == Mode::kHolding; }, 10.0));
-    run(loop, 2.0);
-  }
-  static void run(ClosedLoop& loop, double duration_s) {
-    const double end_s = loop.time_s() + duration_s;
-    loop.step_until([&] { return loop.time_s() >= end_s; }, duration_s + 1.0);
-  }
   // The fastest true motion within this time.
   struct Fastest {
     double speed = 0.0;     // m/s
@@ -84,16 +61,9 @@ class Odometry : public testing::Test {
     fault.for_s = for_s;
     world_.faults.push_back(fault);
   }
-  static Mode mode(const ClosedLoop& loop) { return loop.controller.status().mode; }
   static const control::OdometryStatus& odometry(const ClosedLoop& loop) {
     return loop.controller.status().odometry;
   }
-
-  plant::Vehicle vehicle_ = runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml"));
-  plant::SimulationSettings world_ =
-      runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
-  control::ControlSettings settings_ =
-      runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml"));
 };
 
 class OdometrySquare : public Odometry,
@@ -104,16 +74,8 @@ TEST_P(OdometrySquare, IsTracked) {
   world_.control_levels = level;
   settings_.estimator.odometry.use = use;
   ClosedLoop loop(vehicle_, world_, settings_, 1);
-  control::Mission mission =
-      load_mission_file(runtime::find_config("missions/square.yaml"), settings_.limits).mission;
-  mission.id = 1;
-  FlightRecord record(60'000);
-  const SimulatedFlight done =
-      fly(loop, mission, planned_duration_s(mission, settings_.limits), {&record, nullptr, {}});
-  ASSERT_TRUE(done.completed) << done.reason;
+  const TrackingErrors errors = fly_square(loop, settings_);
   EXPECT_EQ(plant::level_of(loop.sent), level);
-  const TrackingErrors errors =
-      tracking_errors(record.truth, record.reference, mission_window(record, mission.id, mission).value());
   EXPECT_LT(errors.rms_3d_m, 0.01);
   EXPECT_EQ(odometry(loop).in_force, use == OdometryUse::kVehicle);
   RecordProperty("rms_mm", std::to_string(1e3 * errors.rms_3d_m));
@@ -139,15 +101,7 @@ TEST_P(OdometryDrift, DoesNotShowInTheSquare) {
   world_.odometry.position_drift_m = 0.5;
   world_.odometry.heading_drift_rad = 0.2;
   ClosedLoop loop(vehicle_, world_, settings_, 1);
-  control::Mission mission =
-      load_mission_file(runtime::find_config("missions/square.yaml"), settings_.limits).mission;
-  mission.id = 1;
-  FlightRecord record(60'000);
-  const SimulatedFlight done =
-      fly(loop, mission, planned_duration_s(mission, settings_.limits), {&record, nullptr, {}});
-  ASSERT_TRUE(done.completed) << done.reason;
-  const TrackingErrors errors =
-      tracking_errors(record.truth, record.reference, mission_window(record, mission.id, mission).value());
+  const TrackingErrors errors = fly_square(loop, settings_);
   EXPECT_LT(errors.rms_3d_m, 0.02);
   RecordProperty("rms_mm", std::to_string(1e3 * errors.rms_3d_m));
 }

@@ -1,0 +1,65 @@
+// KayLion in the simulated world of the default settings, flown in one process.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/io/configuration.hpp"
+#include "swiftlet/io/missions/mission_file.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/io/settings/simulation_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/recording/flight_window.hpp"
+#include "swiftlet/recording/tracking.hpp"
+#include "swiftlet/simulation/simulated_flight.hpp"
+
+namespace swiftlet::ground {
+
+class DefaultFlight : public testing::Test {
+ protected:
+  // Arms, takes off to 1 m and holds.
+  static void hover(ClosedLoop& loop) {
+    ASSERT_TRUE(loop.step_until([&] { return loop.time_s() > 1.0; }, 2.0));
+    control::Request request;
+    request.kind = control::RequestKind::kArm;
+    const control::Outcome armed = loop.controller.request(request);
+    ASSERT_TRUE(armed.accepted) << armed.reason;
+    request.kind = control::RequestKind::kTakeoff;
+    request.position_ned.z() = -1.0;
+    ASSERT_TRUE(loop.controller.request(request).accepted);
+    ASSERT_TRUE(loop.step_until([&] { return mode(loop) == control::Mode::kHolding; }, 10.0));
+    run(loop, 2.0);
+  }
+  static void land(ClosedLoop& loop) {
+    control::Request request;
+    request.kind = control::RequestKind::kLand;
+    ASSERT_TRUE(loop.controller.request(request).accepted);
+    ASSERT_TRUE(loop.step_until([&] { return mode(loop) == control::Mode::kDisarmed; }, 10.0));
+  }
+  static void run(ClosedLoop& loop, double duration_s) {
+    const double end_s = loop.time_s() + duration_s;
+    loop.step_until([&] { return loop.time_s() >= end_s; }, duration_s + 1.0);
+  }
+  static control::Mode mode(const ClosedLoop& loop) { return loop.controller.status().mode; }
+
+  // Tracking errors from take-off to the start of the landing.
+  static TrackingErrors fly_square(ClosedLoop& loop, const control::ControlSettings& settings) {
+    control::Mission mission =
+        load_mission_file(runtime::find_config("missions/square.yaml"), settings.limits).mission;
+    mission.id = 1;
+    FlightRecord record(60'000);
+    const SimulatedFlight done =
+        fly(loop, mission, planned_duration_s(mission, settings.limits), {&record, nullptr, {}});
+    EXPECT_TRUE(done.completed) << done.reason;
+    EXPECT_LT(loop.plant.state().position_ned.norm(), 0.1) << "landed elsewhere";
+    return tracking_errors(record.truth, record.reference,
+                           mission_window(record, mission.id, mission).value());
+  }
+
+  plant::Vehicle vehicle_ = runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml"));
+  plant::SimulationSettings world_ =
+      runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
+  control::ControlSettings settings_ =
+      runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml"));
+};
+
+}  // namespace swiftlet::ground
