@@ -86,7 +86,8 @@ void add_information(const CommandFit& from, const CommandModel& to, MatrixXd& i
 
 // The fits of force and of moments as one of all responses: the lag, which both have, is their weighted mean, and what is
 // correlated with it follows. The thrust over the command is that of the force alone: in the moments, feedback and effects
-// that the model omits would pass for a slope of it. Its uncertainty is added to the gains, which are inverse to the slope.
+// that the model omits would pass for a slope of it. The gains are inverse to the slope: they follow where the common lag moves
+// it, and its uncertainty is added to theirs.
 CommandFit combined(const std::vector<FlightSeries>& flights, const plant::Vehicle& base,
                     const CommandFit& force, const CommandFit& moments) {
   CommandFit out;
@@ -111,8 +112,11 @@ CommandFit combined(const std::vector<FlightSeries>& flights, const plant::Vehic
                    started_from(*moments.model, moments.x(), *out.model, out.fit.parameters))
           .tail(noise);
   const double slope = out.fit.parameters[l.curve + 1];
+  const ThrustCurve of_moments = force.model->curve(force.x());
   MatrixXd follows = MatrixXd::Identity(count, count);
   for (int axis = 0; axis < 3; ++axis) {
+    out.fit.parameters[l.gain[axis]] *= of_moments.slope / slope;
+    out.fit.parameters[l.trim[axis]] *= of_moments.value / out.fit.parameters[l.curve];
     follows(l.gain[axis], l.curve + 1) = -out.fit.parameters[l.gain[axis]] / slope;
     follows(l.trim[axis], l.curve) = -out.fit.parameters[l.trim[axis]] / plant::kGravity;
   }
