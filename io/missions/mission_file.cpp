@@ -121,7 +121,7 @@ MissionFile read_mission(const ConfigNode& root, const control::Limits& settings
   const ConfigNode items = root.at("items");
   require_items_last(root, items);
   const control::Limits limits = control::tightened(settings, bounds);
-  read_mission_items(items, frame, options.placement, limits, file);
+  read_mission_items(items, frame, options.placement, options.time_scale, limits, file);
   if (hovers && file.lands()) ends->fail("is hovering, must be landed: the last item is a land");
   if (!hovers && !file.lands()) {
     const ConfigNode last = items.items().back();

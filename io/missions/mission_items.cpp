@@ -45,8 +45,9 @@ struct Defaults {
 
 class Reader {
  public:
-  Reader(MissionFrame frame, const Placement& placement, const control::Limits& limits, MissionFile& file)
-      : frame_(frame), placement_(placement), limits_(limits), file_(file) {}
+  Reader(MissionFrame frame, const Placement& placement, double time_scale, const control::Limits& limits,
+         MissionFile& file)
+      : frame_(frame), placement_(placement), time_scale_(time_scale), limits_(limits), file_(file) {}
 
   void read(const ConfigNode& node) {
     node.allow({"kind", "height_m", "position_m", "points", "file", "duration_s", "yaw_rad", "speed_m_s",
@@ -189,8 +190,11 @@ class Reader {
   TrajectoryFile load_trajectory_file(const std::string& path, const ConfigNode& name) const {
     FileOptions options;
     options.placement = placement_;
+    options.time_scale = time_scale_;
     const Source source = read_source(path, options);
     const auto with = [&](TrajectoryFile file) {
+      for (control::PolynomialSegment& segment : file.segments)
+        segment = control::stretched(segment, 1.0 / time_scale_);
       file.assumptions.insert(file.assumptions.begin(), source.assumptions.begin(), source.assumptions.end());
       return file;
     };
@@ -335,6 +339,7 @@ class Reader {
 
   const MissionFrame frame_;
   const Placement& placement_;
+  const double time_scale_;
   const control::Limits& limits_;
   MissionFile& file_;
   Defaults defaults_;
@@ -343,8 +348,8 @@ class Reader {
 }  // namespace
 
 void read_mission_items(const ConfigNode& list, MissionFrame frame, const Placement& placement,
-                        const control::Limits& limits, MissionFile& file) {
-  Reader reader(frame, placement, limits, file);
+                        double time_scale, const control::Limits& limits, MissionFile& file) {
+  Reader reader(frame, placement, time_scale, limits, file);
   for (const ConfigNode& node : list.items(1, control::kMaxMissionItems)) reader.read(node);
   if (file.mission.items.empty()) list.fail("has no item to fly, must have at least one besides set");
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "swiftlet/control/planning/checks.hpp"
@@ -148,6 +149,26 @@ TEST(MissionFile, PathStaysInACorridorOrOnStraightLegs) {
   EXPECT_GT(first_leg_deviation(""), 0.05);
   EXPECT_LT(first_leg_deviation(", corridor_m: 0.03"), 0.0301);
   EXPECT_LT(first_leg_deviation(", straight: true"), 1e-9);
+}
+
+// GIVEN a trajectory that is too fast WHEN the mission is flown slower by --time-scale THEN the limits apply to what is flown.
+TEST(MissionFile, TrajectoriesKeepToTheLimitsAsTheyAreFlown) {
+  const tests::TemporaryFolder folder;
+  std::string samples = "t,x,y,z\n";
+  for (int i = 0; i <= 100; ++i) {
+    const double s = i / 100.0;
+    samples += fmt::format("{:.2f},{:.6f},0,1\n", s, 1.5 * s * s * s * (10.0 - 15.0 * s + 6.0 * s * s));
+  }
+  folder.write("fast.csv", samples);
+  const std::string path = folder.write(
+      "m.yaml", kHead + kTakeoff + "  - {kind: trajectory, file: fast.csv, speed_m_s: 0.5}\n" + kLand);
+  FileOptions options;
+  EXPECT_THROW(load_mission_file(path, control::Limits{}, options), runtime::ConfigError);
+  options.time_scale = 3.0;
+  const MissionFile file = load_mission_file(path, control::Limits{}, options);
+  double duration_s = 0.0;
+  for (const control::PolynomialSegment& segment : file.mission.segments) duration_s += segment.duration_s;
+  EXPECT_NEAR(duration_s, 3.0, 1e-9);
 }
 
 TEST(MissionFile, LoadsTrajectoriesFromFilesBesideIt) {
