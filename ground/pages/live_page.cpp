@@ -35,8 +35,8 @@ Drag in the picture to turn it, Ctrl and wheel to zoom. Vehicles are drawn large
 <div id="events" tabindex="0" role="region" aria-label="events"></div>
 <dialog id="confirm"><form method="dialog">
 <p id="confirm-text"></p>
-<button value="cancel" autofocus>Cancel</button>
-<button value="stop" class="danger">Stop the rotors</button>
+<button value="no" id="confirm-no">Cancel</button>
+<button value="yes" id="confirm-yes">Yes</button>
 </form></dialog>
 )";
 

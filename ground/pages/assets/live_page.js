@@ -104,8 +104,8 @@ swiftlet.livePage = (() => {
   }
 
   function addControls() {
-    get('hold-all').addEventListener('click', () => vehicles.forEach((vehicle) => vehicle.request('hold')));
-    get('land-all').addEventListener('click', () => vehicles.forEach((vehicle) => vehicle.request('land')));
+    get('hold-all').addEventListener('click', () => swiftlet.requestOf(vehicles, 'hold'));
+    get('land-all').addEventListener('click', () => swiftlet.requestOf(vehicles, 'land'));
     get('home').addEventListener('click', () => scene.home());
     get('map').addEventListener('click', () => scene.map());
     get('follow').addEventListener('click', () => follow(!following));

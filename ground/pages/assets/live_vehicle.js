@@ -72,13 +72,12 @@ swiftlet.LiveVehicle = class {
       const button = add(buttons, swiftlet.element('button', {
         type: 'button', class: kind === 'stop' ? 'danger' : '', 'data-request': kind, 'aria-label': `${kind} ${this.name}`,
       }, kind[0].toUpperCase() + kind.slice(1)));
-      button.addEventListener('click', () => this.request(kind));
+      button.addEventListener('click', () => swiftlet.requestOf([this], kind));
     }
     this.answer = add(this.card, swiftlet.element('p', {class: 'answer', role: 'status'}));
   }
 
   async request(kind) {
-    if (kind === 'stop' && !(await this.confirmed())) return;
     this.answer.textContent = `${kind}: sent`;
     try {
       const {success, message} = await this.client.call(`/${this.name}/${kind}`, new Uint8Array([0, 1, 0, 0, 1]));
@@ -88,16 +87,6 @@ swiftlet.LiveVehicle = class {
       this.answer.textContent = `${kind}: ${error.message}`;
       this.answer.classList.add('refused');
     }
-  }
-
-  confirmed() {
-    const dialog = document.getElementById('confirm');
-    document.getElementById('confirm-text').textContent =
-      `The rotors of ${this.name} turn off at once, also if it is in the air: it falls.`;
-    dialog.returnValue = '';
-    dialog.showModal();
-    return new Promise((resolve) =>
-      dialog.addEventListener('close', () => resolve(dialog.returnValue === 'stop'), {once: true}));
   }
 
   // now: s of the server.
@@ -138,4 +127,24 @@ swiftlet.LiveVehicle = class {
     this.mode.style.setProperty('--band', `var(--mode-${mode.replace(/ /g, '-')}, var(--grid))`);
     this.reason.textContent = status.reason;
   }
+};
+
+// Sends a request to vehicles, once it is confirmed.
+swiftlet.requestOf = async (vehicles, kind) => {
+  const names = vehicles.map(({name}) => name).join(', ');
+  const [text, label] = {
+    hold: [`Brake and hold: ${names}`, 'Hold'],
+    land: [`Descend vertically and land: ${names}`, 'Land'],
+    stop: [`Turn the rotors off at once. A vehicle in the air falls: ${names}`, 'Stop the rotors'],
+  }[kind];
+  const dialog = document.getElementById('confirm');
+  const button = document.getElementById('confirm-yes');
+  document.getElementById('confirm-text').textContent = text;
+  button.textContent = label;
+  button.classList.toggle('danger', kind === 'stop');
+  dialog.returnValue = '';
+  dialog.showModal();
+  document.getElementById(kind === 'stop' ? 'confirm-no' : 'confirm-yes').focus();
+  await new Promise((resolve) => dialog.addEventListener('close', resolve, {once: true}));
+  if (dialog.returnValue === 'yes') vehicles.forEach((vehicle) => vehicle.request(kind));
 };

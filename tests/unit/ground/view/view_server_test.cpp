@@ -2,11 +2,7 @@
 #include "swiftlet/ground/view/view_server.hpp"
 
 #include <cstdint>
-#include <cstring>
-#include <deque>
-#include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,13 +11,13 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
-#include <boost/beast/websocket.hpp>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/payload.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/foxglove_client.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -29,128 +25,12 @@ namespace {
 namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
-namespace websocket = beast::websocket;
 namespace msg = comms::msg;
 using asio::ip::tcp;
 using boost::system::error_code;
 using nlohmann::json;
 using tests::eventually;
-
-constexpr const char* kProtocol = "foxglove.websocket.v1";
-
-struct Message {
-  std::uint32_t subscription = 0;
-  std::vector<std::uint8_t> payload;
-};
-
-// A client of the Foxglove protocol.
-class Client {
- public:
-  explicit Client(std::uint16_t port) : socket_(io_) {
-    socket_.next_layer().connect({asio::ip::make_address("127.0.0.1"), port});
-  }
-  // Returns false if it is refused.
-  bool open(const std::string& host, const std::string& origin = "", const std::string& target = "/",
-            const std::string& protocol = kProtocol) {
-    socket_.set_option(websocket::stream_base::decorator([&](websocket::request_type& request) {
-      if (!origin.empty()) request.set(http::field::origin, origin);
-      if (!protocol.empty()) request.set(http::field::sec_websocket_protocol, protocol);
-    }));
-    error_code error;
-    websocket::response_type response;
-    socket_.handshake(response, host, target, error);
-    protocol_ = std::string(response[http::field::sec_websocket_protocol]);
-    return !error;
-  }
-  const std::string& protocol() const { return protocol_; }
-
-  // nullopt: the server has closed the connection.
-  std::optional<json> read_text() {
-    while (texts_.empty()) {
-      if (!read()) return std::nullopt;
-    }
-    const json text = texts_.front();
-    texts_.pop_front();
-    return text;
-  }
-  std::optional<Message> read_message() {
-    while (messages_.empty()) {
-      if (!read()) return std::nullopt;
-    }
-    const Message message = messages_.front();
-    messages_.pop_front();
-    return message;
-  }
-  std::vector<std::uint8_t> read_response() {
-    while (responses_.empty()) {
-      if (!read()) return {};
-    }
-    const std::vector<std::uint8_t> response = responses_.front();
-    responses_.pop_front();
-    return response;
-  }
-
-  bool send(const std::string& text) {
-    error_code error;
-    socket_.text(true);
-    socket_.write(asio::buffer(text), error);
-    return !error;
-  }
-  void send(const std::vector<std::uint8_t>& bytes) {
-    socket_.binary(true);
-    socket_.write(asio::buffer(bytes));
-  }
-
-  // Reads what the server says first.
-  void greet() {
-    EXPECT_EQ(read_text()->at("op"), "serverInfo");
-    const json channels = *read_text();
-    for (const json& channel : channels.at("channels")) channels_[channel.at("topic")] = channel.at("id");
-    const json services = *read_text();
-    for (const json& service : services.at("services")) services_[service.at("name")] = service.at("id");
-  }
-  std::uint32_t channel(const std::string& topic) const { return channels_.at(topic); }
-  std::uint32_t service(const std::string& name) const { return services_.at(name); }
-  bool subscribe(std::uint32_t id, std::uint32_t channel) {
-    return send(
-        json({{"op", "subscribe"}, {"subscriptions", {{{"id", id}, {"channelId", channel}}}}}).dump());
-  }
-  void call(std::uint32_t service, const std::vector<std::uint8_t>& request) {
-    std::vector<std::uint8_t> bytes = {
-        2, static_cast<std::uint8_t>(service), 0, 0, 0, 9, 0, 0, 0, 3, 0, 0, 0, 'c', 'd', 'r'};
-    bytes.insert(bytes.end(), request.begin(), request.end());
-    send(bytes);
-  }
-
- private:
-  bool read() {
-    beast::flat_buffer buffer;
-    error_code error;
-    socket_.read(buffer, error);
-    if (error) return false;
-    const auto* const data = static_cast<const std::uint8_t*>(buffer.data().data());
-    if (socket_.got_text()) {
-      texts_.push_back(json::parse(data, data + buffer.size()));
-    } else if (data[0] == 1) {
-      Message message;
-      std::memcpy(&message.subscription, data + 1, sizeof(message.subscription));
-      message.payload.assign(data + 13, data + buffer.size());
-      messages_.push_back(message);
-    } else {
-      responses_.emplace_back(data, data + buffer.size());
-    }
-    return true;
-  }
-
-  asio::io_context io_;
-  websocket::stream<tcp::socket> socket_;
-  std::string protocol_;
-  std::deque<json> texts_;
-  std::deque<Message> messages_;
-  std::deque<std::vector<std::uint8_t>> responses_;
-  std::map<std::string, std::uint32_t> channels_;
-  std::map<std::string, std::uint32_t> services_;
-};
+using tests::FoxgloveClient;
 
 // A plain HTTP request; 0 if the server closes the connection instead of answering.
 struct Answer {
@@ -198,8 +78,8 @@ class Server : public testing::Test {
   Answer ask(const http::request<http::string_body>& request) const {
     return ground::ask(server_->port(), request);
   }
-  std::unique_ptr<Client> client(const std::string& target = "/") const {
-    auto client = std::make_unique<Client>(server_->port());
+  std::unique_ptr<FoxgloveClient> client(const std::string& target = "/") const {
+    auto client = std::make_unique<FoxgloveClient>(server_->port());
     EXPECT_TRUE(client->open(host(), "", target));
     client->greet();
     return client;
@@ -218,7 +98,7 @@ msg::Estimate estimate(std::uint64_t number) {
   estimate.position_ned({1.0, 2.0, -3.0});
   return estimate;
 }
-std::uint64_t number_of(const Message& message) {
+std::uint64_t number_of(const FoxgloveClient::Message& message) {
   msg::Estimate estimate;
   EXPECT_TRUE(comms::from_payload(message.payload.data(), message.payload.size(), estimate));
   return estimate.sequence_number();
@@ -248,13 +128,13 @@ TEST_F(Server, RefusesPagesOfOthers) {
   page = request();
   page.set(http::field::host, "evil.example:80");
   EXPECT_EQ(ask(page).status, 403U);
-  EXPECT_FALSE(Client(server_->port()).open(host(), "http://evil.example"));
-  EXPECT_FALSE(Client(server_->port()).open("evil.example", "http://evil.example"));
-  EXPECT_TRUE(Client(server_->port()).open(host(), "http://" + host()));
+  EXPECT_FALSE(FoxgloveClient(server_->port()).open(host(), "http://evil.example"));
+  EXPECT_FALSE(FoxgloveClient(server_->port()).open("evil.example", "http://evil.example"));
+  EXPECT_TRUE(FoxgloveClient(server_->port()).open(host(), "http://" + host()));
   ViewSettings settings;
   settings.origins = {"https://app.foxglove.dev"};
   start(settings);
-  EXPECT_TRUE(Client(server_->port()).open(host(), "https://app.foxglove.dev"));
+  EXPECT_TRUE(FoxgloveClient(server_->port()).open(host(), "https://app.foxglove.dev"));
 }
 
 TEST_F(Server, NeedsATokenBeyondTheLoopbackInterface) {
@@ -266,8 +146,8 @@ TEST_F(Server, NeedsATokenBeyondTheLoopbackInterface) {
   EXPECT_EQ(ask(request()).status, 403U);
   EXPECT_EQ(ask(request("/?token=" + std::string(32, '0'))).status, 403U);
   EXPECT_EQ(ask(request(target)).status, 200U);
-  EXPECT_FALSE(Client(server_->port()).open("lab1", "", "/"));
-  EXPECT_TRUE(Client(server_->port()).open("lab1", "http://lab1", target));
+  EXPECT_FALSE(FoxgloveClient(server_->port()).open("lab1", "", "/"));
+  EXPECT_TRUE(FoxgloveClient(server_->port()).open("lab1", "http://lab1", target));
 }
 
 TEST_F(Server, SaysThatItsPortIsInUse) {
@@ -283,7 +163,7 @@ TEST_F(Server, SaysThatItsPortIsInUse) {
 }
 
 TEST_F(Server, SpeaksBothSubprotocols) {
-  Client newer(server_->port());
+  FoxgloveClient newer(server_->port());
   EXPECT_TRUE(newer.open(host(), "", "/", "other, foxglove.sdk.v1,foxglove.websocket.v1"));
   EXPECT_EQ(newer.protocol(), "foxglove.sdk.v1");
   auto without = request();
@@ -293,15 +173,15 @@ TEST_F(Server, SpeaksBothSubprotocols) {
   without.set(http::field::sec_websocket_key, "AAAAAAAAAAAAAAAAAAAAAA==");
   EXPECT_EQ(ask(without).body,
             "the WebSocket must offer the subprotocol foxglove.sdk.v1 or foxglove.websocket.v1\n");
-  Client older(server_->port());
+  FoxgloveClient older(server_->port());
   EXPECT_TRUE(older.open(host()));
-  EXPECT_EQ(older.protocol(), kProtocol);
-  EXPECT_FALSE(Client(server_->port()).open(host(), "", "/", "other"));
-  EXPECT_FALSE(Client(server_->port()).open(host(), "", "/", ""));
+  EXPECT_EQ(older.protocol(), FoxgloveClient::kProtocol);
+  EXPECT_FALSE(FoxgloveClient(server_->port()).open(host(), "", "/", "other"));
+  EXPECT_FALSE(FoxgloveClient(server_->port()).open(host(), "", "/", ""));
 }
 
 TEST_F(Server, LimitsConnections) {
-  std::vector<std::unique_ptr<Client>> clients;
+  std::vector<std::unique_ptr<FoxgloveClient>> clients;
   for (std::size_t i = 0; i < ViewServer::kMostConnections; ++i) clients.push_back(client());
   EXPECT_EQ(server_->totals().viewers, ViewServer::kMostConnections);
   EXPECT_EQ(ask(request()).status, 0U);
@@ -370,12 +250,12 @@ TEST_F(Server, ASlowViewerLosesTheOlderAndSlowsNobody) {
     return out;
   };
   const auto slow = client();
-  std::vector<std::unique_ptr<Client>> others;
+  std::vector<std::unique_ptr<FoxgloveClient>> others;
   for (int i = 0; i < 7; ++i) others.push_back(client());
   slow->subscribe(1, slow->channel("/kl1/flown_mission"));
   for (const auto& other : others) other->subscribe(1, other->channel("/kl1/flown_mission"));
   ASSERT_TRUE(eventually([&] { return publisher.matched() == 1; }));
-  const auto id_of = [](const Message& message) {
+  const auto id_of = [](const FoxgloveClient::Message& message) {
     msg::Mission out;
     EXPECT_TRUE(comms::from_payload(message.payload.data(), message.payload.size(), out));
     return out.id();
@@ -416,13 +296,7 @@ TEST_F(Server, SendsRequestsAndReturnsTheReasonOfARefusal) {
       });
   const auto viewer = client();
   viewer->call(viewer->service("/kl1/hold"), {0, 1, 0, 0, 0});
-  // Whether it was accepted, and the reason, of a response in CDR behind its head.
-  const auto answer = [&] {
-    const std::vector<std::uint8_t> bytes = viewer->read_response();
-    constexpr std::size_t kSuccess = 16 + 4;
-    return std::make_pair(bytes.at(kSuccess) == 1,
-                          std::string(bytes.begin() + kSuccess + 8, bytes.end() - 1));
-  };
+  const auto answer = [&] { return viewer->read_answer(); };
   EXPECT_EQ(answer(), std::make_pair(false, std::string("on the ground")));
 
   const std::uint32_t stop = viewer->service("/kl1/stop");
