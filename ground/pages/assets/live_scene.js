@@ -27,7 +27,7 @@ swiftlet.LiveScene = class extends swiftlet.Scene {
   line(track, colour, of) {
     const geometry = new THREE.BufferGeometry();
     const points = new THREE.BufferAttribute(new Float32Array(3 * swiftlet.LiveScene.mostPoints), 3);
-    geometry.addAttribute ? geometry.addAttribute('position', points) : geometry.setAttribute('position', points);
+    geometry.setAttribute('position', points);
     const line = new THREE.Line(geometry, new THREE.LineBasicMaterial({color: colour}));
     line.frustumCulled = false;
     this.lines.push({geometry, points, of});
@@ -74,11 +74,11 @@ swiftlet.LiveScene = class extends swiftlet.Scene {
     if (!before.equals(this.box) && !this.isTurned) this.home();
   }
 
+  // A vehicle stands in the picture once it has said where it is.
   place() {
-    this.flights.forEach(({path}, k) => {
-      this.vehicles[k].visible = path.t.length > 0;
-    });
-    if (this.flights.every(({path}) => path.t.length)) super.place();
+    if (this.flights.length !== this.vehicles.length) return;
+    this.vehicles.forEach((vehicle, k) => { vehicle.visible = this.flights[k].path.t.length > 0; });
+    if (this.vehicles.every(({visible}) => visible)) super.place();
     else this.plan();
   }
 
