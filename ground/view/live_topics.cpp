@@ -13,6 +13,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::size_t kQueueBytes = std::size_t{8} << 20U;
+constexpr std::size_t kLogLines = 50;  // of a vehicle, for viewers that come later
 
 std::int64_t wall_now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -87,8 +88,8 @@ void LiveTopics::add_vehicle(const std::string& name) {
     states_[source.channel].is_event = topic.qos == comms::Qos::kRequest || topic.qos == comms::Qos::kReply;
   });
   for (const StandardTopic& standard : vehicle.standard.topics()) {
-    State& state = states_[add_channel(standard.topic, *standard.schema)];
-    state.is_event = standard.is_log;
+    const std::uint32_t channel = add_channel(standard.topic, *standard.schema);
+    State& state = states_[channel];
     for (std::size_t i = first; i < sources_.size(); ++i) {
       const bool follows = std::find(standard.sources.begin(), standard.sources.end(), sources_[i].topic) !=
                            standard.sources.end();
@@ -98,22 +99,26 @@ void LiveTopics::add_vehicle(const std::string& name) {
       if (sources_[i].users > 0 && !sources_[i].subscription)
         sources_[i].subscription = sources_[i].subscribe(sources_[i]);
     }
+    if (!standard.is_log) continue;
+    state.is_event = true;
+    state.kept = kLogLines;
+    use(channel);
   }
 }
 
-std::optional<LiveTopics::Live> LiveTopics::use(std::uint32_t channel) {
+std::vector<LiveTopics::Live> LiveTopics::use(std::uint32_t channel) {
   State& state = states_.at(channel);
   for (Source* const source : state.sources) {
     if (!source->subscription) source->subscription = source->subscribe(*source);
   }
   for (Source* const source : state.sources) ++source->users;
   ++state.users;
-  return state.newest;
+  return {state.last.begin(), state.last.end()};
 }
 
 void LiveTopics::release(std::uint32_t channel) {
   State& state = states_.at(channel);
-  if (--state.users == 0) state.newest.reset();
+  if (--state.users == 0) state.last.clear();
   for (Source* const source : state.sources) {
     if (--source->users == 0) source->subscription.reset();
   }
@@ -125,9 +130,10 @@ void LiveTopics::take_all(const std::function<void(std::uint32_t, const Live&)>&
     const auto hand_on = [&](std::uint32_t channel, mcap::Bytes payload) {
       State& state = states_[channel];
       if (state.users == 0) return;
-      state.newest =
-          Live{message.log_time_ns, std::make_shared<const mcap::Bytes>(std::move(payload)), state.is_event};
-      take(channel, *state.newest);
+      state.last.push_back(
+          {message.log_time_ns, std::make_shared<const mcap::Bytes>(std::move(payload)), state.is_event});
+      if (state.last.size() > state.kept) state.last.pop_front();
+      take(channel, state.last.back());
     };
     const bool is_used = states_[source.channel].users > 0;
     if (is_used) hand_on(source.channel, {message.payload.data, message.payload.data + message.payload.size});

@@ -20,7 +20,7 @@
 
 namespace swiftlet::ground {
 
-// Only what somebody uses is received. The threads that receive copy into a bounded queue and do not wait. All functions
+// Only what somebody uses is received, and the logs from the start. The threads that receive copy into a bounded queue and do not wait. All functions
 // from one thread.
 class LiveTopics {
  public:
@@ -39,9 +39,9 @@ class LiveTopics {
     std::shared_ptr<const mcap::Bytes> payload;
     bool is_event = false;  // a request, an answer or a line of a log: a newer one does not replace it
   };
-  // Counts the users of a channel; returns its newest message if there is one. Throws std::runtime_error if the topic
-  // cannot be received.
-  std::optional<Live> use(std::uint32_t channel);
+  // Counts the users of a channel. Returns what a new one gets first: the newest message, or of a log the last lines. Throws
+  // std::runtime_error if the topic cannot be received.
+  std::vector<Live> use(std::uint32_t channel);
   void release(std::uint32_t channel);
 
   // Calls take(channel, message) for what came since the last call, of the channels in use.
@@ -56,8 +56,9 @@ class LiveTopics {
   struct State {
     std::vector<Source*> sources;
     std::size_t users = 0;
-    std::optional<Live> newest;
+    std::deque<Live> last;  // oldest first
     bool is_event = false;
+    std::size_t kept = 1;  // of them
   };
 
   std::uint32_t add_channel(const std::string& topic, const comms::MessageSchema& schema);

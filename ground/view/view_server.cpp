@@ -427,7 +427,6 @@ void ViewServer::Impl::serve_rounds() {
   round_timer_.expires_after(kRound);
   round_timer_.async_wait([this](error_code) {
     serve_rounds();
-    if (sessions_.empty()) return;
     for (const auto& session : sessions_) session->viewer().begin_round();
     topics_.take_all([this](std::uint32_t channel, const LiveTopics::Live& live) {
       for (const auto& session : sessions_) session->viewer().put(channel, live);

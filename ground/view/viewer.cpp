@@ -22,10 +22,10 @@ void Viewer::take(const foxglove::Subscribe& message) {
           fmt::format("subscribe: channel {} has subscription {} already", channel, subscriptions_[channel]));
     } else {
       try {
-        const std::optional<LiveTopics::Live> newest = topics_.use(channel);
+        const std::vector<LiveTopics::Live> first = topics_.use(channel);
         channels_[id] = channel;
         subscriptions_[channel] = id;
-        if (newest) put(channel, *newest);
+        for (const LiveTopics::Live& live : first) put(channel, live);
       } catch (const std::exception& error) {
         refuse(fmt::format("subscribe: channel {}: {}", channel, error.what()));
       }

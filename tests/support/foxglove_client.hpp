@@ -44,7 +44,8 @@ class FoxgloveClient {
     boost::system::error_code error;
     boost::beast::websocket::response_type response;
     socket_.handshake(response, host, target, error);
-    protocol_ = std::string(response[boost::beast::http::field::sec_websocket_protocol]);
+    const auto chosen = response[boost::beast::http::field::sec_websocket_protocol];
+    protocol_.assign(chosen.data(), chosen.size());
     return !error;
   }
   const std::string& protocol() const { return protocol_; }

@@ -30,8 +30,10 @@ async function checkLook(browser) {
     for (const width of [1280, 390]) {
       await withPage(browser, url, {width, scheme}, async (page) => {
         await flown(page, 60);
-        await page.waitForFunction(() => swiftlet.charts.filter((chart) => chart.visible).every((chart) => chart.graph));
-        await page.screenshot({path: `${pictures}/view-${scheme}-${width}.png`, fullPage: true});
+        const height = await page.evaluate(() => document.documentElement.scrollHeight);
+        await page.setViewport({width, height});
+        await page.waitForFunction(() => swiftlet.charts.every((chart) => chart.graph && chart.graph.xAxisRange()[1] > 1));
+        await page.screenshot({path: `${pictures}/view-${scheme}-${width}.png`});
         const [wide, paper] = await page.evaluate(() =>
           [document.documentElement.scrollWidth, getComputedStyle(document.body).backgroundColor]);
         require(wide <= width, `${wide} px wide on a screen of ${width} px`);
@@ -68,6 +70,8 @@ try {
     found.rate_hz = Math.round((n1 - n0) / (t1 - t0));
     await addSignal(page);
     await checkNames(page);
+    const warning = await page.$eval('#slow', (element) => element.textContent);
+    require(!warning || warning.startsWith('this viewer is slow'), `the page shows: ${warning}`);
     found.charts = await page.$$eval('.chart', (charts) => charts.length);
     found.vehicles = await page.$$eval('.vehicle', (cards) => cards.length);
   });

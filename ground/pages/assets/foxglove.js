@@ -37,8 +37,8 @@ swiftlet.Foxglove = class {
   addChannel(channel) {
     this.channels.set(channel.id, channel);
     this.channels.set(channel.topic, channel);
-    this.on.channel(channel);
     if (this.listeners.has(channel.topic)) this.subscribe(channel);
+    this.on.channel(channel);
   }
 
   takeBinary(view) {

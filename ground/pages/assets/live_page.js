@@ -75,9 +75,12 @@ swiftlet.livePage = (() => {
   }
 
   function addEvent(vehicle, at, text, warning) {
-    const row = swiftlet.element('p', {class: warning ? 'warning' : 'finding'}, `${at.toFixed(1)} s  ${vehicle.name}: ${text}`);
-    get('events').prepend(row);
-    if (get('events').children.length > mostEvents) get('events').lastChild.remove();
+    const row = swiftlet.element('p', {class: warning ? 'warning' : 'finding'}, 
+                                `${new Date(1e3 * at).toLocaleTimeString('en-GB')}  ${vehicle.name}: ${text}`);
+    row.dataset.at = at;
+    const rows = get('events').children;  // the newest first
+    get('events').insertBefore(row, [...rows].find((other) => Number(other.dataset.at) <= at) ?? null);
+    if (rows.length > mostEvents) get('events').lastChild.remove();
   }
 
   function follow(on) {

@@ -2,7 +2,7 @@
 'use strict';
 
 swiftlet.LiveVehicle = class {
-  // client: a Foxglove. on: {event(vehicle, time, text, warning), time(time)}
+  // client: a Foxglove. on: {event(vehicle, time in s since 1970, text, warning), time(time)}
   constructor(name, index, client, on) {
     this.name = name;
     this.colour = index;
@@ -16,7 +16,7 @@ swiftlet.LiveVehicle = class {
     this.listen('estimate', (message, time) => this.track.push(time, [...message.position_ned, ...message.q_ned_from_frd]));
     this.listen('reference', (message, time) => this.referenceTrack.push(time, message.position_ned));
     for (const topic of ['control_status', 'mission_status', 'battery', 'vehicle_info']) this.listen(topic, () => {});
-    this.listen('log', ({message, level}, time) => on.event(this, time, message, level > 2));
+    client.listen(`/${name}/log`, ({message, level}, serverTime) => on.event(this, serverTime, message, level > 2));
     this.makeCard();
   }
 
@@ -63,7 +63,7 @@ swiftlet.LiveVehicle = class {
     this.reason = add(this.card, swiftlet.element('p', {class: 'quiet'}));
     const list = add(this.card, swiftlet.element('dl'));
     this.values = Object.fromEntries(
-      ['position', 'speed', 'battery', 'mission', 'pose', 'loop', 'IMU to command'].map((label) => {
+      ['position', 'speed', 'battery', 'mission', 'pose', 'loop', 'command'].map((label) => {
         add(list, swiftlet.element('dt', {}, label));
         return [label, add(list, swiftlet.element('dd', {}, '–'))];
       }));
@@ -99,7 +99,7 @@ swiftlet.LiveVehicle = class {
     if (status) this.showStatus(status, now - this.arrived.control_status);
     if (estimate) {
       const [north, east, down] = estimate.position_ned;
-      set('position', `N ${number(north, 2)}  E ${number(east, 2)}  height ${number(-down, 2)} m`);
+      set('position', `N ${number(north, 2)}, E ${number(east, 2)}, up ${number(-down, 2)} m`);
       set('speed', `${number(Math.hypot(...estimate.velocity_ned), 2)} m/s`);
     }
     if (battery) set('battery', `${number(battery.voltage_v, 2)} V, ${number(100 * battery.state_of_charge, 0)} %`);
@@ -110,9 +110,9 @@ swiftlet.LiveVehicle = class {
     if (status) {
       const ms = (seconds) => (seconds < 0 ? '–' : number(1e3 * seconds, 1));
       set('pose', status.has_pose ? `${ms(status.pose_age_s)} ms old` : 'none');
-      set('loop', `${ms(status.loop_delay_p50_s)} ms, p95 ${ms(status.loop_delay_p95_s)} ms, ${number(status.rate_hz, 0)} Hz`);
+      set('loop', `${ms(status.loop_delay_p50_s)} ms, p95 ${ms(status.loop_delay_p95_s)} ms`);
     }
-    if (info) set('IMU to command', `${number(info.sense_to_actuate_p50_us, 0)} µs, p99 ${number(info.sense_to_actuate_p99_us, 0)} µs`);
+    if (info) set('command', `${number(info.sense_to_actuate_p50_us, 0)} µs, p99 ${number(info.sense_to_actuate_p99_us, 0)} µs`);
   }
 
   typeOf(topic) {
