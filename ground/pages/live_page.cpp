@@ -21,7 +21,7 @@ constexpr const char* kBody = R"(<h1>Swiftlet live</h1>
 </select></label>
 <button type="button" id="follow" aria-pressed="true">Follow</button>
 </div>
-<div class="top"><div id="scene"></div><div id="vehicles"></div></div>
+<div class="top"><div id="scene" class="live"></div><div id="vehicles"></div></div>
 <h2>Signals</h2>
 <form id="add-signal" class="controls-row">
 <label>topic <select id="topic"></select></label>

@@ -63,7 +63,7 @@ swiftlet.LiveVehicle = class {
     this.reason = add(this.card, swiftlet.element('p', {class: 'quiet'}));
     const list = add(this.card, swiftlet.element('dl'));
     this.values = Object.fromEntries(
-      ['position', 'speed', 'battery', 'mission', 'pose', 'loop', 'command'].map((label) => {
+      ['N, E, up', 'speed', 'battery', 'mission', 'pose', 'loop', 'command'].map((label) => {
         add(list, swiftlet.element('dt', {}, label));
         return [label, add(list, swiftlet.element('dd', {}, '–'))];
       }));
@@ -99,7 +99,7 @@ swiftlet.LiveVehicle = class {
     if (status) this.showStatus(status, now - this.arrived.control_status);
     if (estimate) {
       const [north, east, down] = estimate.position_ned;
-      set('position', `N ${number(north, 2)}, E ${number(east, 2)}, up ${number(-down, 2)} m`);
+      set('N, E, up', `${number(north, 2)}, ${number(east, 2)}, ${number(-down, 2)} m`);
       set('speed', `${number(Math.hypot(...estimate.velocity_ned), 2)} m/s`);
     }
     if (battery) set('battery', `${number(battery.voltage_v, 2)} V, ${number(100 * battery.state_of_charge, 0)} %`);
