@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kStep_s = 0.01;          // with which a path is searched for the reference
 constexpr double kOffPath_m = 0.1;        // the reference of a vehicle on its path is nearer to it
+constexpr double kLanding_m = 0.002;      // below the place above its landing place: it lands
 constexpr double kOffReference_m = 0.25;  // the vehicle does not follow its reference
 constexpr double kLost_s = 0.5;           // without news
 constexpr double kFailsafe_s = 3.0;  // until a lost vehicle has left its path for good, by its own failsafe
@@ -59,7 +60,16 @@ void FleetMonitor::follow(std::size_t i, double elapsed_s, const VehicleNews& ne
     best_m = off_m;
     best_s = s;
   }
-  if (best_m < kOffPath_m) progress_s_[i] = best_s;
+  if (best_m < kOffPath_m) progress_s_[i] = std::min(best_s, std::max(from_s, landing_limit_s(i, news)));
+}
+
+// A vehicle that hovers where it is to land may be paused there, however long: it has not begun to land, from when on it could
+// not be stopped.
+double FleetMonitor::landing_limit_s(std::size_t i, const VehicleNews& news) const {
+  const MonitoredVehicle& vehicle = vehicles_[i];
+  const bool has_begun = (vehicle.path.at(vehicle.lands_s) - news.reference_ned).norm() > kLanding_m;
+  if (has_begun) return vehicle.path.duration_s();
+  return std::floor(vehicle.lands_s / RightOfWay::kCell_s) * RightOfWay::kCell_s - 1e-6;
 }
 
 // A vehicle comes back to where it was told to leave its path, or to where it has stopped after that.

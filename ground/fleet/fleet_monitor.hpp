@@ -73,6 +73,7 @@ class FleetMonitor {
   };
 
   void follow(std::size_t i, double elapsed_s, const VehicleNews& news);
+  double landing_limit_s(std::size_t i, const VehicleNews& news) const;
   void rejoin(std::size_t i, const VehicleNews& news);
   Status status_of(std::size_t i, const VehicleNews& news) const;
   std::vector<Eigen::Vector3d> places_of(std::size_t i, const VehicleNews& news, Status status) const;
