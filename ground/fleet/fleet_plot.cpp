@@ -59,6 +59,7 @@ plot::Figure fleet_figure(const FleetCheck& check) {
                                  check.vehicles[pair.b].path.at(t_s) - check.vehicles[pair.a].path.at(t_s)));
     clearances.points.push_back({t_s, least});
   }
+  figure.panels[plot::kFromAbove].title.clear();  // the legend is there
   figure.panels[kClearance].series = {
       clearances, {Style::kDashes, Colour::kRed, "", {{0.0, 1.0}, {check.duration_s, 1.0}}}};
   figure.panels[kClearance].y.from = 0.0;

@@ -218,7 +218,7 @@ TEST_F(SwarmFlight, WaitsForOneThatThePilotHasPausedAndLeavesItPaused) {
       "second.yaml}\n");
   Program fly("swiftlet", {"fleet", "fly", file, "--record", record().string(), "--json"}, folder_.path());
   const auto said = [&](const std::string& text) { return fly.errors().find(text) != std::string::npos; };
-  ASSERT_TRUE(eventually([&] { return said("a: ") && said("2/3 waypoint"); }, kStuck)) << fly.errors();
+  ASSERT_TRUE(eventually([&] { return said("2/3 waypoint"); }, kStuck)) << fly.errors();
   const std::size_t at = fly.errors().find(" in domain ");
   ASSERT_NE(at, std::string::npos);
   const std::string domain = std::to_string(std::stoi(fly.errors().substr(at + 11)));

@@ -247,8 +247,10 @@ Outcome fly(const Swarm& swarm, Fault fault, std::size_t failing, double fails_s
       for (std::size_t j = 0; j < i; ++j) {
         const Eigen::Vector3d apart = vehicles[j].place() - vehicles[i].place();
         out.safety = std::min(out.safety, clearance(kSafety, kSafety, apart));
-        // The pilot looks after the vehicle that he flies.
-        if (fault == Fault::kTaken && (i == failing || j == failing)) continue;
+        // The pilot looks after the vehicle that he flies, and who stands with its rotors off cannot make way.
+        const bool of_failing = i == failing || j == failing;
+        if (of_failing && (fault == Fault::kTaken || vehicles[i].has_ended() || vehicles[j].has_ended()))
+          continue;
         out.body = std::min(out.body, clearance(kBody, kBody, apart));
       }
     }
