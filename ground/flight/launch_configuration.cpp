@@ -47,14 +47,6 @@ void require_takeoff_and_land(const MissionFile& mission, const fs::path& file) 
     throw InputError(file.string() + ": items: the last item is not a land: a flight ends on the ground");
 }
 
-// The duration of the mission by the dry run, s, of any vehicle.
-double dry_run_duration_s(const LaunchConfiguration& plan) {
-  const MissionDryRun flown = dry_run(plan.mission.mission, plan.control, plan.start_ned);
-  if (flown.completed) return flown.duration_s;
-  throw InputError(fmt::format("{}: the control service would not complete it: {}", plan.mission_file.c_str(),
-                               flown.reason));
-}
-
 // The vehicles of a fleet that are of one vehicle file: one plant and one control serve them.
 struct Group {
   std::vector<std::size_t> members;
@@ -169,6 +161,13 @@ class ProcessBuilder {
 
 }  // namespace
 
+double require_flyable(const LaunchConfiguration& plan) {
+  const MissionDryRun flown = dry_run(plan.mission.mission, plan.control, plan.start_ned);
+  if (flown.completed) return flown.duration_s;
+  throw InputError(fmt::format("{}: the control service would not complete it: {}", plan.mission_file.c_str(),
+                               flown.reason));
+}
+
 double require_flyable(const LaunchConfiguration& plan, const plant::Vehicle& vehicle,
                        const FileOptions& reading) {
   CheckConditions conditions;
@@ -240,9 +239,8 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
                                  plan.mission_file.c_str(), plan.start_ned.x(), plan.start_ned.y(),
                                  outcome.reason));
   require_takeoff_and_land(plan.mission, plan.mission_file);
-  plan.planned_duration_s = plan.launch_mode == LaunchMode::kAttached
-                                ? dry_run_duration_s(plan)
-                                : require_flyable(plan, plan.vehicle, options.reading);
+  if (plan.launch_mode != LaunchMode::kAttached)
+    plan.planned_duration_s = require_flyable(plan, plan.vehicle, options.reading);
 
   if (plan.launch_mode == LaunchMode::kStarted) {
     plan.vehicle_program = program_beside(options.px4_instance ? "swiftlet-px4" : "swiftlet-plant");
