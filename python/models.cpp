@@ -124,7 +124,7 @@ void add_vehicle(py::module_& module) {
       .def_readwrite("mass_kg", &Vehicle::mass_kg, "kg.")
       .def_readwrite(
           "inertia", &Vehicle::inertia,
-          "Shape (3, 3), kg m^2: in FRD about the centre of mass. A view: its elements can be changed.")
+          "Shape (3, 3), kg m^2: in FRD about the centre of mass. Assign a whole array to change it.")
       .def_readwrite("linear_drag", &Vehicle::linear_drag, "N s/m, times the velocity relative to the air.")
       .def_property(
           "rotors", [](const Vehicle& self) { return py::tuple(py::cast(self.rotors)); },

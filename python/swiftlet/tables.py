@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from . import _core
 
 if TYPE_CHECKING:
-    import pandas
+    import pandas  # type: ignore[import]
 
 Column = Union[NDArray[Any], List[str]]
 

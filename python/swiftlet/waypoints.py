@@ -7,6 +7,8 @@ from numpy.typing import ArrayLike
 
 from . import _core
 
+LANDING_SPEED_M_S = 0.3
+
 
 def waypoint_mission(
     positions_ned_m: ArrayLike,
@@ -28,11 +30,11 @@ def waypoint_mission(
         raise _core.InputError(f"positions_ned_m has shape {positions.shape}, must be (n, 3) with n of at least 1")
     if not np.isfinite(positions).all():
         raise _core.InputError("positions_ned_m has numbers that are not finite")
-    items: List[Dict[str, Any]] = [{"kind": "takeoff", "height_m": float(-positions[0, 2])}]
+    items: List[Dict[str, Any]] = [{"kind": "takeoff", "height_m": float(-positions[0, 2]), "speed_m_s": speed_m_s}]
     items += [
         {"kind": "waypoint", "position_m": position.tolist(), "speed_m_s": speed_m_s, "hold_s": hold_s}
         for position in positions
     ]
-    items.append({"kind": "land"})
+    items.append({"kind": "land", "speed_m_s": LANDING_SPEED_M_S})
     mission = {"name": name, "frame": "ned", "tolerance_m": tolerance_m, "items": items}
     return _core.parse_mission(json.dumps(mission) + "\n", control, name)
