@@ -68,7 +68,8 @@ void fly_together(std::deque<ProcessFlight>& flights, ProcessGroup& processes,
   if (monitor) {
     std::vector<FleetWatch::Watched> watched;
     for (std::size_t i = 0; i < flights.size(); ++i) watched.push_back({&flights[i].client(), &shares.of(i)});
-    watch.emplace(std::move(*monitor), std::move(watched));
+    watch.emplace(std::move(*monitor), std::move(watched),
+                  [&] { return barrier.failure().has_value() || interrupts.count() > 0; });
   }
   std::exception_ptr fault;
   try {
@@ -116,15 +117,18 @@ class LiveView {
   std::optional<ViewServer> server_;
 };
 
-// Throws unless the running vehicles are on the ground and can fly their missions. What is not known of one is said.
-void require_flyable_by_running(const comms::NodeSettings& network, const std::vector<std::string>& vehicles,
-                                const std::vector<LaunchConfiguration>& plans, const FileOptions& reading) {
-  const std::vector<std::optional<ReportedModel>> models = require_on_ground(network, vehicles);
+// Completes the plans with what the running vehicles report. Throws unless they are on the ground and can fly their missions
+// from where they stand. What is not known of one is said.
+void plan_for_running(const comms::NodeSettings& network, const std::vector<std::string>& vehicles,
+                      std::vector<LaunchConfiguration>& plans, const FileOptions& reading) {
+  const std::vector<StandingVehicle> standing = require_on_ground(network, vehicles);
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
-    const KnownVehicle vehicle = known_vehicle(models[i]);
+    plans[i].start_ned = standing[i].start_ned.value_or(plans[i].start_ned);
+    const KnownVehicle vehicle = known_vehicle(standing[i].model);
     if (vehicle.model) {
-      require_flyable(plans[i], *vehicle.model, reading);
+      plans[i].planned_duration_s = require_flyable(plans[i], *vehicle.model, reading);
     } else {
+      plans[i].planned_duration_s = require_flyable(plans[i]);
       std::fprintf(stderr, "%s: its rotors are not checked: %s\n", vehicles[i].c_str(),
                    vehicle.unknown.c_str());
     }
@@ -145,7 +149,7 @@ int fly_vehicles(const FlyOptions& options, const std::vector<std::string>& vehi
   network.domain = domain_lock ? domain_lock->domain() : std::max(options.domain, 0);
   const bool is_alone = !attached && !options.px4_instance;  // all processes are started here
   network.localhost_only = network.localhost_only || is_alone;
-  if (attached) require_flyable_by_running(network, vehicles, plans, options.reading);
+  if (attached) plan_for_running(network, vehicles, plans, options.reading);
   if (attached && !options.skip_check) require_sound_vehicles(network, vehicles);
   // In a domain that others may use, the vehicles must not live already.
   std::optional<comms::FlightReservation> reservation;
