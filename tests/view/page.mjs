@@ -7,8 +7,10 @@ const card = (name) => `[data-vehicle="${name}"]`;
 const mode = (page, name, text) => page.waitForFunction((selector, wanted) =>
   document.querySelector(`${selector} .badge`)?.textContent === wanted, {timeout: 20000}, card(name), text);
 const answer = async (page, name, begin) => {
-  await page.waitForFunction((selector, wanted) => document.querySelector(`${selector} .answer`)?.textContent.startsWith(wanted),
-                             {timeout: 10000}, card(name), begin);
+  await page.waitForFunction((selector, wanted) => {
+    const text = document.querySelector(`${selector} .answer`)?.textContent ?? '';
+    return text.startsWith(wanted) && !text.endsWith(': sent');
+  }, {timeout: 10000}, card(name), begin);
   return page.$eval(`${card(name)} .answer`, (element) => element.textContent);
 };
 const confirm = async (page, choice) => {
@@ -34,10 +36,14 @@ async function checkLook(browser) {
         await page.setViewport({width, height});
         await page.waitForFunction(() => swiftlet.charts.every((chart) => chart.graph && chart.graph.xAxisRange()[1] > 1));
         await page.screenshot({path: `${pictures}/view-${scheme}-${width}.png`});
-        const [wide, paper] = await page.evaluate(() =>
-          [document.documentElement.scrollWidth, getComputedStyle(document.body).backgroundColor]);
-        require(wide <= width, `${wide} px wide on a screen of ${width} px`);
-        papers.add(paper);
+        // Charts take the width of the screen a frame after it has changed.
+        await page.waitForFunction((most) => document.documentElement.scrollWidth <= most, {timeout: 5000}, width).catch(async () => {
+          const wide = await page.$$eval('body *', (elements, most) => elements
+            .filter((element) => element.getBoundingClientRect().right > most)
+            .map((element) => `${element.tagName} ${element.className} ${element.id}`), width);
+          throw new Error(`wider than the screen of ${width} px: ${wide}`);
+        });
+        papers.add(await page.evaluate(() => getComputedStyle(document.body).backgroundColor));
       });
     }
   }
