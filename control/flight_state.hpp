@@ -16,6 +16,7 @@ struct FlightState {
   plant::RotorState rotor_state = plant::RotorState::kOff;      // of the last command, as is throttle
   plant::PerRotor throttle{};
   GainChange gains;  // in force, or changing
+  double lift_ratio = 0.0;  // of LiftObserver; 0: not lifted off
 };
 
 }  // namespace swiftlet::control

@@ -14,6 +14,12 @@ namespace {
 
 constexpr double kSpoolUp_s = 0.8;
 constexpr double kSpoolUpLift = 0.95;    // of the weight, at the end of the spool-up
+// Where lift-off is observed, thrust rises fast up to a lift below that of any vehicle, then slowly until lift-off.
+constexpr double kFastLift = 0.75;       // of the weight
+const double kFastLift_s = getenv("FAST") ? atof(getenv("FAST")) : 0.6;
+const double kLiftRate = getenv("RATE") ? atof(getenv("RATE")) : 2.0;        // of the weight, per second
+constexpr double kMostLift = 1.5;        // of the weight
+constexpr double kLongestSpoolUp_s = 1.5;
 constexpr double kFlareHeight_m = 0.08;  // the planned path of a landing ends here, then the vehicle sinks
 constexpr double kSinkSpeed = 0.15;      // m/s
 constexpr double kSink_s = 60.0;         // longest duration
@@ -86,12 +92,19 @@ PolynomialSegment join_inside(const Limits& limits, Reference from, const Eigen:
   }
 }
 
+// The start of the climb: after the spool-up, and not before lift-off where that is observed.
+std::int64_t climb_start_ns(const GuidanceContext& context) {
+  const std::int64_t since_ns = context.state.phase_since_ns;
+  return std::clamp(context.lift_off_ns, since_ns + nanoseconds(kSpoolUp_s),
+                    since_ns + nanoseconds(kLongestSpoolUp_s));
+}
+
 void climb(const GuidanceContext& context) {
   GuidanceState& state = context.state;
   state.phase = Phase::kPath;
   Eigen::Vector3d top = state.path.at(context.now_ns).position_ned;
   top.z() = state.climb_to_z_ned;
-  start_move(context, top, true, 0.0, state.climb_speed, state.phase_since_ns + nanoseconds(kSpoolUp_s));
+  start_move(context, top, true, 0.0, state.climb_speed, climb_start_ns(context));
 }
 
 // The planned part of a landing is over: sinks until touchdown is detected.
@@ -399,8 +412,7 @@ void advance(const GuidanceContext& context) {
   if (context.estimate.position_ned.z() < state.ground_z_ned - kAirborneHeight_m) state.airborne = true;
   if (context.mode == Mode::kSetpoint && goes_past_position(state.setpoint_kind))
     return follow_estimate(context);
-  if (state.phase == Phase::kSpoolUp && elapsed_s(state.phase_since_ns, context.now_ns) >= kSpoolUp_s)
-    climb(context);
+  if (state.phase == Phase::kSpoolUp && context.now_ns >= climb_start_ns(context)) climb(context);
   if (state.phase != Phase::kPath) return;
   if (context.mode == Mode::kMission) return advance_mission(context);
   if (context.state.mission_paused() && state.pause == MissionPause::kNone) return advance_item(context);
@@ -443,7 +455,9 @@ double blind_descent_speed(const GuidanceContext& context) {
 }
 
 double spool_up_lift(const GuidanceContext& context) {
-  return kSpoolUpLift * std::min(1.0, elapsed_s(context.state.phase_since_ns, context.now_ns) / kSpoolUp_s);
+  const double elapsed = elapsed_s(context.state.phase_since_ns, context.now_ns);
+  if (context.lift_off_ns == 0) return kSpoolUpLift * std::min(1.0, elapsed / kSpoolUp_s);
+  return std::min({kFastLift * elapsed / kFastLift_s, kFastLift + kLiftRate * std::max(elapsed - kFastLift_s, 0.0), kMostLift});
 }
 
 }  // namespace swiftlet::control

@@ -54,6 +54,14 @@ struct DisturbanceSettings {
   double limit = 3.0;       // m/s^2, limit of the estimate's length
 };
 
+// The model of the rotors' lift.
+struct LiftSettings {
+  bool learn = true;  // the thrust that carries the vehicle, from lift-off on (estimation/lift_observer.hpp)
+  // Ground effect, as in plant/simulation/dynamics.hpp; radius 0: not modelled.
+  double rotor_radius_m = 0.0;
+  double rotor_height_m = 0.02;  // above the ground, of a standing vehicle
+};
+
 // Limits of flight. A request beyond them is refused, a feedback command beyond them is clipped.
 struct Limits {
   double max_tilt_rad = 0.6;
@@ -220,6 +228,7 @@ struct ControlSettings {
   AttitudeSettings attitude;
   PositionSettings position;
   DisturbanceSettings disturbance;
+  LiftSettings lift;
   Limits limits;
   EstimatorSettings estimator;
   ArmingSettings arming;

@@ -58,6 +58,14 @@ control::DisturbanceSettings read_disturbance(const ConfigNode& node) {
   return disturbance;
 }
 
+control::LiftSettings read_lift(const ConfigNode& node) {
+  control::LiftSettings lift;
+  lift.learn = node.at("learn").boolean();
+  lift.rotor_radius_m = node.at("rotor_radius_m").number();
+  lift.rotor_height_m = node.at("rotor_height_m").number();
+  return lift;
+}
+
 control::Limits read_limits(const ConfigNode& node) {
   control::Limits limits;
   limits.max_tilt_rad = node.at("max_tilt_rad").number();
@@ -201,6 +209,7 @@ control::ControlSettings parse_control_settings(std::string_view text, const std
     settings.attitude = read_attitude(root.at("attitude"));
     settings.position = read_position(root.at("position"));
     settings.disturbance = read_disturbance(root.at("disturbance"));
+    if (const auto lift = root.find("lift")) settings.lift = read_lift(*lift);
     settings.limits = read_limits(root.at("limits"));
     settings.estimator = read_estimator(root.at("estimator"));
     settings.arming = read_arming(root.at("arming"));
