@@ -244,8 +244,11 @@ AttitudeDemand FlightController::Impl::follow_reference(bool integrate, double d
   const Estimate& estimate = this->estimate();
   const PositionCommand wanted = position.step(estimate.position_ned, estimate.velocity_ned, reference, dt_s,
                                                !integrate || !controls_position());
+  static double lead = getenv("TL") ? atof(getenv("TL")) : 0.0;
+  Vector3d compensation = disturbance.ahead(lead);
+  compensation.z() = disturbance.acceleration_ned().z();
   const ThrustAttitude outer = thrust_attitude(
-      carried_mass_kg(), wanted.acceleration_ned - disturbance.acceleration_ned(), max_tilt_tangent);
+      carried_mass_kg(), wanted.acceleration_ned - compensation, max_tilt_tangent);
   if (heading.yaw_rad != reference.yaw_rad) heading = reference.yaw_rad;
   AttitudeDemand demand;
   demand.thrust_n = outer.thrust_n;

@@ -24,13 +24,16 @@ class DisturbanceObserver {
   void set(const DisturbanceSettings& settings) { settings_ = settings; }
 
   // Sets the estimate to zero: for a vehicle on the ground, whose contact force is no disturbance.
-  void reset() { acceleration_ned_.setZero(); }
+  void reset() { acceleration_ned_.setZero(); rate_ned_.setZero(); slow_ned_.setZero(); }
+  Eigen::Vector3d ahead(double lead_s) const { return acceleration_ned_ + lead_s * rate_ned_; }
 
   const Eigen::Vector3d& acceleration_ned() const { return acceleration_ned_; }  // m/s^2
 
  private:
   DisturbanceSettings settings_;
   Eigen::Vector3d acceleration_ned_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d slow_ned_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rate_ned_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace swiftlet::control
