@@ -118,8 +118,8 @@ Outcome FlightController::on_setpoint(const Setpoint& setpoint) {
 
 FlightState FlightController::state() const {
   const Impl& l = *impl_;
-  return {l.supervisor.state(), l.position.integral(), l.command.rotor_state, l.command.throttle,
-          l.gain_change, l.lift.lifted_off() ? l.lift.ratio() : 0.0};
+  return {l.supervisor.state(), l.position.integral(), l.command.rotor_state,
+          l.command.throttle,   l.gain_change,         l.lift.lifted_off() ? l.lift.ratio() : 0.0};
 }
 
 void FlightController::adopt(const FlightState& state, const Mission* mission, const Trajectory* trajectory) {

@@ -67,13 +67,16 @@ struct FlightController::Impl {
   // With learnt lift and ground effect: modelled lift (m/s^2) of the rotors now, over that of the vehicle file, and the mass that the
   // commanded thrust is to carry.
   double ground_effect_now() const;
+  Eigen::Vector3d expected_disturbance() const;  // m/s^2, NED, to compensate
   double modelled_lift() const { return ground_effect_now() * rotors.thrust_n() / vehicle.mass_kg; }
   double lift_now() const { return lift.ratio() * modelled_lift(); }
   double carried_mass_kg() const { return vehicle.mass_kg / (lift.ratio() * ground_effect_now()); }
   // The thrust command leads the observed thrust, so that the thrust follows with this lag.
-  double thrust_lead() const { static double k = getenv("LEAD") ? atof(getenv("LEAD")) : 0.0; return level == plant::ControlLevel::kActuators ? k : 0.0; }
+  double thrust_lead() const {
+    return level == plant::ControlLevel::kActuators ? settings.rough_air.thrust_lead : 0.0;
+  }
   double thrust_lag_s() const { return rotor_lag_s / (1.0 + thrust_lead()); }
-  bool observes_lift_off() const { return settings.lift.learn && controls_position(); }
+  bool observes_lift_off() const { return settings.rough_air.learn_lift && controls_position(); }
 
   bool controls_position() const { return level != plant::ControlLevel::kTrajectory; }
 

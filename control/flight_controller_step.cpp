@@ -203,7 +203,7 @@ void FlightController::Impl::observe(const ControlSetpoint& setpoint, double dt_
     case ControlMode::kBodyRates:
       takeoff_monitor.step(dt_s, specific_force_frd, estimate.q_ned_from_frd, estimate.position_ned.z());
       if (!setpoint.integrate || !controls_position()) return;
-      if (settings.lift.learn)
+      if (settings.rough_air.learn_lift)
         lift.step_in_flight(dt_s, specific_force_frd - estimate.accelerometer_bias, modelled_lift());
       disturbance.step(dt_s, specific_force_frd - estimate.accelerometer_bias, estimate.q_ned_from_frd,
                        lift_now());
@@ -233,10 +233,23 @@ AttitudeDemand FlightController::Impl::outer_loop(const ControlSetpoint& setpoin
 }
 
 double FlightController::Impl::ground_effect_now() const {
-  const LiftSettings& of = settings.lift;
+  const RoughAirSettings& of = settings.rough_air;
   if (!(of.rotor_radius_m > 0.0)) return 1.0;
   const double above_m = supervisor.state().guidance.ground_z_ned - estimate().position_ned.z();
   return plant::ground_effect(of.rotor_radius_m, of.rotor_height_m + above_m);
+}
+
+// The horizontal disturbance at the time at which the tilt that is commanded now will have been reached. Slowly changing angles follow
+// with the lag k_rate / k_angle.
+Vector3d FlightController::Impl::expected_disturbance() const {
+  Vector3d expected = disturbance.acceleration_ned();
+  if (settings.rough_air.law == DisturbanceLaw::kObserved) return expected;
+  const double lag_s = gains.attitude_rate.head<2>().sum() / gains.attitude_angle.head<2>().sum();
+  expected.head<2>() += lag_s * disturbance.rate_ned().head<2>();
+  const double squared = expected.squaredNorm();
+  const double limit = gains.disturbance_limit;
+  if (squared > limit * limit) expected *= limit / std::sqrt(squared);
+  return expected;
 }
 
 // Eq. (48), then the map from its acceleration to thrust and attitude.
@@ -244,11 +257,8 @@ AttitudeDemand FlightController::Impl::follow_reference(bool integrate, double d
   const Estimate& estimate = this->estimate();
   const PositionCommand wanted = position.step(estimate.position_ned, estimate.velocity_ned, reference, dt_s,
                                                !integrate || !controls_position());
-  static double lead = getenv("TL") ? atof(getenv("TL")) : 0.0;
-  Vector3d compensation = disturbance.ahead(lead);
-  compensation.z() = disturbance.acceleration_ned().z();
-  const ThrustAttitude outer = thrust_attitude(
-      carried_mass_kg(), wanted.acceleration_ned - compensation, max_tilt_tangent);
+  const ThrustAttitude outer =
+      thrust_attitude(carried_mass_kg(), wanted.acceleration_ned - expected_disturbance(), max_tilt_tangent);
   if (heading.yaw_rad != reference.yaw_rad) heading = reference.yaw_rad;
   AttitudeDemand demand;
   demand.thrust_n = outer.thrust_n;
@@ -266,7 +276,8 @@ AttitudeDemand FlightController::Impl::follow_reference(bool integrate, double d
 // Level; where lift-off is observed, tilted as in flight as soon as the legs carry little enough.
 AttitudeDemand FlightController::Impl::spool_up(double lift_fraction, double dt_s) {
   AttitudeDemand upright;
-  if (observes_lift_off() && modelled_lift() > LiftObserver::kLeastLift) upright = follow_reference(false, dt_s);
+  if (observes_lift_off() && modelled_lift() > LiftObserver::kLeastLift)
+    upright = follow_reference(false, dt_s);
   upright.thrust_n = lift_fraction * vehicle.mass_kg * plant::kGravity;
   upright.attitude.heading = reference.yaw_rad;
   return upright;

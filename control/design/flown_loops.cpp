@@ -94,6 +94,8 @@ FlownLoop flown_vertical_loop(const RptGains& gains, const ObservedRotors& obser
   const Index n = rotors.a.rows();
   MatrixXd a = rotors.a;
   VectorXd b = rotors.b;
+  a.col(Rotors::kObserved) -= observed.thrust_lead * b;
+  b *= 1.0 + observed.thrust_lead;
   if (compensated) {  // one more state, the disturbance, which the command compensates
     a.conservativeResizeLike(MatrixXd::Zero(n + 1, n + 1));
     b.conservativeResizeLike(VectorXd::Zero(n + 1));
@@ -128,7 +130,8 @@ std::array<FlownLoop, 6> flown_loops(const ControlGains& gains, const ObservedRo
 std::array<FlownLoop, 6> flown_loops(const ControlDesign& design, const ControlSettings& settings,
                                      double delay_s) {
   return flown_loops(control_gains(design, settings),
-                     {design.rotor_lag_s, settings.estimator.rotor_speed_bandwidth}, delay_s);
+                     {design.rotor_lag_s, settings.estimator.rotor_speed_bandwidth, design.thrust_lead},
+                     delay_s);
 }
 
 // The reference is one more state, which is constant.

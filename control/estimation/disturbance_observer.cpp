@@ -11,11 +11,9 @@ void DisturbanceObserver::step(double dt_s, const Eigen::Vector3d& specific_forc
   const Eigen::Vector3d unexplained_ned = q_ned_from_frd * unexplained_frd;
   if (!unexplained_ned.allFinite()) return;
   acceleration_ned_ += bandwidth_dt / (1.0 + bandwidth_dt) * (unexplained_ned - acceleration_ned_);
-  static double w2 = getenv("W2") ? atof(getenv("W2")) : 20.0;
-  rate_ned_ = w2 * (acceleration_ned_ - slow_ned_);
-  slow_ned_ += w2*dt_s/(1.0+w2*dt_s) * (acceleration_ned_ - slow_ned_);
   const double squared = acceleration_ned_.squaredNorm();
   if (squared > settings_.limit * settings_.limit) acceleration_ned_ *= settings_.limit / std::sqrt(squared);
+  slow_ned_ += bandwidth_dt / (1.0 + bandwidth_dt) * (acceleration_ned_ - slow_ned_);
 }
 
 }  // namespace swiftlet::control

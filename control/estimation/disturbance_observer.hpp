@@ -24,16 +24,19 @@ class DisturbanceObserver {
   void set(const DisturbanceSettings& settings) { settings_ = settings; }
 
   // Sets the estimate to zero: for a vehicle on the ground, whose contact force is no disturbance.
-  void reset() { acceleration_ned_.setZero(); rate_ned_.setZero(); slow_ned_.setZero(); }
-  Eigen::Vector3d ahead(double lead_s) const { return acceleration_ned_ + lead_s * rate_ned_; }
+  void reset() {
+    acceleration_ned_.setZero();
+    slow_ned_.setZero();
+  }
 
   const Eigen::Vector3d& acceleration_ned() const { return acceleration_ned_; }  // m/s^2
+  // The estimate's rate, m/s^3, behind a second low pass of the same bandwidth.
+  Eigen::Vector3d rate_ned() const { return settings_.bandwidth * (acceleration_ned_ - slow_ned_); }
 
  private:
   DisturbanceSettings settings_;
   Eigen::Vector3d acceleration_ned_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d slow_ned_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d rate_ned_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d slow_ned_ = Eigen::Vector3d::Zero();  // m/s^2, the estimate behind a second low pass
 };
 
 }  // namespace swiftlet::control

@@ -15,11 +15,11 @@ namespace swiftlet::control {
 
 class LiftObserver {
  public:
-  static constexpr double kLiftOff = 0.15;       // m/s^2, upward acceleration that shows lift-off
-  static constexpr double kLeastLift = 5.0;      // m/s^2, modelled: with less, the vehicle does not lift off
-  static constexpr double kOnset_s = 0.02;       // of the filter until lift-off
-  static constexpr double kMemory_s = 1.0;       // of the means in flight
-  static constexpr double kLeast = 0.6;          // of the ratio
+  static constexpr double kLiftOff = 0.15;   // m/s^2, upward acceleration that shows lift-off
+  static constexpr double kLeastLift = 5.0;  // m/s^2, modelled: with less, the vehicle does not lift off
+  static constexpr double kOnset_s = 0.02;   // of the filter until lift-off
+  static constexpr double kMemory_s = 1.0;   // of the means in flight
+  static constexpr double kLeast = 0.6;      // of the ratio
   static constexpr double kMost = 1.6;
 
   // A step of dt_s > 0. specific_force_frd: measured, bias removed, m/s^2. lift: modelled thrust over mass, m/s^2. Both ignore
@@ -46,10 +46,10 @@ class LiftObserver {
   bool lifted_off_ = false;
   bool begun_ = false;
   double ratio_ = 1.0;
-  double time_s_ = kOnset_s;      // of the means
-  double measured_ = 0.0;         // m/s^2, mean
-  double modelled_ = 0.0;         // m/s^2, mean
-  double upward_ = 0.0;           // m/s^2, mean acceleration
+  double time_s_ = kOnset_s;  // of the means
+  double measured_ = 0.0;     // m/s^2, mean
+  double modelled_ = 0.0;     // m/s^2, mean
+  double upward_ = 0.0;       // m/s^2, mean acceleration
 };
 
 }  // namespace swiftlet::control

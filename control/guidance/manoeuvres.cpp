@@ -13,7 +13,7 @@ namespace swiftlet::control {
 namespace {
 
 constexpr double kSpoolUp_s = 0.8;
-constexpr double kSpoolUpLift = 0.95;    // of the weight, at the end of the spool-up
+constexpr double kSpoolUpLift = 0.95;  // of the weight, at the end of the spool-up
 // Where lift-off is observed, thrust rises fast up to a lift below that of any vehicle, then slowly until lift-off.
 constexpr double kFastLift = 0.75;  // of the weight
 constexpr double kFastLift_s = 0.45;
@@ -23,10 +23,10 @@ constexpr double kLongestSpoolUp_s = 1.5;
 constexpr double kRiseSpeed = 0.05;       // m/s, from lift-off until it is clear of the ground
 constexpr double kMostRiseSpeed = 0.2;    // m/s
 constexpr double kClearHeight_m = 0.003;  // above the ground
-constexpr double kFlareHeight_m = 0.08;  // the planned path of a landing ends here, then the vehicle sinks
-constexpr double kSinkSpeed = 0.15;      // m/s
-constexpr double kSink_s = 60.0;         // longest duration
-constexpr double kBlindDepth_m = 0.1;    // below the ground, by dead reckoning
+constexpr double kFlareHeight_m = 0.08;   // the planned path of a landing ends here, then the vehicle sinks
+constexpr double kSinkSpeed = 0.15;       // m/s
+constexpr double kSink_s = 60.0;          // longest duration
+constexpr double kBlindDepth_m = 0.1;     // below the ground, by dead reckoning
 constexpr double kMinMove_s = 0.5;
 constexpr int kJoinAttempts = 16;  // attempts to join a trajectory from motion, each with more time
 constexpr double kJoinStretch = 1.25;
@@ -123,17 +123,20 @@ void advance_spool_up(const GuidanceContext& context) {
   const bool on_time = elapsed >= kSpoolUp_s;
   if (context.lift_off_ns == 0) {
     if (on_time)
-      climb_from(context, state.path.at(context.now_ns).position_ned, state.phase_since_ns + nanoseconds(kSpoolUp_s));
+      climb_from(context, state.path.at(context.now_ns).position_ned,
+                 state.phase_since_ns + nanoseconds(kSpoolUp_s));
     return;
   }
   const bool lifted_off = context.lift_off_ns <= context.now_ns;
-  if (lifted_off && !state.path.moving) rise_from(context, state.path.at(context.now_ns).position_ned, kRiseSpeed);
+  if (lifted_off && !state.path.moving)
+    rise_from(context, state.path.at(context.now_ns).position_ned, kRiseSpeed);
   const bool clear = lifted_off && place_ned.z() < state.ground_z_ned - kClearHeight_m;
   if (clear && on_time) {
     rise_from(context, place_ned, std::clamp(-context.estimate.velocity_ned.z(), 0.0, kMostRiseSpeed));
     return climb_from(context, place_ned, context.now_ns);
   }
-  if (elapsed >= kLongestSpoolUp_s) climb_from(context, state.path.at(context.now_ns).position_ned, context.now_ns);
+  if (elapsed >= kLongestSpoolUp_s)
+    climb_from(context, state.path.at(context.now_ns).position_ned, context.now_ns);
 }
 
 // The planned part of a landing is over: sinks until touchdown is detected.
@@ -487,7 +490,8 @@ double spool_up_lift(const GuidanceContext& context) {
   const double elapsed = elapsed_s(context.state.phase_since_ns, context.now_ns);
   if (context.lift_off_ns == 0) return kSpoolUpLift * std::min(1.0, elapsed / kSpoolUp_s);
   const double slow_s = elapsed - kFastLift_s;
-  return slow_s < 0.0 ? kFastLift * elapsed / kFastLift_s : std::min(kFastLift + kLiftRate * slow_s, kMostLift);
+  return slow_s < 0.0 ? kFastLift * elapsed / kFastLift_s
+                      : std::min(kFastLift + kLiftRate * slow_s, kMostLift);
 }
 
 }  // namespace swiftlet::control

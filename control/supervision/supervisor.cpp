@@ -110,8 +110,7 @@ ControlSetpoint Supervisor::setpoint(const SupervisorInputs& inputs) {
     setpoint.integrate = state_.guidance.airborne;
   } else {
     setpoint.control_mode = ControlMode::kFly;
-    setpoint.integrate =
-        (state_.guidance.airborne || lifted_off) && state_.guidance.phase != Phase::kSink;
+    setpoint.integrate = (state_.guidance.airborne || lifted_off) && state_.guidance.phase != Phase::kSink;
   }
   return setpoint;
 }

@@ -133,8 +133,9 @@ Dynamics::State Dynamics::derivative(const State& x, const MotorCommand& drive, 
   const Quaterniond q(x.segment<4>(kAttitude));
   const Vector3d w = x.segment<3>(kBodyRates);
   const Vector3d body_z = body_z_ned(q);
-  const Vector3d f_ned = air_force_ned(v, wind_ned, body_z, speed_sum) - wrench[0] * body_z;  // R F of Eq. (27), drag
-  const Vector3d m = wrench.tail<3>() + disturbance_.moment_frd;  // M of Eq. (28)
+  const Vector3d f_ned =
+      air_force_ned(v, wind_ned, body_z, speed_sum) - wrench[0] * body_z;  // R F of Eq. (27), drag
+  const Vector3d m = wrench.tail<3>() + disturbance_.moment_frd;           // M of Eq. (28)
   const Vector3d g(0.0, 0.0, kGravity);
   dx.segment<3>(kPosition) = v;                                                           // Eq. (1)
   dx.segment<3>(kVelocity) = inverse_mass_ * f_ned + g;                                   // Eq. (5)

@@ -39,7 +39,8 @@ struct Disturbance {
 
 // Effects of the air on the rotors that the paper leaves out.
 struct RotorAir {
-  double drag = 0.0;  // c_r, N s^2/m (Martin and Salaun, "The true role of accelerometer feedback in quadrotor control", 2010)
+  double drag =
+      0.0;  // c_r, N s^2/m (Martin and Salaun, "The true role of accelerometer feedback in quadrotor control", 2010)
   double radius_m = 0.0;     // of the rotors in ground effect (rotor.hpp); 0: none
   double floor_z_ned = 0.0;  // m
 };

@@ -74,8 +74,8 @@ struct SupplySettings {
 // lengths L_w = h vertically and L_u = L_v = h / (0.177 + 0.000823 h)^1.2 along and across the wind, h in feet,
 // passes at the airspeed.
 struct DrydenSettings {
-  double height_m = 0.0;        // h; 0: gusts of the first order with gust_time_constant_s
-  double airspeed_m_s = 1.0;    // > 0
+  double height_m = 0.0;      // h; 0: gusts of the first order with gust_time_constant_s
+  double airspeed_m_s = 1.0;  // > 0
 };
 
 struct AirSettings {
@@ -94,8 +94,8 @@ struct AirSettings {
 // origin at z = 0.
 struct GroundSettings {
   bool present = true;
-  double leg_height_m = 0.02;  // from the body origin down to the feet, one under each rotor
-  double friction = 0.6;       // Coulomb coefficient
+  double leg_height_m = 0.02;          // from the body origin down to the feet, one under each rotor
+  double friction = 0.6;               // Coulomb coefficient
   double effect_rotor_radius_m = 0.0;  // of the rotors in ground effect (dynamics.hpp); 0: none
 };
 

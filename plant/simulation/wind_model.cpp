@@ -24,14 +24,16 @@ double power_1_2(double x) {
 
 Eigen::Array3d decays(const AirSettings& settings, double step_s) {
   const bool dryden = settings.dryden.height_m > 0.0;
-  const Eigen::Vector3d times_s = dryden ? dryden_times_s(settings.dryden)
-                                         : Eigen::Vector3d(Eigen::Vector3d::Constant(settings.gust_time_constant_s));
+  const Eigen::Vector3d times_s =
+      dryden ? dryden_times_s(settings.dryden)
+             : Eigen::Vector3d(Eigen::Vector3d::Constant(settings.gust_time_constant_s));
   return {decay(step_s, times_s.x()), decay(step_s, times_s.y()), decay(step_s, times_s.z())};
 }
 
 Eigen::Vector2d direction(const Eigen::Vector3d& wind_ned) {
   const double speed = wind_ned.head<2>().norm();
-  return speed > 0.0 ? Eigen::Vector2d(wind_ned.head<2>() / speed) : Eigen::Vector2d(Eigen::Vector2d::UnitX());
+  return speed > 0.0 ? Eigen::Vector2d(wind_ned.head<2>() / speed)
+                     : Eigen::Vector2d(Eigen::Vector2d::UnitX());
 }
 
 }  // namespace
@@ -74,8 +76,8 @@ void WindModel::update() {
   if (dryden_) {
     const double root_3 = std::sqrt(3.0);
     const Eigen::Vector3d second = std::sqrt(0.5) * (root_3 * gust_ + (1.0 - root_3) * lagged_);
-    gust = {along_.x() * gust_.x() - along_.y() * second.y(), along_.y() * gust_.x() + along_.x() * second.y(),
-            second.z()};
+    gust = {along_.x() * gust_.x() - along_.y() * second.y(),
+            along_.y() * gust_.x() + along_.x() * second.y(), second.z()};
   }
   wind_ned_ = mean_ned_ + sigma_ned_.cwiseProduct(gust);
 }

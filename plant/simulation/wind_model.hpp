@@ -35,9 +35,10 @@ class WindModel {
   Eigen::Vector3d sigma_ned_;
   Eigen::Array3d decay_;       // factor of a gust over one step, each axis
   Eigen::Array3d noise_gain_;  // sqrt(1 - decay_^2), keeps the variance constant
-  Eigen::Vector3d gust_;       // gust over sigma; of Dryden's model along the wind, and the first states of the others
-  Eigen::Vector3d lagged_;     // of Dryden's model: gust_ behind a second lag of the same time
-  Eigen::Vector2d along_;      // unit vector of the horizontal wind, NED
+  Eigen::Vector3d
+      gust_;  // gust over sigma; of Dryden's model along the wind, and the first states of the others
+  Eigen::Vector3d lagged_;  // of Dryden's model: gust_ behind a second lag of the same time
+  Eigen::Vector2d along_;   // unit vector of the horizontal wind, NED
   Eigen::Vector3d wind_ned_;
   RandomStream random_;
 };

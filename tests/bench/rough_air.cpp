@@ -38,13 +38,13 @@ struct Law {
 
 struct Condition {
   const char* name;
-  double share;                                  // of the flights
+  double share;                                    // of the flights
   std::function<void(World&, std::uint64_t)> set;  // by the seed
 };
 
 struct Result {
   bool completed = false;
-  double squares = 0.0;       // m^2, sum over the samples
+  double squares = 0.0;  // m^2, sum over the samples
   std::size_t samples = 0;
   double takeoff_peak_m = 0.0;
   double peak_m = 0.0;
@@ -69,7 +69,8 @@ Result fly(const World& world, std::uint64_t seed) {
   ground::FlightObserver observer;
   observer.stepped = watch;
   result.completed =
-      ground::fly(loop, mission, ground::planned_duration_s(mission, world.control.limits), observer).completed;
+      ground::fly(loop, mission, ground::planned_duration_s(mission, world.control.limits), observer)
+          .completed;
   return result;
 }
 
@@ -107,7 +108,10 @@ const std::vector<Condition>& conditions() {
 const std::vector<Law>& laws() {
   static const std::vector<Law> all = {
       {"default", [](control::ControlSettings&) {}},
-      {"lift not learnt", [](control::ControlSettings& c) { c.lift.learn = false; }},
+      {"lift not learnt",
+       [](control::ControlSettings& c) {
+         c.rough_air = {control::DisturbanceLaw::kObserved, false, 0.0, 0.0, 0.02};
+       }},
   };
   return all;
 }
@@ -130,7 +134,8 @@ Row fly_all(const Condition& condition, const Law& law, int flights) {
     row.completed += result.completed ? 1 : 0;
     squares += result.squares;
     samples += result.samples;
-    row.worst_rms_m = std::max(row.worst_rms_m, std::sqrt(result.squares / static_cast<double>(result.samples)));
+    row.worst_rms_m =
+        std::max(row.worst_rms_m, std::sqrt(result.squares / static_cast<double>(result.samples)));
     row.takeoff_peak_m = std::max(row.takeoff_peak_m, result.takeoff_peak_m);
     row.peak_m = std::max(row.peak_m, result.peak_m);
   }
@@ -148,9 +153,14 @@ void fly_rough_air(const RoughOptions& options) {
   for (const Condition& condition : conditions()) {
     for (const Law& law : laws()) {
       const Row row = fly_all(condition, law, options.flights);
-      rows.push_back({{"condition", row.condition}, {"law", row.law}, {"flights", row.flights},
-                      {"completed", row.completed}, {"rms_m", row.rms_m}, {"worst_rms_m", row.worst_rms_m},
-                      {"takeoff_peak_m", row.takeoff_peak_m}, {"peak_m", row.peak_m}});
+      rows.push_back({{"condition", row.condition},
+                      {"law", row.law},
+                      {"flights", row.flights},
+                      {"completed", row.completed},
+                      {"rms_m", row.rms_m},
+                      {"worst_rms_m", row.worst_rms_m},
+                      {"takeoff_peak_m", row.takeoff_peak_m},
+                      {"peak_m", row.peak_m}});
       if (options.json) continue;
       std::printf("%-20s%-26s%10s%10.2f%10.2f%12.1f%10.1f\n", row.condition.c_str(), row.law.c_str(),
                   fmt::format("{}/{}", row.completed, row.flights).c_str(), 1e3 * row.rms_m,

@@ -493,8 +493,8 @@ void add_options(runtime::CommandLine app, Options& options) {
       .type_name("LOG...");
   app.add_option("--figure-of-eight", options.figure_of_eight, "Crazyswarm trajectory file").show_default();
   app.add_option("--seed", options.seed, "seed of the sensor errors").show_default();
-  const runtime::Option rough = app.add_flag(
-      "--rough", options.rough, "fly the square in rough air instead, by several control laws");
+  const runtime::Option rough =
+      app.add_flag("--rough", options.rough, "fly the square in rough air instead, by several control laws");
   app.add_option("--flights", options.flights, "with --rough: flights in gusts by each law")
       .range(1, 10'000)
       .needs(rough)

@@ -18,8 +18,8 @@ constexpr double kStep_s = 0.002;
 
 // A vehicle that stands level until the lift that its rotors give is its weight.
 struct Takeoff {
-  double ratio = 1.0;    // of actual and modelled lift
-  double noise = 0.0;    // m/s^2, standard deviation of a sample
+  double ratio = 1.0;      // of actual and modelled lift
+  double noise = 0.0;      // m/s^2, standard deviation of a sample
   double lift_rate = 6.0;  // m/s^3, modelled
   LiftObserver observer;
   double t_s = 0.0;
@@ -52,7 +52,8 @@ TEST(LiftObserver, LearnsTheRatioAtLiftOff) {
     EXPECT_LT(seen_s, lifts_at_s + 0.08) << ratio;
     EXPECT_NEAR(takeoff.observer.ratio() / ratio, 1.0, 0.02);
     for (double t = 0.0; t < 1.0; t += kStep_s)
-      takeoff.observer.step_in_flight(kStep_s, takeoff.measured(plant::kGravity / ratio), plant::kGravity / ratio);
+      takeoff.observer.step_in_flight(kStep_s, takeoff.measured(plant::kGravity / ratio),
+                                      plant::kGravity / ratio);
     EXPECT_NEAR(takeoff.observer.ratio() / ratio, 1.0, 0.003);
   }
 }
