@@ -11,6 +11,7 @@
 #include "swiftlet/control/estimation/disturbance_observer.hpp"
 #include "swiftlet/control/estimation/estimate_source.hpp"
 #include "swiftlet/control/estimation/lift_observer.hpp"
+#include "swiftlet/control/estimation/moment_observer.hpp"
 #include "swiftlet/control/estimation/odometry_motion.hpp"
 #include "swiftlet/control/estimation/poses_ahead.hpp"
 #include "swiftlet/control/estimation/rotor_observer.hpp"
@@ -93,6 +94,7 @@ struct FlightController::Impl {
   LiftObserver lift;
   std::int64_t lift_off_ns = 0;  // stamp of the lift-off; 0: not yet
   DisturbanceObserver disturbance;
+  MomentObserver moment;  // of the incremental law
   TakeoffConsistencyMonitor takeoff_monitor;
   PositionController position;
   AttitudeController attitude;

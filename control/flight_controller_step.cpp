@@ -37,7 +37,8 @@ FlightController::Impl::Impl(const plant::Vehicle& vehicle_in, const ControlSett
       estimate_source(settings_in.estimator.odometry, settings_in.failsafe.mocap_timeout_s),
       poses_ahead(settings_in.estimator.detectors.recovery.longest_wait_s),
       rotors(vehicle_in, settings_in.estimator.rotor_speed_bandwidth),
-      disturbance(settings_in.disturbance),
+      disturbance(settings_in.disturbance, settings_in.rough_air.law == DisturbanceLaw::kIncremental),
+      moment(vehicle_in.inertia),
       takeoff_monitor(settings_in.estimator.detectors.takeoff_consistency),
       position(settings_in.position, settings_in.limits, design_in),
       attitude(vehicle_in, settings_in.attitude, design_in),
@@ -186,6 +187,7 @@ void FlightController::Impl::observe(const ControlSetpoint& setpoint, double dt_
     case ControlMode::kIdle:
       position.reset();
       disturbance.reset();
+      moment.reset();
       lift.reset();
       return;
     case ControlMode::kSpoolUp:
@@ -205,6 +207,8 @@ void FlightController::Impl::observe(const ControlSetpoint& setpoint, double dt_
       if (!setpoint.integrate || !controls_position()) return;
       if (settings.rough_air.learn_lift)
         lift.step_in_flight(dt_s, specific_force_frd - estimate.accelerometer_bias, modelled_lift());
+      if (settings.rough_air.law == DisturbanceLaw::kIncremental)
+        moment.step(dt_s, gains.disturbance_bandwidth, estimate.body_rates_frd, rotors.moment_frd());
       disturbance.step(dt_s, specific_force_frd - estimate.accelerometer_bias, estimate.q_ned_from_frd,
                        lift_now());
       return;
@@ -243,7 +247,7 @@ double FlightController::Impl::ground_effect_now() const {
 // with the lag k_rate / k_angle.
 Vector3d FlightController::Impl::expected_disturbance() const {
   Vector3d expected = disturbance.acceleration_ned();
-  if (settings.rough_air.law == DisturbanceLaw::kObserved) return expected;
+  if (settings.rough_air.law != DisturbanceLaw::kLead) return expected;
   const double lag_s = gains.attitude_rate.head<2>().sum() / gains.attitude_angle.head<2>().sum();
   expected.head<2>() += lag_s * disturbance.rate_ned().head<2>();
   const double squared = expected.squaredNorm();
@@ -328,6 +332,7 @@ void FlightController::Impl::command_vehicle(const ControlSetpoint& setpoint, co
   command.rotor_state = plant::RotorState::kRunning;
   if (level == plant::ControlLevel::kActuators) {
     Wrench wrench = inner_loop(demand);
+    wrench.moment_frd -= moment.moment_frd();
     wrench.thrust_n += thrust_lead() * (wrench.thrust_n - rotors.thrust_n());
     allocate(demand, wrench);
   } else {

@@ -56,8 +56,9 @@ struct DisturbanceSettings {
 
 // How the estimated disturbance is compensated (docs/rough-air.md).
 enum class DisturbanceLaw {
-  kObserved,  // as the observer estimates it
-  kLead,      // horizontally ahead of it by the lag of the attitude loop
+  kObserved,     // as the observer estimates it
+  kLead,         // horizontally ahead of it by the lag of the attitude loop
+  kIncremental,  // incremental inversion of force and moment (estimation/moment_observer.hpp)
 };
 
 struct RoughAirSettings {

@@ -61,7 +61,9 @@ control::DisturbanceSettings read_disturbance(const ConfigNode& node) {
 control::RoughAirSettings read_rough_air(const ConfigNode& node) {
   control::RoughAirSettings rough_air;
   rough_air.law = node.at("law").choice<control::DisturbanceLaw>(
-      {{"observed", control::DisturbanceLaw::kObserved}, {"lead", control::DisturbanceLaw::kLead}});
+      {{"observed", control::DisturbanceLaw::kObserved},
+       {"lead", control::DisturbanceLaw::kLead},
+       {"incremental", control::DisturbanceLaw::kIncremental}});
   rough_air.learn_lift = node.at("learn_lift").boolean();
   rough_air.thrust_lead = node.at("thrust_lead").number();
   rough_air.rotor_radius_m = node.at("rotor_radius_m").number();

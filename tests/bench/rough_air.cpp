@@ -105,13 +105,28 @@ const std::vector<Condition>& conditions() {
   return all;
 }
 
+using control::DisturbanceLaw;
+
+constexpr double kBandwidth = 20.0;  // rad/s, of the observer
+
+void use(control::ControlSettings& control, DisturbanceLaw law, bool learn_lift, double thrust_lead,
+         double bandwidth = kBandwidth) {
+  control.rough_air.law = law;
+  control.rough_air.learn_lift = learn_lift;
+  control.rough_air.thrust_lead = thrust_lead;
+  control.disturbance.bandwidth = bandwidth;
+}
+
 const std::vector<Law>& laws() {
   static const std::vector<Law> all = {
-      {"default", [](control::ControlSettings&) {}},
-      {"lift not learnt",
-       [](control::ControlSettings& c) {
-         c.rough_air = {control::DisturbanceLaw::kObserved, false, 0.0, 0.0, 0.02};
-       }},
+      {"no observer",
+       [](control::ControlSettings& c) { use(c, DisturbanceLaw::kObserved, false, 0.0, 0.0); }},
+      {"observer", [](control::ControlSettings& c) { use(c, DisturbanceLaw::kObserved, false, 0.0); }},
+      {"observer, lift learnt",
+       [](control::ControlSettings& c) { use(c, DisturbanceLaw::kObserved, true, 1.0); }},
+      {"incremental, lift learnt",
+       [](control::ControlSettings& c) { use(c, DisturbanceLaw::kIncremental, true, 1.0); }},
+      {"lead, lift learnt (default)", [](control::ControlSettings&) {}},
   };
   return all;
 }
@@ -148,7 +163,7 @@ Row fly_all(const Condition& condition, const Law& law, int flights) {
 void fly_rough_air(const RoughOptions& options) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   if (!options.json)
-    std::printf("%-20s%-26s%10s%10s%10s%12s%10s\n", "3-D error, mm", "law", "flown", "RMS", "worst RMS",
+    std::printf("%-20s%-28s%10s%10s%10s%12s%10s\n", "3-D error, mm", "law", "flown", "RMS", "worst RMS",
                 "take-off peak", "peak");
   for (const Condition& condition : conditions()) {
     for (const Law& law : laws()) {
@@ -162,7 +177,7 @@ void fly_rough_air(const RoughOptions& options) {
                       {"takeoff_peak_m", row.takeoff_peak_m},
                       {"peak_m", row.peak_m}});
       if (options.json) continue;
-      std::printf("%-20s%-26s%10s%10.2f%10.2f%12.1f%10.1f\n", row.condition.c_str(), row.law.c_str(),
+      std::printf("%-20s%-28s%10s%10.2f%10.2f%12.1f%10.1f\n", row.condition.c_str(), row.law.c_str(),
                   fmt::format("{}/{}", row.completed, row.flights).c_str(), 1e3 * row.rms_m,
                   1e3 * row.worst_rms_m, 1e3 * row.takeoff_peak_m, 1e3 * row.peak_m);
       std::fflush(stdout);
