@@ -20,6 +20,7 @@
 #include "swiftlet/ground/flight/process_flight.hpp"
 #include "swiftlet/ground/flight/process_group.hpp"
 #include "swiftlet/ground/terminal/fleet_progress.hpp"
+#include "swiftlet/ground/view/view_server.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/discovery/flight_reservation.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
@@ -90,6 +91,32 @@ void fly_together(std::deque<ProcessFlight>& flights, ProcessGroup& processes,
   if (fault) std::rethrow_exception(fault);
 }
 
+// The live page beside a flight, in threads of its own. Another port than the usual one if that is in use.
+class LiveView {
+ public:
+  LiveView(const comms::NodeSettings& network, const std::vector<std::string>& vehicles,
+           const std::string& program, ProgressLine& progress)
+      : context_(network) {
+    const auto say = [](const std::string& sentence) {
+      std::fprintf(stderr, "\nswiftlet: live page: %s\n", sentence.c_str());
+    };
+    ViewSettings settings;
+    settings.vehicles = vehicles;
+    settings.program = program;
+    try {
+      server_.emplace(context_, settings, say);
+    } catch (const std::runtime_error&) {
+      settings.port = 0;
+      server_.emplace(context_, settings, say);
+    }
+    progress.say("live page: " + server_->url());
+  }
+
+ private:
+  Context context_;
+  std::optional<ViewServer> server_;
+};
+
 // Completes the plans with what the running vehicles report. Throws unless they are on the ground and can fly their missions
 // from where they stand. What is not known of one is said.
 void plan_for_running(const comms::NodeSettings& network, const std::vector<std::string>& vehicles,
@@ -135,6 +162,8 @@ int fly_vehicles(const FlyOptions& options, const std::vector<std::string>& vehi
   const Interrupts interrupts;
   std::optional<MessageRecord> messages;  // receives from the first message on
   if (options.mcap) messages.emplace(network, fleet);
+  std::optional<LiveView> view;
+  if (options.view) view.emplace(network, vehicles, options.program, progress);
   ProcessGroup processes(ground::processes(fleet, network));
   comms::NodeSettings own = network;
   own.deadlines = options.clock != runtime::Clock::kLockstep;

@@ -62,6 +62,7 @@ struct FlyOptions {
   bool trace = false;                // write a trace of a lockstep or in-process flight
   bool sensors = false;              // record sensors and commands, for `swiftlet identify flight`
   bool mcap = false;                 // record every message, as flight.mcap
+  bool view = false;                 // serve the live page beside the flight
   std::string program = "swiftlet";  // with its version, for the record
   bool skip_check = false;           // kAttached: do not check the vehicle before it is armed
   bool json = false;

@@ -49,8 +49,8 @@ Gateway::Gateway(const ground::Context& context, const std::string& vehicle, con
     const std::lock_guard<std::mutex> lock(mutex_);
     return ending_;
   });
-  for (const auto& [topic, schema] : standard_.topics())
-    writers_.emplace(topic, writer_of(node_, topic, schema->name));
+  for (const ground::StandardTopic& one : standard_.ros_topics())
+    writers_.emplace(one.topic, writer_of(node_, one.topic, one.schema->name));
   forward(comms::topics::kEstimate);
   forward(comms::topics::kReference);
   forward(comms::topics::kImu);
