@@ -58,16 +58,8 @@ void require_valid(const FlightInputs& given) {
   if (given.simulation) require("simulation", plant::validate(*given.simulation));
 }
 
-// The duration of the mission by the dry run, s, of any vehicle.
-double dry_run_duration_s(const LaunchConfiguration& plan) {
-  const MissionDryRun flown = dry_run(plan.mission.mission, plan.control, plan.start_ned);
-  if (flown.completed) return flown.duration_s;
-  throw InputError(fmt::format("{}: the control service would not complete it: {}", plan.mission_file.c_str(),
-                               flown.reason));
-}
-
-// As the public one, of a mission that is in no file.
-double require_flyable(const LaunchConfiguration& plan) {
+// As require_flyable(), of a mission that is in no file.
+double require_flyable_mission(const LaunchConfiguration& plan) {
   CheckConditions conditions;
   conditions.start_ned = plan.start_ned;
   const MissionCheck check = check_mission(plan.mission, plan.vehicle, plan.control, conditions);
@@ -189,6 +181,13 @@ class ProcessBuilder {
 
 }  // namespace
 
+double require_flyable(const LaunchConfiguration& plan) {
+  const MissionDryRun flown = dry_run(plan.mission.mission, plan.control, plan.start_ned);
+  if (flown.completed) return flown.duration_s;
+  throw InputError(fmt::format("{}: the control service would not complete it: {}", plan.mission_file.c_str(),
+                               flown.reason));
+}
+
 double require_flyable(const LaunchConfiguration& plan, const plant::Vehicle& vehicle,
                        const FileOptions& reading) {
   CheckConditions conditions;
@@ -269,9 +268,10 @@ LaunchConfiguration plan_flight(const FlyOptions& options, const FlightInputs& g
                                  plan.mission_file.c_str(), plan.start_ned.x(), plan.start_ned.y(),
                                  outcome.reason));
   require_takeoff_and_land(plan.mission, plan.mission_file);
-  plan.planned_duration_s = plan.launch_mode == LaunchMode::kAttached ? dry_run_duration_s(plan)
-                            : given.mission                           ? require_flyable(plan)
+  if (plan.launch_mode != LaunchMode::kAttached) {
+    plan.planned_duration_s = given.mission ? require_flyable_mission(plan)
                                             : require_flyable(plan, plan.vehicle, options.reading);
+  }
 
   if (plan.launch_mode == LaunchMode::kStarted) {
     plan.vehicle_program = program_beside(options.px4_instance ? "swiftlet-px4" : "swiftlet-plant");

@@ -179,6 +179,13 @@ MissionTransport::Reply NetworkTransport::arm() {
   const Result answer = client_.command(
       command, kRequestTimeout, [this] { return watch_.exited_process() || watch_.interrupts() > 0; });
   require_alive();
+  armed_ = answer;
+  if (answer.kind == Result::Kind::kSilence || answer.kind == Result::Kind::kCancelled) {
+    msg::Command disarm;  // the request may have armed it all the same
+    disarm.kind(msg::Command_Constants::DISARM);
+    armed_ = client_.command(disarm, kResultTimeout);
+  }
+  if (answer.accepted() && watch_.interrupts() > 0) abandon("interrupted before take-off");
   require_no_interrupt();
   return {answer.accepted(), answer.kind == Result::Kind::kRefused, answer.reason};
 }
@@ -201,7 +208,7 @@ void NetworkTransport::learn_clock() {
   std::optional<std::int64_t> stamp_ns;
   for (Clock::duration asked{}; asked < kClockTime || !stamp_ns; asked = Clock::now() - start) {
     require_alive();
-    require_no_interrupt();
+    if (watch_.interrupts() > 0) abandon("interrupted before take-off");
     if (asked > kClockTimeout)
       abandon("the vehicle does not answer clock_request: vehicles that start together need a common clock");
     vehicle_clock.ask_if_due();
@@ -222,17 +229,13 @@ void NetworkTransport::wait_for_other_vehicles() {
   if (!lockstep_) learn_clock();
   if (const Result answer = upload(); !answer.accepted()) {
     require_alive();
-    if (lockstep_) client_.simulation_clock().without_end();  // disarming needs time to advance
     abandon(watch_.interrupts() > 0 ? "interrupted" : "mission refused: " + answer.reason);
   }
   watch_.barrier->ready(lockstep_ ? paused_at_ns_ : runtime::monotonic_ns());
   while (!watch_.barrier->wait_for_all(kStep)) {
     require_alive();
     const auto failure = watch_.barrier->failure();
-    if (failure || watch_.interrupts() > 0) {
-      if (lockstep_) client_.simulation_clock().without_end();  // disarming needs time to advance
-      abandon(failure.value_or("interrupted"));
-    }
+    if (failure || watch_.interrupts() > 0) abandon(failure.value_or("interrupted"));
     progress_.update(kBeforeFlight, "armed, waiting for the other vehicles");
   }
   const std::int64_t all_ready_ns = watch_.barrier->ready_ns();
@@ -325,8 +328,15 @@ void NetworkTransport::wait_for_last_figures() {
 
 void NetworkTransport::abandon(const std::string& reason) {
   const int interrupts_before = watch_.interrupts();
-  progress_.say(reason +
-                (interrupts_before > 0 ? "; landing (interrupt again to quit at once)" : "; landing"));
+  if (lockstep_) client_.simulation_clock().without_end();  // disarming needs time to advance
+  // A status from before the arming still says disarmed.
+  client_.wait(kResultTimeout, [&](const View& view) {
+    return view.control.message.stamp_ns() > armed_.stamp_ns || !rotors_off(mode_of(view));
+  });
+  const ControlMode mode = mode_of(client_.view());
+  bool in_flight = start_.accepted() || (!rotors_off(mode) && mode != ControlMode::kArmed);
+  progress_.say(reason + (in_flight ? "; landing" : "; disarming") +
+                (interrupts_before > 0 ? " (interrupt again to quit at once)" : ""));
   msg::Command land;
   land.kind(msg::Command_Constants::LAND);
   land.speed(kLandingSpeed);
@@ -347,6 +357,7 @@ void NetworkTransport::abandon(const std::string& reason) {
       disarm.kind(msg::Command_Constants::DISARM);
       client_.command(disarm, kRetryPeriod);
     } else if (!descending) {
+      in_flight = true;
       // Refused while the rotors spool up or during a descent: requests again.
       descending = client_.command(land, kRetryPeriod).accepted();
     }
@@ -354,8 +365,9 @@ void NetworkTransport::abandon(const std::string& reason) {
     client_.wait(kRetryPeriod, [](const View& view) { return rotors_off(mode_of(view)); });
   }
   wait_for_last_figures();
-  throw FlightFailure(reason +
-                      (mode_of(client_.view()) == ControlMode::kStopped ? "; rotors stopped" : "; landed"));
+  throw FlightFailure(reason + (mode_of(client_.view()) == ControlMode::kStopped ? "; rotors stopped"
+                                : in_flight                                      ? "; landed"
+                                                                                 : "; disarmed"));
 }
 
 void NetworkTransport::update_progress(const View& view) {

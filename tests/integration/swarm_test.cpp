@@ -10,9 +10,11 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -145,6 +147,16 @@ TEST_F(SwarmFlight, FliesVehiclesOfTwoFilesFromTheirPlaces) {
   const Start b = start_of(recorded("/b/command"), recorded("/b/imu"));
   EXPECT_EQ(a.stamp_ns, b.stamp_ns);
   expect_same_climb(a, b);
+  // The recording has the files of both.
+  const ProgramResult reported =
+      run_program("swiftlet", {"report", record() / "flight.mcap", "--json"}, folder_.path());
+  ASSERT_EQ(reported.exit_code, 0) << reported.errors;
+  const json flights = json::parse(reported.output).at("flights");
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string model = i == 0 ? "crazyflie2" : "kaylion";
+    EXPECT_EQ(flights[i].at("report").at("vehicle"), model);
+    EXPECT_EQ(flights[i].at("settings").at("vehicle.name"), model);
+  }
 }
 
 // A flight is repeated if a vehicle's clock fell behind just before its start, as on a busy computer.
@@ -185,6 +197,158 @@ TEST_F(SwarmFlight, RefusesTwoThatLandOnOneSpot) {
   EXPECT_NE(result.errors.find("a and b come too near: 0.000 m apart at "), std::string::npos)
       << result.errors;
   EXPECT_FALSE(fs::exists(record()));
+}
+
+// GIVEN a vehicle that its pilot pauses WHEN another one is to pass the same place after it THEN that waits, the pilot's is not
+// resumed, and both go on when the pilot resumes it.
+TEST_F(SwarmFlight, WaitsForOneThatThePilotHasPausedAndLeavesItPaused) {
+  folder_.write(
+      "first.yaml",
+      "frame: ned\ntolerance_m: 0.1\nitems:\n  - {kind: takeoff, height_m: 0.6, speed_m_s: 0.5}\n"
+      "  - {kind: waypoint, position_m: [1.5, 0, -0.6], speed_m_s: 0.3}\n  - {kind: land, speed_m_s: 0.4}\n");
+  folder_.write(
+      "second.yaml",
+      "frame: ned\ntolerance_m: 0.1\nitems:\n"
+      "  - {kind: takeoff, height_m: 0.6, speed_m_s: 0.5, hold_s: 8}\n"
+      "  - {kind: waypoint, position_m: [0, 1.5, -0.6], speed_m_s: 0.3}\n  - {kind: land, speed_m_s: 0.4}\n");
+  const std::string file = folder_.write(
+      "cross.yaml",
+      "frame: ned\nvehicle: crazyflie2\nsafety: {radius_xy_m: 0.2, radius_z_m: 0.3}\nvehicles:\n"
+      "  - {name: a, start_m: [-1.5, 0], mission: first.yaml}\n  - {name: b, start_m: [0, -1.5], mission: "
+      "second.yaml}\n");
+  Program fly("swiftlet", {"fleet", "fly", file, "--record", record().string(), "--json"}, folder_.path());
+  const auto said = [&](const std::string& text) { return fly.errors().find(text) != std::string::npos; };
+  ASSERT_TRUE(eventually([&] { return said("2/3 waypoint"); }, kStuck)) << fly.errors();
+  const std::size_t at = fly.errors().find(" in domain ");
+  ASSERT_NE(at, std::string::npos);
+  const std::string domain = std::to_string(std::stoi(fly.errors().substr(at + 11)));
+  const auto pilot = [&](const char* what) {
+    return run_program(
+        "swiftlet",
+        {"mission", what, "--vehicle-name", "a", "--no-wait", "--localhost-only", "--domain", domain},
+        folder_.path());
+  };
+  const ProgramResult paused = pilot("pause");
+  ASSERT_EQ(paused.exit_code, 0) << paused.errors;
+  EXPECT_TRUE(eventually([&] { return said("b: waits for a"); }, kStuck)) << fly.errors();
+  const ProgramResult status = run_program(
+      "swiftlet", {"status", "--json", "--vehicle-name", "a", "--localhost-only", "--domain", domain},
+      folder_.path());
+  EXPECT_EQ(json::parse(status.output).at("mission").at("state"), "paused")
+      << "nobody but the pilot resumes it";
+  EXPECT_FALSE(said("a: goes on")) << fly.errors();
+  const ProgramResult resumed = pilot("resume");
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.errors;
+  ASSERT_EQ(fly.wait(kStuck), 0) << fly.errors();
+  for (const json& vehicle : json::parse(fly.output()).at("vehicles"))
+    EXPECT_EQ(vehicle.at("completed"), true);
+  EXPECT_TRUE(said("b: goes on")) << fly.errors();
+}
+
+// Vehicles that run, beside each other along east at 1 m.
+class RunningSwarm : public testing::Test {
+ protected:
+  static constexpr const char* kNames = "a,b,c";
+
+  std::vector<std::string> on_this_domain(std::vector<std::string> words) const {
+    words.insert(words.end(), {"--domain", std::to_string(lock_.domain()), "--localhost-only"});
+    return words;
+  }
+  std::vector<std::string> of_process(std::vector<std::string> more = {}) const {
+    more.insert(more.end(), {"--vehicle-name", kNames, "--clock", "lockstep"});
+    return on_this_domain(more);
+  }
+  ProgramResult swiftlet(const std::vector<std::string>& words) const {
+    return run_program("swiftlet", on_this_domain(words), folder_.path(), kStuck);
+  }
+  json status(const std::string& vehicle) const {
+    const ProgramResult result = swiftlet({"status", "--json", "--watch", "0.2", "--vehicle-name", vehicle});
+    return result.exit_code == 0 ? json::parse(result.output) : json::object();
+  }
+  std::string mode(const std::string& vehicle) const { return status(vehicle).value("mode", ""); }
+  Eigen::Vector3d position(const std::string& vehicle) const {
+    const json at = status(vehicle).at("position_ned_m");
+    return {at[0].get<double>(), at[1].get<double>(), at[2].get<double>()};
+  }
+  void arm(const std::string& names) const {
+    ProgramResult armed;
+    ASSERT_TRUE(eventually(
+        [&] {
+          return (armed = swiftlet({"arm", "--vehicle-name", names})).exit_code == 0;
+        },
+        kStuck))
+        << armed.errors;
+  }
+  void hover(const std::string& names) const {
+    arm(names);
+    const ProgramResult off = swiftlet({"takeoff", "1", "--vehicle-name", names});
+    ASSERT_EQ(off.exit_code, 0) << off.errors;
+  }
+
+  comms::DomainLock lock_;
+  TemporaryFolder folder_;
+  Program plant_{"swiftlet-plant", of_process({"--speed", "1", "--spacing", "1"}), folder_.path()};
+  Program mocap_{"swiftlet-mocap", of_process(), folder_.path()};
+  Program control_{"swiftlet-control", of_process(), folder_.path()};
+};
+
+TEST_F(RunningSwarm, MovesAsOneAndLands) {
+  hover(kNames);
+  const Eigen::Vector3d a = position("a"), b = position("b"), c = position("c");
+  const ProgramResult moved = swiftlet({"fleet", "goto", "0.5", "1.2", "-1.4"});
+  ASSERT_EQ(moved.exit_code, 0) << moved.errors;
+  const Eigen::Vector3d move = Eigen::Vector3d(0.5, 1.2, -1.4) - (a + b + c) / 3.0;
+  EXPECT_LT((position("a") - a - move).norm(), 0.06);
+  EXPECT_LT((position("b") - b - move).norm(), 0.06);
+  EXPECT_LT((position("c") - c - move).norm(), 0.06);
+
+  // A part of it, towards the rest.
+  const ProgramResult refused = swiftlet({"fleet", "goto", "0.5", "1.3", "-1.4", "--vehicle-name", "a"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.errors.find("a would come too near to b: "), std::string::npos) << refused.errors;
+  EXPECT_NE(refused.errors.find("nothing was sent"), std::string::npos) << refused.errors;
+  // One refuses what lies outside its fence: the others hold.
+  const ProgramResult outside = swiftlet({"fleet", "goto", "0.5", "2.5", "-1.4"});
+  EXPECT_EQ(outside.exit_code, 1);
+  EXPECT_NE(outside.errors.find("a: holds, because c did not accept it"), std::string::npos)
+      << outside.errors;
+  EXPECT_LT((position("a") - a - move).norm(), 0.3);
+
+  const ProgramResult one = swiftlet({"fleet", "land", "--vehicle-name", "b"});
+  ASSERT_EQ(one.exit_code, 0) << one.errors;
+  EXPECT_EQ(mode("b"), "disarmed");
+  EXPECT_EQ(mode("a"), "holding");
+  const ProgramResult all = swiftlet({"fleet", "land"});
+  ASSERT_EQ(all.exit_code, 0) << all.errors;
+  for (const char* const name : {"a", "c"}) EXPECT_EQ(mode(name), "disarmed") << name;
+  const ProgramResult again = swiftlet({"fleet", "land"});
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_NE(again.errors.find("no vehicle flies: nothing was sent"), std::string::npos) << again.errors;
+}
+
+TEST_F(RunningSwarm, LandsNobodyOnAnother) {
+  hover("a,b");
+  ASSERT_EQ(swiftlet({"goto", "0", "2", "-1.9", "--vehicle-name", "a"}).exit_code,
+            0);  // above c, which stands
+  const ProgramResult landed = swiftlet({"fleet", "land"});
+  EXPECT_EQ(landed.exit_code, 1);
+  EXPECT_NE(landed.errors.find("a: was not landed: it would come down on c"), std::string::npos)
+      << landed.errors;
+  EXPECT_EQ(mode("a"), "holding");
+  EXPECT_EQ(mode("b"), "disarmed");
+}
+
+TEST_F(RunningSwarm, IsStoppedAtOnce) {
+  arm("a,b");
+  EXPECT_EQ(swiftlet({"fleet", "stop"}).exit_code, 2) << "without --yes";
+  EXPECT_EQ(mode("a"), "armed");
+  const ProgramResult one = swiftlet({"fleet", "stop", "--yes", "--vehicle-name", "b"});
+  EXPECT_EQ(one.exit_code, 0) << one.errors;
+  EXPECT_EQ(mode("a"), "armed");
+  EXPECT_EQ(mode("b"), "stopped");
+  const ProgramResult all = swiftlet({"fleet", "stop", "--yes"});
+  EXPECT_EQ(all.exit_code, 0) << all.errors;
+  for (const char* const name : {"a", "b", "c"}) EXPECT_EQ(mode(name), "stopped") << name;
 }
 
 }  // namespace
