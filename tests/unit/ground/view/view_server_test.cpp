@@ -238,6 +238,40 @@ TEST_F(Server, SendsPayloadsAsTheyCameAndStandardMessages) {
   EXPECT_EQ(number_of(*third->read_message()), 42U);
 }
 
+TEST_F(Server, SendsTheNewestToWhoWantsNoMore) {
+  auto publisher = vehicle_.publish(comms::topics::kEstimate);
+  const auto viewer = client("/?newest");
+  viewer->subscribe(1, viewer->channel("/kl1/estimate"));
+  ASSERT_TRUE(eventually([&] { return publisher.matched() == 2; }));
+  constexpr std::uint64_t kLast = 100;
+  for (std::uint64_t number = 1; number <= kLast; ++number) publisher.publish(estimate(number));
+  std::uint64_t newest = 0;
+  while (newest < kLast) {
+    const std::uint64_t next = number_of(*viewer->read_message());
+    ASSERT_GT(next, newest);
+    newest = next;
+  }
+}
+
+// GIVEN lines of a log before a viewer comes WHEN it subscribes THEN it gets them all, in their order.
+TEST_F(Server, SendsTheLogToWhoComesLater) {
+  auto acks = vehicle_.publish(comms::topics::kCommandAck);
+  ASSERT_TRUE(eventually([&] { return acks.matched() == 2; })) << "the log and the vehicle's client";
+  const auto first = client("/?newest");
+  first->subscribe(1, first->channel("/kl1/log"));
+  std::vector<std::vector<std::uint8_t>> lines;
+  for (const char* reason : {"one", "two", "three"}) {
+    msg::CommandAck ack;
+    ack.reason(reason);
+    acks.publish(ack);
+  }
+  for (int i = 0; i < 3; ++i) lines.push_back(first->read_message()->payload);
+  EXPECT_NE(lines[0], lines[1]);
+  const auto second = client("/?newest");
+  second->subscribe(1, second->channel("/kl1/log"));
+  for (const auto& line : lines) EXPECT_EQ(second->read_message()->payload, line);
+}
+
 // GIVEN a viewer that reads nothing and seven that read WHEN more is sent than fits on its way THEN these seven have every
 // message, and the slow one has the newest when it reads at last.
 TEST_F(Server, ASlowViewerLosesTheOlderAndSlowsNobody) {
