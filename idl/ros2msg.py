@@ -11,6 +11,8 @@ import re
 import sys
 from pathlib import Path
 
+from type_hash import ARRAY, BOUNDED_SEQUENCE, field, type_hash
+
 # IDL type: ROS 2's name, bytes in CDR
 PRIMITIVES = {
     "boolean": ("bool", 1), "uint8": ("uint8", 1), "int8": ("int8", 1), "uint16": ("uint16", 2), "int16": ("int16", 2),
@@ -39,6 +41,7 @@ class Message:
         self.name = name
         self.lines = []      # of the definition
         self.uses = []       # other types, in order
+        self.fields = []     # for its hash
         self.stamp_offset = -1
         self.offset = ENCAPSULATION_BYTES  # of the next member; None behind one of variable size
 
@@ -52,6 +55,7 @@ class Message:
         if count:
             text += f"[{count}]"
         self.advance(idl_type, int(count or 1))
+        self.fields.append(described(name, idl_type, int(count or 0)))
         self.lines.append(f"{text} {name}" + (f"  # {comment}" if comment else ""))
 
     def ros_type(self, idl_type):
@@ -77,6 +81,18 @@ class Message:
             return
         size = PRIMITIVES[idl_type][1]
         self.offset = self.aligned(size) + count * size
+
+
+def described(name, idl_type, count):
+    """A member for type_hash()."""
+    container, capacity = (ARRAY, count) if count else (0, 0)
+    if sequence := SEQUENCE.match(idl_type):
+        idl_type, container, capacity = sequence[1], BOUNDED_SEQUENCE, int(sequence[2])
+    if string := STRING.match(idl_type):
+        return field(name, "bounded_string" if string[1] else "string", container, capacity, int(string[1] or 0))
+    if compound := COMPOUND.match(idl_type):
+        return field(name, "nested", container, capacity, nested=f"{compound[1]}/msg/{compound[2]}")
+    return field(name, idl_type, container, capacity)
 
 
 def without_slashes(comment):
@@ -144,12 +160,14 @@ def main(output, files):
     out = ['#include "swiftlet/services/messages/schemas.hpp"', "", f"namespace {package}::msg {{",
            *(f"class {name};" for name in sorted(messages)), f"}}  // namespace {package}::msg", "",
            "namespace swiftlet::comms {", ""]
+    fields = {f"{package}/msg/{name}": message.fields for name, message in messages.items()}
     for name, message in sorted(messages.items()):
         text = definition(package, messages, name)
         assert len(text) < LONGEST_LITERAL
         out += ["template <>", f"const MessageSchema& schema_of<{package}::msg::{name}>() {{",
                 f'  static constexpr MessageSchema kSchema{{"{package}/msg/{name}", R"ros2msg({text})ros2msg",',
-                f"                                           {message.stamp_offset}}};",
+                f"                                           {message.stamp_offset},",
+                f'                                           "{type_hash(f"{package}/msg/{name}", fields)}"}};',
                 "  return kSchema;", "}", ""]
     out += ["}  // namespace swiftlet::comms", ""]
     Path(output).write_text("\n".join(out))

@@ -8,6 +8,7 @@
 
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/nearest_name.hpp"
+#include "swiftlet/io/program_directory.hpp"
 #include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::runtime {
@@ -39,10 +40,9 @@ std::vector<std::string> config_directories() {
   std::vector<std::string> directories;
   const char* const from_environment = std::getenv("SWIFTLET_CONFIG_DIR");
   if (from_environment != nullptr && *from_environment != 0) directories.emplace_back(from_environment);
-  std::error_code error;
-  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
-  if (!error) {
-    const fs::path prefix = executable.parent_path().parent_path();
+  const fs::path programs = program_directory();
+  if (!programs.empty()) {
+    const fs::path prefix = programs.parent_path();
     directories.push_back((prefix / "share" / "swiftlet" / "config").string());
     directories.push_back((prefix.parent_path() / "config").string());
   }

@@ -17,7 +17,7 @@ void arm(MissionTransport& vehicle) {
 
 void start(MissionTransport& vehicle) {
   const MissionTransport::Reply reply = vehicle.start_mission();
-  if (!reply.accepted) throw FlightFailure("mission refused: " + reply.reason);
+  if (!reply.accepted) vehicle.abandon("mission refused: " + reply.reason);
 }
 
 void follow(MissionTransport& vehicle, double planned_duration_s) {

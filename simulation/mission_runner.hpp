@@ -55,7 +55,7 @@ class MissionTransport {
   virtual void advance() = 0;                // by a step, or until there is news
   virtual Status status() const = 0;
   virtual std::string abort_reason() const = 0;  // of an aborted mission
-  // Ends a flight whose rotors turn, with FlightFailure.
+  // Ends the flight of a vehicle that is armed or flies, and leaves it disarmed. Throws FlightFailure.
   [[noreturn]] virtual void abandon(const std::string& reason) { throw FlightFailure(reason); }
 };
 

@@ -77,13 +77,18 @@ void EstimateSource::update(const plant::OdometrySample& sample, const Vector3d&
   now_.reset_position_ned = fused.reset_position_ned;
   now_.reset_rotation_ned = fused.reset_rotation_ned;
   last_ = source;
-  position_age_s_ = !of_vehicle      ? filter.pose_age_s()
-                    : valid_ns_ >= 0 ? seconds(sample.stamp_ns - valid_ns_)
-                                     : std::numeric_limits<double>::infinity();
+  position_age_s_ = of_vehicle ? age_of_vehicle_s(sample, filter) : filter.pose_age_s();
   heading_to_vehicle_rad_ = has_estimate_ ? heading_between(now_.q_ned_from_frd, sample.q_ned_from_frd) : 0.0;
   sample_ = sample;
   has_sample_ = true;
   compare(sample, filter);
+}
+
+// A position that the vehicle takes from our poses is no newer than the last of them, whatever the vehicle says.
+double EstimateSource::age_of_vehicle_s(const plant::OdometrySample& sample, const Estimator& filter) const {
+  const double age_s =
+      valid_ns_ >= 0 ? seconds(sample.stamp_ns - valid_ns_) : std::numeric_limits<double>::infinity();
+  return sample.fuses_mocap ? std::max(age_s, filter.pose_age_s()) : age_s;
 }
 
 EstimateSource::Source EstimateSource::choose(const plant::OdometrySample& sample, const Estimator& filter,
@@ -95,7 +100,8 @@ EstimateSource::Source EstimateSource::choose(const plant::OdometrySample& sampl
   if (fresh && steady_since_ns_ < 0) steady_since_ns_ = sample.stamp_ns;
   const bool steady = fresh && (rotors == plant::RotorState::kOff ||
                                 seconds(sample.stamp_ns - steady_since_ns_) >= kSteady_s);
-  const bool usable = sample.position_valid && sample.velocity_valid;
+  // One that is made from the same poses is lost with them.
+  const bool usable = sample.position_valid && sample.velocity_valid && !sample.fuses_mocap;
   if (source_ == Source::kVehicle) return steady || !usable ? Source::kMocap : Source::kVehicle;
   return !fresh && usable ? Source::kVehicle : Source::kMocap;
 }

@@ -19,7 +19,7 @@ namespace swiftlet::control {
 class EstimateSource {
  public:
   // mocap_timeout_s: of the failsafe. With OdometryUse::kBoth the vehicle's own estimate takes over when no pose was used for
-  // half of it, and motion capture again after kSteady_s of poses.
+  // half of it, and motion capture again after kSteady_s of poses; one that fuses the poses of motion capture never does.
   EstimateSource(const OdometrySettings& settings, double mocap_timeout_s);
 
   // Chooses and forms the estimate at the stamp of the sample, to which `filter` has been propagated. specific_force_frd: of
@@ -31,7 +31,8 @@ class EstimateSource {
   // There is an estimate; before that it has no meaning.
   bool initialised() const { return has_estimate_; }
   const Estimate& estimate() const { return now_; }
-  // Since the source in force was last corrected: by a pose, or by a sample with a position. s; infinite before the first.
+  // Since the source in force was last corrected: by a pose, or by a sample with a position, which must have had a pose
+  // likewise if it fuses those of motion capture. s; infinite before the first.
   double position_age_s() const { return position_age_s_; }
   ErrorState standard_deviation(const Estimator& filter) const;
 
@@ -56,6 +57,7 @@ class EstimateSource {
   };
 
   Source choose(const plant::OdometrySample& sample, const Estimator& filter, plant::RotorState rotors);
+  double age_of_vehicle_s(const plant::OdometrySample& sample, const Estimator& filter) const;
   Motion motion_of_vehicle(const plant::OdometrySample& sample, const Eigen::Vector3d& specific_force_frd,
                            double dt_s) const;
   void go_on(const Motion& source, const Eigen::Vector3d& specific_force_frd, bool jumped, double dt_s);

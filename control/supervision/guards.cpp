@@ -99,7 +99,9 @@ Outcome check_start_time(const SupervisorContext& context) {
   if (ahead_s > kLongestWaitForStart_s)
     return refuse("mission start: the start time is %.1f s ahead, the limit is %.0f s", ahead_s,
                   kLongestWaitForStart_s);
-  if (context.state.guidance.path.finished(context.state.now_ns)) return accept();
+  // On the ground the path is that of the last landing, which a touchdown cut short.
+  const GuidanceState& guidance = context.state.guidance;
+  if (!guidance.flying() || guidance.path.finished(context.state.now_ns)) return accept();
   return refuse("mission start: the vehicle still moves; at a given time it can start from rest only");
 }
 

@@ -26,7 +26,7 @@ import messages
 from manual_text import ManualError, anchors, fences, links, map_links, split
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-LANGUAGES = {"sh", "yaml", "json", "csv", "cpp", "cmake", "text", "idl", "xml"}
+LANGUAGES = {"sh", "yaml", "json", "csv", "cpp", "cmake", "text", "idl", "xml", "python"}
 GENERATED = "<!-- generated pages -->"  # the place of their list, in docs/reference.md
 IGNORED = re.compile(r"^(\.git|\.cache|build.*|flights)$")
 

@@ -33,6 +33,7 @@ Command add_set_command(runtime::CommandLine root);  // `set control`
 Command add_status_command(runtime::CommandLine root);
 Command add_watch_command(runtime::CommandLine root);
 Command add_list_command(runtime::CommandLine root);  // all vehicles of the domain
+Command add_view_command(runtime::CommandLine root, const std::string& version = "swiftlet");
 
 // Motion capture, without a vehicle's processes: `mocap list`, `mocap watch`, `mocap calibrate`.
 Command add_mocap_command(runtime::CommandLine root);

@@ -181,6 +181,8 @@ runtime::Option add_launch_options(runtime::CommandLine app, FlyOptions& options
       .range(0.01, 100.0);
   app.add_flag("--mcap", options.mcap,
                "write flight.mcap, every message of the flight, as `swiftlet record` does");
+  app.add_flag("--view", options.view,
+               "serve the live page of `swiftlet view` beside the flight, and print its URL");
   app.add_flag("--trace", options.trace,
                "lockstep only: write trace.csv, which holds every sample and command bit for bit");
   // Processes that it starts are on this host.

@@ -20,6 +20,7 @@
 #include "swiftlet/ground/flight/process_flight.hpp"
 #include "swiftlet/ground/flight/process_group.hpp"
 #include "swiftlet/ground/terminal/fleet_progress.hpp"
+#include "swiftlet/ground/view/view_server.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/discovery/flight_reservation.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
@@ -67,7 +68,8 @@ void fly_together(std::deque<ProcessFlight>& flights, ProcessGroup& processes,
   if (monitor) {
     std::vector<FleetWatch::Watched> watched;
     for (std::size_t i = 0; i < flights.size(); ++i) watched.push_back({&flights[i].client(), &shares.of(i)});
-    watch.emplace(std::move(*monitor), std::move(watched));
+    watch.emplace(std::move(*monitor), std::move(watched),
+                  [&] { return barrier.failure().has_value() || interrupts.count() > 0; });
   }
   std::exception_ptr fault;
   try {
@@ -89,15 +91,44 @@ void fly_together(std::deque<ProcessFlight>& flights, ProcessGroup& processes,
   if (fault) std::rethrow_exception(fault);
 }
 
-// Throws unless the running vehicles are on the ground and can fly their missions. What is not known of one is said.
-void require_flyable_by_running(const comms::NodeSettings& network, const std::vector<std::string>& vehicles,
-                                const std::vector<LaunchConfiguration>& plans, const FileOptions& reading) {
-  const std::vector<std::optional<ReportedModel>> models = require_on_ground(network, vehicles);
+// The live page beside a flight, in threads of its own. Another port than the usual one if that is in use.
+class LiveView {
+ public:
+  LiveView(const comms::NodeSettings& network, const std::vector<std::string>& vehicles,
+           const std::string& program, ProgressLine& progress)
+      : context_(network) {
+    const auto say = [](const std::string& sentence) {
+      std::fprintf(stderr, "\nswiftlet: live page: %s\n", sentence.c_str());
+    };
+    ViewSettings settings;
+    settings.vehicles = vehicles;
+    settings.program = program;
+    try {
+      server_.emplace(context_, settings, say);
+    } catch (const std::runtime_error&) {
+      settings.port = 0;
+      server_.emplace(context_, settings, say);
+    }
+    progress.say("live page: " + server_->url());
+  }
+
+ private:
+  Context context_;
+  std::optional<ViewServer> server_;
+};
+
+// Completes the plans with what the running vehicles report. Throws unless they are on the ground and can fly their missions
+// from where they stand. What is not known of one is said.
+void plan_for_running(const comms::NodeSettings& network, const std::vector<std::string>& vehicles,
+                      std::vector<LaunchConfiguration>& plans, const FileOptions& reading) {
+  const std::vector<StandingVehicle> standing = require_on_ground(network, vehicles);
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
-    const KnownVehicle vehicle = known_vehicle(models[i]);
+    plans[i].start_ned = standing[i].start_ned.value_or(plans[i].start_ned);
+    const KnownVehicle vehicle = known_vehicle(standing[i].model);
     if (vehicle.model) {
-      require_flyable(plans[i], *vehicle.model, reading);
+      plans[i].planned_duration_s = require_flyable(plans[i], *vehicle.model, reading);
     } else {
+      plans[i].planned_duration_s = require_flyable(plans[i]);
       std::fprintf(stderr, "%s: its rotors are not checked: %s\n", vehicles[i].c_str(),
                    vehicle.unknown.c_str());
     }
@@ -118,7 +149,7 @@ int fly_vehicles(const FlyOptions& options, const std::vector<std::string>& vehi
   network.domain = domain_lock ? domain_lock->domain() : std::max(options.domain, 0);
   const bool is_alone = !attached && !options.px4_instance;  // all processes are started here
   network.localhost_only = network.localhost_only || is_alone;
-  if (attached) require_flyable_by_running(network, vehicles, plans, options.reading);
+  if (attached) plan_for_running(network, vehicles, plans, options.reading);
   if (attached && !options.skip_check) require_sound_vehicles(network, vehicles);
   // In a domain that others may use, the vehicles must not live already.
   std::optional<comms::FlightReservation> reservation;
@@ -131,6 +162,8 @@ int fly_vehicles(const FlyOptions& options, const std::vector<std::string>& vehi
   const Interrupts interrupts;
   std::optional<MessageRecord> messages;  // receives from the first message on
   if (options.mcap) messages.emplace(network, fleet);
+  std::optional<LiveView> view;
+  if (options.view) view.emplace(network, vehicles, options.program, progress);
   ProcessGroup processes(ground::processes(fleet, network));
   comms::NodeSettings own = network;
   own.deadlines = options.clock != runtime::Clock::kLockstep;

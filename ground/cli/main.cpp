@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
       ground::add_status_command(root),
       ground::add_watch_command(root),
       ground::add_list_command(root),
+      ground::add_view_command(root, runtime::version_text()),
       ground::add_mocap_command(root),
       ground::add_discovery_server_command(root),
       ground::add_doctor_command(root),

@@ -108,15 +108,16 @@ bool find_all(RequestOutcomes& outcomes, const RequestOptions& options) {
   return false;
 }
 
-// Disarms those again that this request armed.
+// Takes the request back from those that accepted it.
 void take_back(RequestOutcomes& outcomes, const VehicleRequest& request, const std::string& refusing) {
   for_all(outcomes, [&](RequestOutcome& outcome) {
-    const bool may_be_armed = outcome.answer.accepted() || outcome.answer.kind == Result::Kind::kSilence;
-    if (!may_be_armed || outcome.mode_before != control::Mode::kDisarmed) return;
+    const bool may_obey = outcome.answer.accepted() || outcome.answer.kind == Result::Kind::kSilence;
+    if (!may_obey || outcome.mode_before != request.undo_from) return;
     const Result undone = request.undo(*outcome.vehicle).answer();
     if (!outcome.answer.accepted()) return;
-    const std::string now = undone.accepted() ? "disarmed again" : "still armed (" + undone.reason + ")";
-    outcome.answer = {Result::Kind::kCancelled, now + ", because " + refusing + " did not arm"};
+    const std::string now =
+        undone.accepted() ? request.undone : request.not_undone + " (" + undone.reason + ")";
+    outcome.answer = {Result::Kind::kCancelled, now + ", because " + refusing + " " + request.cause};
   });
 }
 

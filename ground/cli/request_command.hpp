@@ -40,8 +40,10 @@ struct VehicleRequest {
   OnInterrupt on_interrupt = OnInterrupt::kHold;
   bool done_when_accepted = false;  // the action ends as soon as the request is accepted
   // If set, the request is sent to all vehicles or to none: it is not sent if one of them is not found. If one
-  // refuses it, `undo` is sent to the others that were disarmed before.
+  // refuses it, `undo` is sent to the others that were in this mode before. The texts say what became of them, and why.
   std::function<ActionHandle(Vehicle&)> undo{};
+  control::Mode undo_from = control::Mode::kDisarmed;
+  std::string undone = "disarmed again", not_undone = "still armed", cause = "did not arm";
 };
 
 // Adds a subcommand for one vehicle with the network options, --timeout and --json. The command's run

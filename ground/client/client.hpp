@@ -117,6 +117,7 @@ class Client {
   // MissionStatus::mission_id of the mission that this client uploaded last.
   std::uint64_t mission_id() const { return mission_id_; }
   const std::string& vehicle() const { return settings_.vehicle; }
+  comms::Node& node() { return node_; }
 
   // The last reported status of one of this client's last 64 requests. Keeps those that control_status no
   // longer lists. nullopt if none was reported.

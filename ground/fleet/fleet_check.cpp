@@ -73,7 +73,8 @@ FleetVehicle vehicle_of(const FleetMember& member, const FleetFile& fleet,
                          kLateShare * fleet.safety.radius_z_m};
   const control::Limits limits = control::tightened(control.limits, mission.mission.bounds);
   const double lands_s = check.items.empty() ? 0.0 : check.items.back().start_s;
-  MonitoredVehicle monitored{{path, around, lands_s}, stop_s(path, limits), member.priority};
+  const Eigen::AlignedBox2d room(limits.fence_min_ned.head<2>(), limits.fence_max_ned.head<2>());
+  MonitoredVehicle monitored{{path, around, lands_s}, stop_s(path, limits), member.priority, room};
   return {member,          std::move(vehicle),  reading, std::move(mission), std::move(check),
           std::move(path), std::move(monitored)};
 }

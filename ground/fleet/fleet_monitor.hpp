@@ -1,7 +1,8 @@
 // Keeps the vehicles of a fleet apart in flight, when one of them stops, is late, leaves its path or is no longer heard.
 //
 //   on its path, late       those that come after it (right_of_way.hpp) stop on their paths, and go on when it has passed
-//   off its path, or lost   it may land or fall: nobody enters the column below it; who is in it steps aside
+//   off its path, or lost   it may land or fall: nobody enters the column below it; who is in it steps aside, and goes back to
+//                           its path when nobody is above the way, nor comes there meanwhile
 //
 // Of two vehicles off their paths the one of lower priority steps aside. Pure logic: it is told what is known, and says
 // what each vehicle should do.
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "swiftlet/ground/fleet/flight_path.hpp"
 #include "swiftlet/ground/fleet/right_of_way.hpp"
@@ -23,6 +25,8 @@ namespace swiftlet::ground {
 struct MonitoredVehicle : RightOfWay::Vehicle {
   double stop_s = 0.5;  // path time in which it stops after it is told to, with the delay until it hears that
   int priority = 1;
+  Eigen::AlignedBox2d room{Eigen::Vector2d::Constant(-1e9),
+                           Eigen::Vector2d::Constant(1e9)};  // m NED: where it may go
 };
 
 // What is known of a vehicle at one time.
@@ -35,6 +39,8 @@ struct VehicleNews {
 };
 
 struct Order {
+  // kFly: on along its path, from elsewhere straight back to it. kPause: stay, on the path or where it is. kStepAside: go
+  // to place_ned.
   enum class Kind { kFly, kPause, kStepAside };
   Kind kind = Kind::kFly;
   Eigen::Vector3d place_ned = Eigen::Vector3d::Zero();  // kStepAside: where to
@@ -58,19 +64,41 @@ class FleetMonitor {
 
  private:
   enum class Status { kOnPath, kOffPath, kLost, kDown };
+  // Where the monitor has sent a vehicle: nowhere, aside, or back from there.
+  enum class Way { kPath, kAside, kBack };
+  struct Scene {  // of one step
+    const std::vector<VehicleNews>& news;
+    std::vector<Status> status;
+    std::vector<std::vector<Eigen::Vector3d>> places;  // m NED, where each vehicle is or may be
+  };
 
   void follow(std::size_t i, double elapsed_s, const VehicleNews& news);
+  double landing_limit_s(std::size_t i, const VehicleNews& news) const;
+  void rejoin(std::size_t i, const VehicleNews& news);
   Status status_of(std::size_t i, const VehicleNews& news) const;
-  std::vector<Eigen::Vector3d> places_of(std::size_t i, const VehicleNews& news) const;
+  std::vector<Eigen::Vector3d> places_of(std::size_t i, const VehicleNews& news, Status status) const;
+  std::vector<Eigen::Vector3d> way_back(std::size_t i, const VehicleNews& news) const;
   bool in_column(std::size_t i, const Eigen::Vector3d& place_ned, std::size_t of,
                  const Eigen::Vector3d& top_ned, double share) const;
-  void keep_out_of_column(std::size_t of, const std::vector<VehicleNews>& news,
-                          const std::vector<Status>& status, std::vector<Order>& orders) const;
+  bool is_near(std::size_t i, const Eigen::Vector3d& place_ned, std::size_t of, const Eigen::Vector3d& at_ned,
+               double share) const;
+  bool yields(std::size_t i, std::size_t of, const Scene& scene) const;
+  void wait_for_late(const Scene& scene, std::vector<Order>& orders) const;
+  void keep_out_of_column(std::size_t of, const Scene& scene, std::vector<Order>& orders) const;
+  Eigen::Vector3d place_aside(std::size_t i, const Eigen::Vector3d& top_ned, std::size_t of,
+                              const Scene& scene) const;
+  bool is_free(std::size_t i, const Eigen::Vector3d& place_ned, const Scene& scene) const;
+  std::optional<std::size_t> blocker_of_way_back(std::size_t i, const Scene& scene,
+                                                 const std::vector<Order>& orders, double share) const;
+  void send_back(std::size_t i, const Scene& scene, std::vector<Order>& orders);
 
   std::vector<MonitoredVehicle> vehicles_;
   RightOfWay right_of_way_;
   std::vector<double> progress_s_;
   std::vector<bool> paused_;
+  std::vector<Way> way_;
+  std::vector<double> left_s_;              // path time at which they were sent aside
+  std::vector<Eigen::Vector3d> aside_ned_;  // of those that are aside
   double now_s_ = 0.0;
 };
 

@@ -23,7 +23,7 @@ using control::Mode;
 
 constexpr auto kDiscoveryTimeout = 5s;
 constexpr double kSameMass = 1e-6;  // relative difference of one mass, read from two copies of a file
-constexpr auto kModelTimeout = 1s;
+constexpr auto kReportTimeout = 1s;
 constexpr auto kMissionTimeout = 500ms;  // mission_status arrives with control_status
 
 bool finds(const View& view, const std::string& process) {
@@ -53,22 +53,28 @@ std::string flight_of(const View& view) {
                      view.mission.message.item_count());
 }
 
-std::optional<ReportedModel> reported_model(const Client& client) {
-  client.wait(kModelTimeout, [](const View& news) { return news.vehicle.seen(); });
-  const Latest<msg::VehicleInfo> vehicle = client.view().vehicle;
-  if (!vehicle.seen()) return std::nullopt;
-  const msg::VehicleInfo& info = vehicle.message;
-  return ReportedModel{info.name().c_str(), info.mass_kg(), info.rotor_count()};
+StandingVehicle reported_by(const Client& client) {
+  client.wait(kReportTimeout, [](const View& news) { return news.vehicle.seen() && news.estimate.seen(); });
+  const View view = client.view();
+  StandingVehicle vehicle;
+  if (view.vehicle.seen()) {
+    const msg::VehicleInfo& info = view.vehicle.message;
+    vehicle.model = ReportedModel{info.name().c_str(), info.mass_kg(), info.rotor_count()};
+  }
+  const auto& position_ned = view.estimate.message.position_ned();
+  if (view.estimate.seen() && view.control.message.has_pose())
+    vehicle.start_ned.emplace(position_ned[0], position_ned[1]);
+  return vehicle;
 }
 
 bool is_on_ground(Mode mode) { return control::rotors_off(mode) || mode == Mode::kArmed; }
 
-std::optional<ReportedModel> require_on_ground(const Client& client, const comms::NodeSettings& network) {
+StandingVehicle require_on_ground(const Client& client, const comms::NodeSettings& network) {
   const bool found = client.wait(kDiscoveryTimeout, [](const View& view) { return view.control.seen(); });
   const View view = client.view();
   if (!found && (finds_nothing(view) || finds(view, "control")))
     throw std::runtime_error("looked on " + interfaces_of(network) + ": " + client.no_control());
-  if (!found || is_on_ground(static_cast<Mode>(view.control.message.mode()))) return reported_model(client);
+  if (!found || is_on_ground(static_cast<Mode>(view.control.message.mode()))) return reported_by(client);
   client.wait(kMissionTimeout, [](const View& news) { return news.mission.seen(); });
   throw std::runtime_error(
       fmt::format("vehicle {} is in flight: {}; wait until it has landed, or end its flight with `swiftlet "
@@ -78,17 +84,17 @@ std::optional<ReportedModel> require_on_ground(const Client& client, const comms
 
 }  // namespace
 
-std::vector<std::optional<ReportedModel>> require_on_ground(const comms::NodeSettings& network,
-                                                            const std::vector<std::string>& vehicles) {
+std::vector<StandingVehicle> require_on_ground(const comms::NodeSettings& network,
+                                               const std::vector<std::string>& vehicles) {
   const comms::Participant participant(network);
-  std::vector<std::optional<ReportedModel>> models;
+  std::vector<StandingVehicle> standing;
   for (const std::string& vehicle : vehicles) {
     comms::NodeSettings settings = network;
     settings.vehicle = vehicle;
     const Client client(participant, settings);
-    models.push_back(require_on_ground(client, settings));
+    standing.push_back(require_on_ground(client, settings));
   }
-  return models;
+  return standing;
 }
 
 KnownVehicle known_vehicle(const std::optional<ReportedModel>& reported) {

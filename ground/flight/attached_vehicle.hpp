@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "swiftlet/ground/client/vehicle.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 #include "swiftlet/services/dds/node.hpp"
@@ -13,9 +15,13 @@ namespace swiftlet::ground {
 
 // Throws std::runtime_error with a sentence if a vehicle is in flight. Likewise if no process of it is found
 // within 5 s, or only a control service that cannot be heard. Returns if other processes are found: control may
-// still be starting. Returns the model that each vehicle reports; none if it reports none within 1 s.
-std::vector<std::optional<ReportedModel>> require_on_ground(const comms::NodeSettings& network,
-                                                            const std::vector<std::string>& vehicles);
+// still be starting. Returns what each vehicle reports within 1 s.
+struct StandingVehicle {
+  std::optional<ReportedModel> model;
+  std::optional<Eigen::Vector2d> start_ned;  // m, where it stands
+};
+std::vector<StandingVehicle> require_on_ground(const comms::NodeSettings& network,
+                                               const std::vector<std::string>& vehicles);
 
 // What a vehicle model is known by.
 struct KnownVehicle {

@@ -14,11 +14,14 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "swiftlet/ground/command_line/installation.hpp"
 #include "swiftlet/ground/flight/process_group.hpp"
 #include "swiftlet/ground/recording/topic_publishers.hpp"
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/mcap/attached_file.hpp"
 #include "swiftlet/io/mcap/message_decoder.hpp"
 #include "swiftlet/io/mcap/series.hpp"
 #include "swiftlet/io/temporary_folder.hpp"
@@ -39,6 +42,7 @@ constexpr auto kRepeatPeriod = 20ms;  // an unanswered IMU sample is sent again
 constexpr auto kStartTimeout = 15s;
 constexpr auto kAnswerTimeout = 5s;
 constexpr auto kReliableTimeout = 2s;
+constexpr double kMissingShare = 0.01;  // of the recorded commands
 constexpr auto kSetpointPause = 200us;  // a setpoint has no answer
 
 struct Recorded {
@@ -356,30 +360,47 @@ class Feeder {
 };
 
 // The given file, else the one that is attached to the recording, else the named one of the configuration.
-std::string settings_file(const mcap::Reader& file, const fs::path& given, const std::string& attachment,
-                          const std::string& fallback, const fs::path& folder, std::string& said) {
+std::string settings_file(const mcap::Reader& file, const std::string& of_vehicle, const fs::path& given,
+                          const std::string& attachment, const std::string& fallback, const fs::path& folder,
+                          std::string& said) {
   said = given.empty() ? fallback : given.string();
   if (!given.empty()) return given;
-  for (const mcap::AttachmentIndex& index : file.attachments()) {
-    if (index.name != attachment) continue;
-    said = "recorded";
-    runtime::write_atomically(folder / attachment, file.attachment(index).data);
-    return folder / attachment;
-  }
-  return fallback;
+  const std::optional<std::string> recorded = mcap::attached_file(file, of_vehicle, attachment);
+  if (!recorded) return fallback;
+  said = "recorded";
+  runtime::write_atomically(folder / attachment, *recorded);
+  return folder / attachment;
 }
 
 }  // namespace
+
+std::string difference_of(const ControlReplay& replay, double tolerance) {
+  const TopicDifference& commands = replay.commands;
+  if (commands.compared == 0 || commands.signals.empty())
+    return "none of the recorded commands has a counterpart";
+  // A command is repeated with its IMU sample. At the ends of a recording some have no counterpart.
+  const std::uint64_t expected = std::min<std::uint64_t>(commands.messages_a, replay.imu_samples);
+  if (static_cast<double>(commands.compared) < (1.0 - kMissingShare) * static_cast<double>(expected))
+    return fmt::format("{} of {} recorded commands have no counterpart", expected - commands.compared,
+                       expected);
+  if (replay.other_answers > 0)
+    return fmt::format("{} requests are answered otherwise", replay.other_answers);
+  const auto worst =
+      std::max_element(commands.signals.begin(), commands.signals.end(),
+                       [](const SignalDifference& a, const SignalDifference& b) { return a.max < b.max; });
+  if (worst->max <= tolerance) return "";
+  return fmt::format("{} differs by {:.3g} at {:.3f} s", worst->name, worst->max, worst->max_at_s);
+}
 
 ControlReplay replay_into_control(const mcap::Reader& file, const ControlReplaySettings& settings,
                                   const std::function<bool(double)>& proceed) {
   const Inputs inputs(file, settings.vehicle);
   const auto folder = runtime::TemporaryFolder::of_the_system("swiftlet-replay");
   ControlReplay replay;
-  const std::string vehicle = settings_file(file, settings.vehicle_file, "vehicle.yaml", "kaylion",
-                                            folder.path(), replay.vehicle_file);
-  const std::string control = settings_file(file, settings.control_file, "control.yaml", "motor_lag",
-                                            folder.path(), replay.control_file);
+  const std::string vehicle = settings_file(file, settings.vehicle, settings.vehicle_file, "vehicle.yaml",
+                                            "kaylion", folder.path(), replay.vehicle_file);
+  const std::string control = settings_file(file, settings.vehicle, settings.control_file, "control.yaml",
+                                            "motor_lag", folder.path(), replay.control_file);
   const auto level = std::find_if(kLevels.begin(), kLevels.end(),
                                   [&](const Level& one) { return one.topic == inputs.command_topic; });
   const comms::DomainLock domain;

@@ -27,6 +27,10 @@ struct ControlReplay {
   TopicDifference commands;         // A: recorded, B: replayed
 };
 
+// Why the replayed controller did not do the same as the recorded one, one sentence; empty if it did. tolerance: the largest
+// difference of a command that counts as the same.
+std::string difference_of(const ControlReplay& replay, double tolerance);
+
 // Lockstep: each IMU sample waits for the poses, battery and rotor speed samples that the recorded controller had, and the
 // next one for its command. Requests and setpoints come between the IMU samples between which they were recorded. The
 // recording must begin before the vehicle was armed. proceed: called for each IMU sample with the share that is done;

@@ -2,17 +2,21 @@
 // (ground/fleet/fleet_monitor.hpp), and pauses, resumes or moves missions.
 #pragma once
 
+#include <deque>
+#include <functional>
 #include <optional>
 #include <vector>
 
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/fleet/fleet_monitor.hpp"
+#include "swiftlet/ground/flight/order_sender.hpp"
 #include "swiftlet/ground/terminal/progress.hpp"
 #include "swiftlet/services/dds/periodic_task.hpp"
 
 namespace swiftlet::ground {
 
-// Begins when a mission runs, and ends when it is destroyed. A mission that another tool has paused is left paused.
+// Begins when a mission runs, and ends when it is destroyed. A mission that another tool has paused is left paused. Each vehicle is
+// asked from a thread of its own: one that does not answer delays no other.
 class FleetWatch {
  public:
   struct Watched {
@@ -20,17 +24,17 @@ class FleetWatch {
     Progress* progress = nullptr;  // likewise
   };
 
-  // vehicles: in the order of the monitor's.
-  FleetWatch(FleetMonitor monitor, std::vector<Watched> vehicles);
+  // vehicles: in the order of the monitor's. gives_up: true from when the flight is abandoned, and all are landed: nobody is told to
+  // do anything else then.
+  FleetWatch(FleetMonitor monitor, std::vector<Watched> vehicles, std::function<bool()> gives_up);
 
  private:
   void step();
-  VehicleNews news_of(std::size_t i, const View& view, Clock::time_point now) const;
-  void carry_out(std::size_t i, const Order& order, const View& view);
 
   FleetMonitor monitor_;
   std::vector<Watched> vehicles_;
-  std::vector<Order> carried_out_;  // the last order that each vehicle has accepted
+  const std::function<bool()> gives_up_;
+  std::deque<OrderSender> senders_;
   std::optional<Clock::time_point> start_;
   comms::PeriodicTask task_;  // last: uses all members above
 };

@@ -21,9 +21,12 @@ std::map<std::string, std::filesystem::path> files_of(const Fleet& fleet) {
     files.emplace(mission == first.mission_file ? name : fleet.vehicles[i] + "/" + name, mission);
   }
   if (first.launch_mode == LaunchMode::kAttached) return files;  // the running processes have their own
-  files.insert({{"vehicle.yaml", first.vehicle_file},
-                {"control.yaml", first.control_file},
-                {"simulation.yaml", first.simulation_file}});
+  for (std::size_t i = 0; i < fleet.plans.size(); ++i) {
+    const std::filesystem::path& vehicle = fleet.plans[i].vehicle_file;
+    files.emplace(vehicle == first.vehicle_file ? "vehicle.yaml" : fleet.vehicles[i] + "/vehicle.yaml",
+                  vehicle);
+  }
+  files.insert({{"control.yaml", first.control_file}, {"simulation.yaml", first.simulation_file}});
   return files;
 }
 
@@ -37,13 +40,17 @@ mcap::WriterSettings writer_settings(const std::string& program) {
 
 mcap::Metadata flight_metadata(const Fleet& fleet) {
   const LaunchConfiguration& first = fleet.plans.front();
-  std::vector<std::string> missions;
-  for (const LaunchConfiguration& plan : fleet.plans) missions.push_back(plan.mission.name);
+  std::vector<std::string> missions, models;
+  for (const LaunchConfiguration& plan : fleet.plans) {
+    missions.push_back(plan.mission.name);
+    models.push_back(plan.vehicle.name);
+  }
   mcap::Metadata metadata{"swiftlet/flight",
                           {{"vehicles", fmt::format("{}", fmt::join(fleet.vehicles, ","))},
                            {"missions", fmt::format("{}", fmt::join(missions, ","))}}};
   if (first.launch_mode == LaunchMode::kAttached) return metadata;  // the running processes have their own
   metadata.values.insert({{"vehicle", first.vehicle.name},
+                          {"models", fmt::format("{}", fmt::join(models, ","))},
                           {"control", first.control.name},
                           {"simulation", first.simulation_file.stem().string()},
                           {"seed", std::to_string(first.seed)},

@@ -11,6 +11,7 @@
 #include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/ground/command_line/installation.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/ground/flight/flight_inputs.hpp"
 #include "swiftlet/ground/mission/mission_check.hpp"
 #include "swiftlet/ground/mission/shifted_mission.hpp"
 #include "swiftlet/io/configuration.hpp"
@@ -47,12 +48,23 @@ void require_takeoff_and_land(const MissionFile& mission, const fs::path& file) 
     throw InputError(file.string() + ": items: the last item is not a land: a flight ends on the ground");
 }
 
-// The duration of the mission by the dry run, s, of any vehicle.
-double dry_run_duration_s(const LaunchConfiguration& plan) {
-  const MissionDryRun flown = dry_run(plan.mission.mission, plan.control, plan.start_ned);
-  if (flown.completed) return flown.duration_s;
-  throw InputError(fmt::format("{}: the control service would not complete it: {}", plan.mission_file.c_str(),
-                               flown.reason));
+void require_valid(const FlightInputs& given) {
+  const auto require = [](const char* what, const std::vector<plant::Violation>& violations) {
+    for (const plant::Violation& violation : violations)
+      throw InputError(fmt::format("{}: {}: {}", what, violation.key, violation.message));
+  };
+  if (given.vehicle) require("vehicle", plant::validate(*given.vehicle));
+  if (given.control) require("control", control::validate(*given.control));
+  if (given.simulation) require("simulation", plant::validate(*given.simulation));
+}
+
+// As require_flyable(), of a mission that is in no file.
+double require_flyable_mission(const LaunchConfiguration& plan) {
+  CheckConditions conditions;
+  conditions.start_ned = plan.start_ned;
+  const MissionCheck check = check_mission(plan.mission, plan.vehicle, plan.control, conditions);
+  if (!check.feasible()) throw InputError(plan.mission_file.string() + ": " + check.refusal());
+  return check.duration_s;
 }
 
 // The vehicles of a fleet that are of one vehicle file: one plant and one control serve them.
@@ -169,6 +181,13 @@ class ProcessBuilder {
 
 }  // namespace
 
+double require_flyable(const LaunchConfiguration& plan) {
+  const MissionDryRun flown = dry_run(plan.mission.mission, plan.control, plan.start_ned);
+  if (flown.completed) return flown.duration_s;
+  throw InputError(fmt::format("{}: the control service would not complete it: {}", plan.mission_file.c_str(),
+                               flown.reason));
+}
+
 double require_flyable(const LaunchConfiguration& plan, const plant::Vehicle& vehicle,
                        const FileOptions& reading) {
   CheckConditions conditions;
@@ -189,7 +208,9 @@ fs::path default_record_folder(const std::string& name) {
   return fs::path("flights") / (std::string(stamp) + "-" + name);
 }
 
-LaunchConfiguration plan_flight(const FlyOptions& options) {
+LaunchConfiguration plan_flight(const FlyOptions& options) { return plan_flight(options, {}); }
+
+LaunchConfiguration plan_flight(const FlyOptions& options, const FlightInputs& given) {
   LaunchConfiguration plan;
   plan.launch_mode = options.launch_mode;
   plan.clock = options.clock;
@@ -197,9 +218,11 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
   plan.vehicle_file = runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle);
   plan.control_file = runtime::configuration_file(runtime::kinds::kControl, options.control);
   plan.simulation_file = runtime::configuration_file(runtime::kinds::kSimulation, options.simulation);
-  plan.vehicle = runtime::load_vehicle(plan.vehicle_file);
-  plan.control = runtime::load_control_settings(plan.control_file);
-  plan.simulation = runtime::load_simulation_settings(plan.simulation_file);
+  plan.vehicle = given.vehicle ? *given.vehicle : runtime::load_vehicle(plan.vehicle_file);
+  plan.control = given.control ? *given.control : runtime::load_control_settings(plan.control_file);
+  plan.simulation =
+      given.simulation ? *given.simulation : runtime::load_simulation_settings(plan.simulation_file);
+  require_valid(given);
   plan.imu_rate_option_hz = options.imu_rate_hz;
   if (options.imu_rate_hz > 0) plan.simulation.imu.rate_hz = options.imu_rate_hz;
   plan.simulation.control_levels = options.level;
@@ -229,8 +252,13 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
   }
   plan.seed = options.seed;
 
-  plan.mission_file = runtime::configuration_file(runtime::kinds::kMission, options.mission);
-  plan.mission = load_mission(plan.mission_file, options.reading, plan.vehicle, plan.control);
+  if (given.mission) {
+    plan.mission_file = given.mission->name;
+    plan.mission = *given.mission;
+  } else {
+    plan.mission_file = runtime::configuration_file(runtime::kinds::kMission, options.mission);
+    plan.mission = load_mission(plan.mission_file, options.reading, plan.vehicle, plan.control);
+  }
   plan.start_ned = options.start_ned;
   if (options.mission_at_start)
     plan.mission.mission = shifted(std::move(plan.mission.mission), options.start_ned, plan.control.limits);
@@ -240,9 +268,10 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
                                  plan.mission_file.c_str(), plan.start_ned.x(), plan.start_ned.y(),
                                  outcome.reason));
   require_takeoff_and_land(plan.mission, plan.mission_file);
-  plan.planned_duration_s = plan.launch_mode == LaunchMode::kAttached
-                                ? dry_run_duration_s(plan)
-                                : require_flyable(plan, plan.vehicle, options.reading);
+  if (plan.launch_mode != LaunchMode::kAttached) {
+    plan.planned_duration_s = given.mission ? require_flyable_mission(plan)
+                                            : require_flyable(plan, plan.vehicle, options.reading);
+  }
 
   if (plan.launch_mode == LaunchMode::kStarted) {
     plan.vehicle_program = program_beside(options.px4_instance ? "swiftlet-px4" : "swiftlet-plant");

@@ -62,6 +62,7 @@ struct FlyOptions {
   bool trace = false;                // write a trace of a lockstep or in-process flight
   bool sensors = false;              // record sensors and commands, for `swiftlet identify flight`
   bool mcap = false;                 // record every message, as flight.mcap
+  bool view = false;                 // serve the live page beside the flight
   std::string program = "swiftlet";  // with its version, for the record
   bool skip_check = false;           // kAttached: do not check the vehicle before it is armed
   bool json = false;
@@ -97,13 +98,15 @@ struct LaunchConfiguration {
 };
 
 // Throws runtime::ConfigError or InputError if the input is invalid or if the vehicle cannot fly the mission, by a dry run
-// (mission_check.hpp), with what would make it possible. The vehicle of kAttached is not known: it is not checked, but
-// the dry run is. Starts no process and writes no file.
+// (mission_check.hpp), with what would make it possible. Of kAttached neither vehicle nor place is known yet: the mission is
+// not flown in a dry run, and planned_duration_s is 0. Starts no process and writes no file.
 LaunchConfiguration plan_flight(const FlyOptions& options);
 
-// The duration of the mission of the plan, s. Throws InputError if this vehicle cannot fly it, as above.
+// The duration of the mission of the plan, s, from plan.start_ned. Throws InputError if this vehicle cannot fly it, as above.
 double require_flyable(const LaunchConfiguration& plan, const plant::Vehicle& vehicle,
                        const FileOptions& reading);
+// The same by the dry run alone, which holds for any vehicle.
+double require_flyable(const LaunchConfiguration& plan);
 
 // flights/<date-time>-<name>
 std::filesystem::path default_record_folder(const std::string& name);

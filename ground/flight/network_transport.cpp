@@ -10,6 +10,8 @@
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/client/action.hpp"
 #include "swiftlet/recording/flight_window.hpp"
+#include "swiftlet/services/dds/clocks/clock_client.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -21,7 +23,9 @@ constexpr auto kReadyTimeout = 20s;
 constexpr auto kRequestTimeout = 10s;
 constexpr auto kRetryPeriod = 200ms;
 constexpr auto kStep = 50ms;
-constexpr auto kClockTime = 500ms;  // of messages from which the vehicle's clock is learnt
+constexpr auto kClockTime = 500ms;  // in which a fleet asks for the clock of a vehicle
+constexpr auto kClockTimeout = 5s;
+constexpr auto kClockStep = 5ms;
 constexpr std::int64_t kStartAheadNs =
     200'000'000;  // in lockstep: the start, after the last vehicle is ready
 constexpr std::int64_t kRealtimeStartAheadNs = 1'000'000'000;
@@ -58,10 +62,6 @@ std::string missing_peer(const View& view) {
     if (peer == view.peers.end() || !peer->second) return name;
   }
   return {};
-}
-
-std::int64_t monotonic_ns(Clock::time_point time) {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(time.time_since_epoch()).count();
 }
 
 // Simulated time since `since_ns`. The time limits of a flight are in the vehicle's time.
@@ -179,6 +179,13 @@ MissionTransport::Reply NetworkTransport::arm() {
   const Result answer = client_.command(
       command, kRequestTimeout, [this] { return watch_.exited_process() || watch_.interrupts() > 0; });
   require_alive();
+  armed_ = answer;
+  if (answer.kind == Result::Kind::kSilence || answer.kind == Result::Kind::kCancelled) {
+    msg::Command disarm;  // the request may have armed it all the same
+    disarm.kind(msg::Command_Constants::DISARM);
+    armed_ = client_.command(disarm, kResultTimeout);
+  }
+  if (answer.accepted() && watch_.interrupts() > 0) abandon("interrupted before take-off");
   require_no_interrupt();
   return {answer.accepted(), answer.kind == Result::Kind::kRefused, answer.reason};
 }
@@ -194,21 +201,22 @@ std::int64_t NetworkTransport::at_vehicle_rate(std::int64_t host_ns) const {
   return watch_.speed == 1.0 ? host_ns : std::llround(static_cast<double>(host_ns) * watch_.speed);
 }
 
-// Messages take time to come, so the vehicle's clock is ahead of each stamp when it arrives. The quickest message tells
-// most: on a local network it is late by a fraction of a millisecond, and that alike for all vehicles.
 void NetworkTransport::learn_clock() {
-  std::int64_t offset_ns = std::numeric_limits<std::int64_t>::min();
-  const auto learn = [&](const auto& latest) {
-    if (latest.seen())
-      offset_ns =
-          std::max(offset_ns, latest.message.stamp_ns() - at_vehicle_rate(monotonic_ns(latest.received)));
-  };
-  client_.wait(kClockTime, [&](const View& view) {
-    learn(view.estimate);
-    learn(view.truth);
-    return false;
-  });
-  clock_offset_ns_ = offset_ns;
+  const auto own_ns = [this] { return at_vehicle_rate(runtime::monotonic_ns()); };
+  comms::ClockClient vehicle_clock(client_.node(), own_ns, comms::ClockClient::Reporting::kNone);
+  const auto start = Clock::now();
+  std::optional<std::int64_t> stamp_ns;
+  for (Clock::duration asked{}; asked < kClockTime || !stamp_ns; asked = Clock::now() - start) {
+    require_alive();
+    if (watch_.interrupts() > 0) abandon("interrupted before take-off");
+    if (asked > kClockTimeout)
+      abandon("the vehicle does not answer clock_request: vehicles that start together need a common clock");
+    vehicle_clock.ask_if_due();
+    client_.wait(kClockStep, [](const View&) { return false; });
+    const std::int64_t now_ns = own_ns();
+    stamp_ns = vehicle_clock.to_vehicle(now_ns);
+    if (stamp_ns) clock_offset_ns_ = *stamp_ns - now_ns;
+  }
 }
 
 Result NetworkTransport::upload() {
@@ -221,17 +229,13 @@ void NetworkTransport::wait_for_other_vehicles() {
   if (!lockstep_) learn_clock();
   if (const Result answer = upload(); !answer.accepted()) {
     require_alive();
-    if (lockstep_) client_.simulation_clock().without_end();  // disarming needs time to advance
     abandon(watch_.interrupts() > 0 ? "interrupted" : "mission refused: " + answer.reason);
   }
-  watch_.barrier->ready(lockstep_ ? paused_at_ns_ : monotonic_ns(Clock::now()));
+  watch_.barrier->ready(lockstep_ ? paused_at_ns_ : runtime::monotonic_ns());
   while (!watch_.barrier->wait_for_all(kStep)) {
     require_alive();
     const auto failure = watch_.barrier->failure();
-    if (failure || watch_.interrupts() > 0) {
-      if (lockstep_) client_.simulation_clock().without_end();  // disarming needs time to advance
-      abandon(failure.value_or("interrupted"));
-    }
+    if (failure || watch_.interrupts() > 0) abandon(failure.value_or("interrupted"));
     progress_.update(kBeforeFlight, "armed, waiting for the other vehicles");
   }
   const std::int64_t all_ready_ns = watch_.barrier->ready_ns();
@@ -324,8 +328,15 @@ void NetworkTransport::wait_for_last_figures() {
 
 void NetworkTransport::abandon(const std::string& reason) {
   const int interrupts_before = watch_.interrupts();
-  progress_.say(reason +
-                (interrupts_before > 0 ? "; landing (interrupt again to quit at once)" : "; landing"));
+  if (lockstep_) client_.simulation_clock().without_end();  // disarming needs time to advance
+  // A status from before the arming still says disarmed.
+  client_.wait(kResultTimeout, [&](const View& view) {
+    return view.control.message.stamp_ns() > armed_.stamp_ns || !rotors_off(mode_of(view));
+  });
+  const ControlMode mode = mode_of(client_.view());
+  bool in_flight = start_.accepted() || (!rotors_off(mode) && mode != ControlMode::kArmed);
+  progress_.say(reason + (in_flight ? "; landing" : "; disarming") +
+                (interrupts_before > 0 ? " (interrupt again to quit at once)" : ""));
   msg::Command land;
   land.kind(msg::Command_Constants::LAND);
   land.speed(kLandingSpeed);
@@ -346,6 +357,7 @@ void NetworkTransport::abandon(const std::string& reason) {
       disarm.kind(msg::Command_Constants::DISARM);
       client_.command(disarm, kRetryPeriod);
     } else if (!descending) {
+      in_flight = true;
       // Refused while the rotors spool up or during a descent: requests again.
       descending = client_.command(land, kRetryPeriod).accepted();
     }
@@ -353,8 +365,9 @@ void NetworkTransport::abandon(const std::string& reason) {
     client_.wait(kRetryPeriod, [](const View& view) { return rotors_off(mode_of(view)); });
   }
   wait_for_last_figures();
-  throw FlightFailure(reason +
-                      (mode_of(client_.view()) == ControlMode::kStopped ? "; rotors stopped" : "; landed"));
+  throw FlightFailure(reason + (mode_of(client_.view()) == ControlMode::kStopped ? "; rotors stopped"
+                                : in_flight                                      ? "; landed"
+                                                                                 : "; disarmed"));
 }
 
 void NetworkTransport::update_progress(const View& view) {

@@ -80,6 +80,7 @@ class NetworkTransport final : public MissionTransport {
   std::int64_t clock_offset_ns_ =
       0;  // in real time: the vehicle's clock minus the monotonic one of this host at its speed
   std::int64_t start_ns_ = 0;  // on the vehicle's clock; 0: at once
+  Result armed_;               // the answer to the last request to arm
   Result start_;               // the answer to the request that started the mission
   Watch watch_;
   Progress& progress_;

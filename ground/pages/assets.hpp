@@ -9,6 +9,8 @@ namespace swiftlet::pages {
 std::string_view style();           // CSS
 std::string_view chart_scripts();   // dygraphs, and charts on it
 std::string_view figure_scripts();  // figures of figure.hpp; after the scripts of charts
-std::string_view flight_scripts();  // three.js, and the page of flights; likewise
+std::string_view scene_scripts();   // three.js, and paths in space on it; likewise
+std::string_view flight_scripts();  // the page of flights; after both
+std::string_view live_scripts();    // the live page; after both
 
 }  // namespace swiftlet::pages

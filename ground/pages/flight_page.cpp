@@ -140,7 +140,7 @@ std::string flight_page(const std::string& title, const std::string& note,
                            "<div id=\"timeline\"></div>\n<p class=\"quiet\">" + escaped(note) + " " + kHint +
                            "</p>\n<div id=\"charts\"></div>\n" + element("h2", "Events") +
                            event_table(flights) + data_element("flights", json) + columns.elements();
-  return document(title, body, {chart_scripts(), flight_scripts()});
+  return document(title, body, {chart_scripts(), scene_scripts(), flight_scripts()});
 }
 
 }  // namespace swiftlet::pages

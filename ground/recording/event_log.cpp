@@ -61,6 +61,14 @@ StandardMessage log_message(const std::string& topic, std::int64_t time_ns, LogL
 
 EventLog::EventLog(std::string vehicle) : vehicle_(std::move(vehicle)) {}
 
+StandardTopic EventLog::topic() const {
+  return {"/" + vehicle_ + "/log",
+          &kLog,
+          {comms::topics::kControlStatus.name, comms::topics::kMissionStatus.name,
+           comms::topics::kCommandAck.name, comms::topics::kVehicleInfo.name},
+          true};
+}
+
 std::vector<StandardMessage> EventLog::of(const std::string& topic, const mcap::Message& message) {
   std::vector<StandardMessage> lines;
   if (topic == comms::topics::kControlStatus.name) of_control_status(message, lines);
@@ -72,7 +80,7 @@ std::vector<StandardMessage> EventLog::of(const std::string& topic, const mcap::
 
 StandardMessage EventLog::line(std::int64_t time_ns, LogLevel level, const char* process,
                                const std::string& text) const {
-  return log_message("/" + vehicle_ + "/log", time_ns, level, vehicle_ + "/" + process, text);
+  return log_message(topic().topic, time_ns, level, vehicle_ + "/" + process, text);
 }
 
 void EventLog::of_control_status(const mcap::Message& message, std::vector<StandardMessage>& lines) {

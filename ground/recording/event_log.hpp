@@ -26,6 +26,8 @@ class EventLog {
  public:
   explicit EventLog(std::string vehicle);
 
+  StandardTopic topic() const;
+
   // The lines that follow from one of the vehicle's messages, at its log time. topic: "control_status" ...
   std::vector<StandardMessage> of(const std::string& topic, const mcap::Message& message);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "swiftlet/io/mcap/records.hpp"
 #include "swiftlet/services/messages/schemas.hpp"
@@ -12,6 +13,13 @@ struct StandardMessage {
   std::string topic;
   const comms::MessageSchema* schema = nullptr;
   mcap::Bytes payload;
+};
+
+struct StandardTopic {
+  std::string topic;
+  const comms::MessageSchema* schema = nullptr;
+  std::vector<std::string> sources;  // the vehicle's topics that it follows from: "estimate"
+  bool is_log = false;               // each message counts; of others the newest says it all
 };
 
 }  // namespace swiftlet::ground

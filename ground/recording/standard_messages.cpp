@@ -128,14 +128,21 @@ Quaterniond q_enu_from_flu(const Quaterniond& q_ned_from_frd) {
 
 StandardMessages::StandardMessages(std::string vehicle) : vehicle_(vehicle), events_(std::move(vehicle)) {}
 
-std::vector<std::pair<std::string, const comms::MessageSchema*>> StandardMessages::topics() const {
-  return {{topic_of(kPoseTopic), &kPoseStamped},
-          {topic_of(kOdometryTopic), &kOdometry},
-          {topic_of(kPathTopic), &kPath},
-          {kTransformTopic, &kTransforms},
-          {topic_of(kReferenceTopic), &kPoseStamped},
-          {topic_of(kImuTopic), &kImu},
-          {topic_of(kBatteryTopic), &kBatteryState}};
+std::vector<StandardTopic> StandardMessages::ros_topics() const {
+  const std::string estimate = comms::topics::kEstimate.name;
+  return {{topic_of(kPoseTopic), &kPoseStamped, {estimate}},
+          {topic_of(kOdometryTopic), &kOdometry, {estimate}},
+          {topic_of(kPathTopic), &kPath, {estimate}},
+          {kTransformTopic, &kTransforms, {estimate}},
+          {topic_of(kReferenceTopic), &kPoseStamped, {comms::topics::kReference.name}},
+          {topic_of(kImuTopic), &kImu, {comms::topics::kImu.name}},
+          {topic_of(kBatteryTopic), &kBatteryState, {comms::topics::kBattery.name}}};
+}
+
+std::vector<StandardTopic> StandardMessages::topics() const {
+  std::vector<StandardTopic> topics = ros_topics();
+  topics.push_back(events_.topic());
+  return topics;
 }
 
 std::vector<StandardMessage> StandardMessages::of(const std::string& topic, const mcap::Message& message) {

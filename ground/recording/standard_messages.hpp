@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <deque>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -36,8 +35,8 @@ class StandardMessages {
  public:
   explicit StandardMessages(std::string vehicle);
 
-  // The topics and types of ROS 2 among them.
-  std::vector<std::pair<std::string, const comms::MessageSchema*>> topics() const;
+  std::vector<StandardTopic> topics() const;
+  std::vector<StandardTopic> ros_topics() const;  // without the log, which is no type of ROS 2
 
   // The messages that follow from one of the vehicle's, at its log time. topic: "estimate", "imu" ...
   std::vector<StandardMessage> of(const std::string& topic, const mcap::Message& message);

@@ -9,6 +9,7 @@
 #include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/ground/report/recorded_settings.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/natural_order.hpp"
 #include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::ground {
@@ -27,7 +28,9 @@ std::vector<fs::path> flights_in(const fs::path& record) {
   for (const fs::directory_entry& entry : fs::directory_iterator(record, none)) {
     if (fs::exists(entry.path() / kReport)) flights.push_back(entry.path());
   }
-  std::sort(flights.begin(), flights.end());
+  std::sort(flights.begin(), flights.end(), [](const fs::path& a, const fs::path& b) {
+    return runtime::comes_before(a.filename().native(), b.filename().native());
+  });
   return flights;
 }
 

@@ -61,8 +61,9 @@ std::map<std::string, std::string> metadata_of(const mcap::Reader& file) {
   return {};
 }
 
-// The element of "square,zigzag" that belongs to a vehicle of "kl1,kl2".
-std::string mission_of(const std::map<std::string, std::string>& metadata, const std::string& vehicle) {
+// The element that belongs to a vehicle of "kl1,kl2", of a value such as "square,zigzag".
+std::string element_of(const std::map<std::string, std::string>& metadata, const char* list_key,
+                       const std::string& vehicle) {
   const auto split = [&](const char* key) {
     std::vector<std::string> parts;
     const auto found = metadata.find(key);
@@ -73,10 +74,10 @@ std::string mission_of(const std::map<std::string, std::string>& metadata, const
     return parts;
   };
   const std::vector<std::string> vehicles = split("vehicles");
-  const std::vector<std::string> missions = split("missions");
+  const std::vector<std::string> elements = split(list_key);
   const auto at =
       static_cast<std::size_t>(std::find(vehicles.begin(), vehicles.end(), vehicle) - vehicles.begin());
-  return at < missions.size() ? missions[at] : "";
+  return at < elements.size() ? elements[at] : "";
 }
 
 nlohmann::ordered_json report_of(const mcap::Reader& file, const std::string& vehicle) {
@@ -89,7 +90,9 @@ nlohmann::ordered_json report_of(const mcap::Reader& file, const std::string& ve
     const auto found = metadata.find(key);
     if (found != metadata.end()) json[key] = found->second;
   }
-  const std::string mission = mission_of(metadata, vehicle);
+  if (const std::string model = element_of(metadata, "models", vehicle); !model.empty())
+    json["vehicle"] = model;
+  const std::string mission = element_of(metadata, "missions", vehicle);
   if (!mission.empty()) json["mission"] = mission;
   json["vehicle_name"] = vehicle;
   json["record"] = file.name();
@@ -102,14 +105,14 @@ nlohmann::ordered_json report_of(const mcap::Reader& file, const std::string& ve
   return json;
 }
 
-// The attachment of a kind: "control.yaml", or one of this vehicle, "kl2/mission.yaml".
+// The attachment of a kind: "control.yaml", or rather one of this vehicle, "kl2/mission.yaml".
 std::vector<std::pair<std::string, std::string>> settings_of(const mcap::Reader& file,
                                                              const std::string& vehicle) {
   std::map<std::string, std::string> texts;
   for (const mcap::AttachmentIndex& index : file.attachments()) {
-    std::string name = index.name;
-    if (name.rfind(vehicle + "/", 0) == 0) name.erase(0, vehicle.size() + 1);
-    texts.emplace(name, file.attachment(index).data);
+    const bool own = index.name.rfind(vehicle + "/", 0) == 0;
+    const std::string name = own ? index.name.substr(vehicle.size() + 1) : index.name;
+    if (own || texts.count(name) == 0) texts[name] = file.attachment(index).data;
   }
   return recorded_settings(file.name(), texts);
 }

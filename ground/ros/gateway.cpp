@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <type_traits>
 #include <utility>
@@ -18,6 +19,12 @@ std::int64_t wall_now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::system_clock::now().time_since_epoch())
       .count();
+}
+
+comms::Fault fault_of(const std::string& sentence) {
+  comms::Fault fault;
+  std::snprintf(fault.text, sizeof fault.text, "%s", sentence.c_str());
+  return fault;
 }
 
 template <class T>
@@ -42,8 +49,8 @@ Gateway::Gateway(const ground::Context& context, const std::string& vehicle, con
     const std::lock_guard<std::mutex> lock(mutex_);
     return ending_;
   });
-  for (const auto& [topic, schema] : standard_.topics())
-    writers_.emplace(topic, writer_of(node_, topic, schema->name));
+  for (const ground::StandardTopic& one : standard_.ros_topics())
+    writers_.emplace(one.topic, writer_of(node_, one.topic, one.schema->name));
   forward(comms::topics::kEstimate);
   forward(comms::topics::kReference);
   forward(comms::topics::kImu);
@@ -77,8 +84,11 @@ void Gateway::forward(const comms::Topic<T>& topic) {
         mcap::Message message;
         message.log_time_ns = time_ns;
         message.payload = {sample.payload, sample.size};
-        for (const ground::StandardMessage& follows : standard_.of(name, message))
-          writers_.at(follows.topic)(follows.payload);
+        for (const ground::StandardMessage& follows : standard_.of(name, message)) {
+          if (!writers_.at(follows.topic)(follows.payload))
+            write_faults_.note(fault_of(follows.topic + " of " + std::to_string(follows.payload.size()) +
+                                        " bytes was not sent"));
+        }
       }));
 }
 
@@ -96,8 +106,12 @@ void Gateway::take_goal(const Bytes& payload) {
 void Gateway::take_velocity(const Bytes& payload) {
   std::string refusal;
   const std::optional<ground::VelocitySetpoint> setpoint = velocity_of(payload, yaw_rad(), refusal);
-  if (!setpoint) return spdlog::warn("{}: velocity refused: {}", vehicle_.name(), refusal);
-  vehicle_.send(*setpoint);
+  if (!setpoint) return velocity_faults_.note(fault_of(refusal));
+  if (!vehicle_.send(*setpoint)) return velocity_faults_.note(fault_of("no controller receives them"));
+  const ground::SetpointTally all = vehicle_.state().setpoints;
+  const ground::SetpointTally news = all.since(setpoints_);
+  setpoints_ = all;
+  if (news.refused > 0) velocity_faults_.note(fault_of(news.refusal));
 }
 
 double Gateway::yaw_rad() const {

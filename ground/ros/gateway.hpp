@@ -18,6 +18,7 @@
 #include "swiftlet/ground/ros/requests.hpp"
 #include "swiftlet/ground/ros/ros_messages.hpp"
 #include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/dds/throttled_warning.hpp"
 
 namespace swiftlet::ros {
 
@@ -35,7 +36,7 @@ struct GatewaySettings {
 // Publishes the messages of StandardMessages (standard_messages.hpp) of one vehicle, and obeys
 //   goal_pose  geometry_msgs/PoseStamped  flies there and holds; a newer goal replaces it
 //   cmd_vel    geometry_msgs/Twist        a stream of velocities, at 2 Hz or more
-// The vehicle must have taken off; it refuses both otherwise.
+// The vehicle must have taken off; it refuses both otherwise. What is refused or cannot be sent is logged, of streams once a second.
 class Gateway {
  public:
   // clock: publishes a time stamp as /clock; may be empty. Throws std::runtime_error.
@@ -56,8 +57,11 @@ class Gateway {
   const GatewaySettings settings_;
   const std::function<void(std::int64_t)> clock_;
   ground::Vehicle vehicle_;
-  ground::StandardMessages standard_;      // of the thread that receives
-  std::map<std::string, Writer> writers_;  // by topic
+  ground::StandardMessages standard_;                           // of the thread that receives
+  std::map<std::string, Writer> writers_;                       // by topic
+  comms::ThrottledWarning write_faults_{"what goes to ROS 2"};  // of the same thread
+  comms::ThrottledWarning velocity_faults_{"cmd_vel"};  // these two of the thread that receives velocities
+  ground::SetpointTally setpoints_;                     // that control has answered
 
   std::mutex mutex_;  // guards the two below
   std::condition_variable changed_;

@@ -75,6 +75,8 @@ std::optional<Goal> goal_of(const Bytes& payload, double present_down_m, std::st
     refusal = "its position is not finite";
   else if (!(std::abs(q_enu.norm() - 1.0) < kUnitTolerance))
     refusal = "its orientation is no unit quaternion";
+  else if (position_enu.z() == 0.0 && !std::isfinite(present_down_m))
+    refusal = "it has no height, and that of the vehicle is not known yet";
   if (!refusal.empty()) return std::nullopt;
 
   Goal goal;
@@ -97,6 +99,8 @@ std::optional<ground::VelocitySetpoint> velocity_of(const Bytes& payload, double
     refusal = "it is not finite";
   else if (rates_flu.x() != 0.0 || rates_flu.y() != 0.0)
     refusal = "its roll or pitch rate is not 0";
+  else if (!std::isfinite(yaw_rad))
+    refusal = "the heading of the vehicle is not known yet";
   if (!refusal.empty()) return std::nullopt;
 
   ground::VelocitySetpoint setpoint;

@@ -31,6 +31,8 @@ constexpr const char* kRosPrefix = "rt/";
 
 struct ParticipantEntities {
   static constexpr const char* kName = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_";
+  static constexpr const char* kTypeHash =
+      "RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e";
 };
 using EntitiesType = comms::CheckedTypeSupport<RawType<ParticipantEntities>>;
 
@@ -176,8 +178,9 @@ class RosGraph::Impl final : public comms::DiscoveryListener {
       announcer = process->second.announcer;
     }
     if (announcer == nullptr) {
-      announcer = session_.publisher->create_datawriter(
-          topic_, comms::writer_qos(comms::Qos::kLatchedLarge, 0, 0, settings_.transport));
+      dds::DataWriterQos qos = comms::writer_qos(comms::Qos::kLatchedLarge, 0, 0, settings_.transport);
+      comms::state_type_hash(qos, ParticipantEntities::kTypeHash);
+      announcer = session_.publisher->create_datawriter(topic_, qos);
       if (announcer == nullptr) return spdlog::error("cannot publish {}", kTopic);
       const std::lock_guard<std::mutex> lock(mutex_);
       const auto process = processes_.find(participant);

@@ -14,6 +14,11 @@ struct PubSubTypeOf<ros::Message<Type>> {
   using type = ros::RawType<Type>;
 };
 
+template <class Type>
+struct RosTypeHash<ros::Message<Type>> {
+  static const char* value() { return Type::kTypeHash; }
+};
+
 }  // namespace swiftlet::comms
 
 namespace swiftlet::ros {

@@ -9,6 +9,7 @@
 
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/mcap/series.hpp"
+#include "swiftlet/io/natural_order.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -252,7 +253,9 @@ std::vector<std::string> recorded_vehicles(const mcap::Reader& file) {
         count != counts.end() && count->second > 0)
       vehicles.insert(channel.topic.substr(1, end - 1));
   }
-  return {vehicles.begin(), vehicles.end()};
+  std::vector<std::string> names(vehicles.begin(), vehicles.end());
+  std::sort(names.begin(), names.end(), runtime::comes_before);
+  return names;
 }
 
 std::string recorded_vehicle(const mcap::Reader& file, const std::string& name) {

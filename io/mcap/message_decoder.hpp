@@ -19,6 +19,8 @@ struct Column {
   enum class Kind { kFloat, kSigned, kUnsigned, kText };
   std::string name;
   Kind kind = Kind::kFloat;
+
+  bool operator==(const Column& other) const { return name == other.name && kind == other.kind; }
 };
 
 class MessageDecoder {

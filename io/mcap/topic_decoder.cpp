@@ -42,7 +42,9 @@ TopicDecoder::TopicDecoder(const Reader& file, std::string topic)
                                      (schema == nullptr ? "" : schema->encoding) +
                                      "', must be cdr and ros2msg");
     }
-    decoders_.emplace(id, MessageDecoder(*schema));
+    const MessageDecoder& decoder = decoders_.emplace(id, MessageDecoder(*schema)).first->second;
+    if (!(decoder.columns() == columns()))
+      throw runtime::ConfigError(file_, 0, topic_, "was recorded with types that differ");
   }
   if (decoders_.empty())
     throw runtime::ConfigError(file_, 0, topic_, "is not in the file, which has " + listed(topics));

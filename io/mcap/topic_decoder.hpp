@@ -20,7 +20,7 @@ std::vector<std::string> decodable_topics(const Reader& file);
 
 class TopicDecoder {
  public:
-  // Throws ConfigError if the file has no such topic or a channel of it cannot be decoded.
+  // Throws ConfigError if the file has no such topic, a channel of it cannot be decoded, or two have other signals.
   TopicDecoder(const Reader& file, std::string topic);
 
   const std::vector<Column>& columns() const { return decoders_.begin()->second.columns(); }

@@ -1,5 +1,6 @@
 #include "swiftlet/io/ulog/ulog.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <limits>
@@ -17,6 +18,8 @@ using runtime::ByteReader;
 
 constexpr std::string_view kMagic("ULog\x01\x12\x35", 7);
 constexpr std::size_t kHeader = 16;
+constexpr std::size_t kMessageHeader = 3;
+constexpr std::size_t kFlags = 40;
 constexpr int kDeepest = 8;  // nested formats
 constexpr std::size_t kLongestMessage = 65'535;
 
@@ -74,6 +77,18 @@ double value_at(std::string_view message, char letter, std::size_t offset) {
   }
 }
 
+// Of an array: "[4]". 0: it is no such text, or longer than a message.
+std::size_t count_of(std::string_view brackets) {
+  if (brackets.size() < 3 || brackets.back() != ']') return 0;
+  std::size_t count = 0;
+  for (const char c : brackets.substr(1, brackets.size() - 2)) {
+    if (c < '0' || c > '9') return 0;
+    count = 10 * count + static_cast<std::size_t>(c - '0');
+    if (count > kLongestMessage) return 0;
+  }
+  return count;
+}
+
 std::size_t size_of(char letter) {
   for (const Type& type : kTypes)
     if (type.letter == letter) return type.size;
@@ -84,35 +99,54 @@ std::size_t size_of(char letter) {
 
 Log::Log(std::string_view bytes, std::string file_name) : file_name_(std::move(file_name)) {
   if (bytes.size() < kHeader || bytes.substr(0, kMagic.size()) != kMagic) fail("is no ULog of PX4");
-  std::string_view rest = bytes.substr(kHeader);
-  while (!rest.empty()) {
-    ByteReader in = reader_of(rest);
+  std::size_t at = kHeader;
+  while (at < bytes.size()) {
+    // A section that is appended begins where the flags say, whether or not the message before it is whole.
+    const auto next = std::upper_bound(appended_.begin(), appended_.end(), at);
+    const std::size_t end = next == appended_.end() ? bytes.size() : std::min(*next, bytes.size());
+    ByteReader in = reader_of(bytes.substr(at, end - at));
     const std::size_t size = in.u16();
     const char type = static_cast<char>(in.u8());
     if (!in.ok() || in.rest() < size) {
       ends_early_ = true;
-      return;
+      at = end;
+      continue;
     }
-    const std::string_view message = rest.substr(3, size);
-    rest.remove_prefix(3 + size);
+    const std::string_view message = bytes.substr(at + kMessageHeader, size);
+    at += kMessageHeader + size;
     if (type == 'D' && size >= 2) {
       data_[reader_of(message).u16()].push_back(message.substr(2));
+    } else if (type == 'B') {
+      read_flags(message, at);
     } else {
       read_definition(type, message);
     }
+  }
+  if (!appended_.empty() && appended_.back() >= bytes.size()) ends_early_ = true;
+}
+
+// 8 bytes of what a reader may ignore, 8 of what it may not, of which the first bit says that data is appended, and three offsets
+// in the file at which such data begins; 0: none.
+void Log::read_flags(std::string_view message, std::size_t next) {
+  if (message.size() < kFlags) fail("has flags that are cut off");
+  const std::string_view incompatible = message.substr(8, 8);
+  for (std::size_t i = 0; i < incompatible.size(); ++i)
+    if (static_cast<unsigned char>(incompatible[i]) > (i == 0 ? 1U : 0U))
+      fail("uses features of ULog that are not known here");
+  if (incompatible[0] == 0) return;
+  ByteReader in = reader_of(message.substr(16));
+  for (int i = 0; i < 3; ++i) {
+    const std::uint64_t offset = in.u64();
+    if (offset == 0) continue;
+    if (offset < (appended_.empty() ? next : appended_.back()))
+      fail("names appended data where other data is");
+    appended_.push_back(offset);
   }
 }
 
 // Messages of other kinds, such as texts and drop-outs, are not needed.
 void Log::read_definition(char type, std::string_view message) {
   switch (type) {
-    case 'B': {  // flag bits: 8 of what a reader may ignore, 8 of what it may not; 1: data is appended to the file
-      const auto incompatible = message.size() < 40 ? std::string_view() : message.substr(8, 8);
-      for (std::size_t i = 0; i < incompatible.size(); ++i)
-        if (static_cast<unsigned char>(incompatible[i]) > (i == 0 ? 1U : 0U))
-          fail("uses features of ULog that are not known here");
-      return;
-    }
     case 'F':
       return read_format(message);
     case 'P':
@@ -124,7 +158,7 @@ void Log::read_definition(char type, std::string_view message) {
   }
 }
 
-// "name:type field;type[4] field;"
+// "name:type field;type[4] field;". Padding has fields of its own, "_padding0"; only at the end it is not logged.
 void Log::read_format(std::string_view text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string_view::npos) fail("has a format without a name");
@@ -134,20 +168,16 @@ void Log::read_format(std::string_view text) {
   while (!text.empty()) {
     const std::string_view field = text.substr(0, text.find(';'));
     text.remove_prefix(std::min(text.size(), field.size() + 1));
+    if (field.empty()) continue;
     const std::size_t space = field.find(' ');
-    if (space == std::string_view::npos) fail("has a format that is not understood: " + format);
+    const std::string_view type = field.substr(0, std::min(space, field.size()));
+    const std::size_t bracket = std::min(type.find('['), type.size());
     Field out;
-    out.name = field.substr(space + 1);
-    const std::string_view type = field.substr(0, space);
-    const std::size_t bracket = type.find('[');
     out.type = type.substr(0, bracket);
-    if (bracket != std::string_view::npos) {
-      out.count = 0;
-      for (const char c : type.substr(bracket + 1)) {
-        if (c < '0' || c > '9' || out.count > kLongestMessage) break;
-        out.count = 10 * out.count + static_cast<std::size_t>(c - '0');
-      }
-    }
+    out.count = bracket == type.size() ? 1 : count_of(type.substr(bracket));
+    if (space != std::string_view::npos) out.name = field.substr(space + 1);
+    if (out.type.empty() || out.name.empty() || out.count == 0)
+      fail("has a format that is not understood: " + format + ", field '" + std::string(field) + "'");
     fields.push_back(std::move(out));
   }
   formats_[format] = std::move(fields);
@@ -226,6 +256,7 @@ Table Log::read(const std::string& topic, const std::vector<std::string>& fields
     for (std::size_t i = 0; i < fields.size(); ++i)
       table.columns[i].push_back(value_at(message, wanted[i + 1].type, wanted[i + 1].offset));
   }
+  if (table.rows() == 0) fail("has no message of topic " + topic + " that is as long as its format");
   return table;
 }
 

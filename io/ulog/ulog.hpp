@@ -21,7 +21,7 @@ class Log {
  public:
   // Refers to the bytes, which must outlive it. Throws ConfigError if they are no ULog, a definition is not understood or
   // data is used that the file marks as incompatible. A file that ends within a message, as after a loss of power, is read up
-  // to there. file_name appears in messages only.
+  // to there, and so is the part before data that was appended to it, as after a crash. file_name appears in messages only.
   Log(std::string_view bytes, std::string file_name);
 
   // True if the topic was logged, by its first instance.
@@ -45,6 +45,7 @@ class Log {
   };
   using Places = std::map<std::string, Place>;
 
+  void read_flags(std::string_view message, std::size_t next);
   void read_definition(char type, std::string_view message);
   void read_format(std::string_view text);
   void read_parameter(std::string_view message);
@@ -58,6 +59,7 @@ class Log {
   std::map<std::string, std::uint16_t> topics_;                  // first instances
   std::map<std::uint16_t, std::vector<std::string_view>> data_;  // messages of each subscription
   std::map<std::string, double> parameters_;
+  std::vector<std::size_t> appended_;  // offsets in the file at which sections begin, rising
   bool ends_early_ = false;
 };
 

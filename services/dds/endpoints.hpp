@@ -35,6 +35,12 @@ namespace swiftlet::comms {
 template <class T>
 struct PubSubTypeOf;
 
+// The hash by which ROS 2 knows the type of a message, "RIHS01_..."; null: its endpoints state none.
+template <class T>
+struct RosTypeHash {
+  static const char* value() { return nullptr; }
+};
+
 namespace detail {
 
 namespace dds = eprosima::fastdds::dds;
@@ -119,9 +125,11 @@ class DdsWriter final : public Writer, private Endpoint {
 
  private:
   void join(ParticipantSession& session) override {
-    dds::DataWriter* const writer = session.publisher->create_datawriter(
-        topic_in<T>(session, vehicle_, topic_.name),
-        writer_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), strength_, node_->settings.transport));
+    dds::DataWriterQos qos =
+        writer_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), strength_, node_->settings.transport);
+    state_type_hash(qos, RosTypeHash<T>::value());
+    dds::DataWriter* const writer =
+        session.publisher->create_datawriter(topic_in<T>(session, vehicle_, topic_.name), qos);
     if (writer == nullptr) throw std::runtime_error(std::string("cannot publish ") + topic_.name);
     const std::lock_guard<std::mutex> lock(last_mutex_);
     if (last_) comms::write(*writer, &*last_);
@@ -206,10 +214,11 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
 
   void join(ParticipantSession& session) override {
     open(true);
+    dds::DataReaderQos qos =
+        reader_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), node_->settings.transport, delivery_);
+    state_type_hash(qos, RosTypeHash<T>::value());
     dds::DataReader* const reader = session.subscriber->create_datareader(
-        topic_in<T>(session, vehicle_, topic_.name),
-        reader_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), node_->settings.transport, delivery_),
-        this, dds::StatusMask::data_available());
+        topic_in<T>(session, vehicle_, topic_.name), qos, this, dds::StatusMask::data_available());
     if (reader == nullptr) throw std::runtime_error(std::string("cannot subscribe to ") + topic_.name);
     reader_.give(reader);
   }

@@ -9,8 +9,18 @@
 #include "swiftlet/services/dds/message_types.hpp"
 #include "swiftlet/services/dds/participant.hpp"
 #include "swiftlet/services/dds/vehicle_name.hpp"
+#include "swiftlet/services/messages/schemas.hpp"
 
 namespace swiftlet::comms {
+
+#define SWIFTLET_TYPE_HASH(Name)                                            \
+  template <>                                                               \
+  struct RosTypeHash<msg::Name> {                                           \
+    static const char* value() { return schema_of<msg::Name>().type_hash; } \
+  };
+SWIFTLET_FOR_EACH_MESSAGE(SWIFTLET_TYPE_HASH)
+#undef SWIFTLET_TYPE_HASH
+
 namespace {
 
 const std::string& checked(const std::string& vehicle) {

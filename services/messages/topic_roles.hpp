@@ -28,6 +28,7 @@ inline constexpr WrittenTopic kWrittenTopics[] = {
     {"clock_reply", roles::kVehicle},
     {"mocap_pose", roles::kMocap},
     {"clock_request", roles::kMocap},
+    {"clock_request", roles::kGround},
     {"clock_status", roles::kMocap},
     {"actuator_command", roles::kControl},
     {"rates_setpoint", roles::kControl},

@@ -30,6 +30,7 @@ namespace swiftlet::px4 {
 namespace {
 
 constexpr std::chrono::milliseconds kReportPeriod{20};
+constexpr double kLeastVisionRate_hz = 10.0;
 
 struct Options {
   std::string vehicle = "kaylion";
@@ -83,8 +84,10 @@ void add_options(runtime::CommandLine app, Options& options) {
                  "Time without a command of control after which PX4 is told to land, s")
       .range(0.1, 1.0)
       .show_default();
-  app.add_option("--vision-rate", bridge.vision.rate_hz, "Most poses of motion capture sent to PX4, Hz")
-      .range(10.0, 200.0)
+  app.add_option(
+         "--vision-rate", bridge.vision.rate_hz,
+         "Most poses of motion capture sent to PX4, Hz, 10 to 200; 0: none, to PX4 with sensors of its own")
+      .range(0.0, 200.0)
       .show_default();
   app.add_choice(
          "--vision-stamps", bridge.vision.stamps,
@@ -138,6 +141,8 @@ void run(const Options& options) {
   if (options.check_parameters || options.set_parameters) return check_parameters(options);
   const std::vector<std::string> names = comms::vehicles_of_list(options.node.vehicle);
   BridgeSettings settings = options.bridge;
+  if (const double rate_hz = settings.vision.rate_hz; rate_hz > 0.0 && rate_hz < kLeastVisionRate_hz)
+    throw std::invalid_argument(fmt::format("--vision-rate: is {:g}, must be 0, or 10 to 200", rate_hz));
   settings.vehicle =
       runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
   settings.levels = *plant::control_levels_from(options.levels);

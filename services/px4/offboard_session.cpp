@@ -148,6 +148,11 @@ std::optional<msg::VehicleCommand> OffboardSession::arm_vehicle(const OffboardIn
     enter(sent_ > 0 ? Phase::kDisarming : Phase::kDisarmed);
     return phase_ == Phase::kDisarming ? disarm(inputs) : std::nullopt;
   }
+  if (!offboard_) {  // another has changed the mode: PX4 must not be armed in it
+    enter(Phase::kRefused,
+          fmt::format("PX4 must not be armed: it is in mode {}", mode_name(inputs.status->nav_state())));
+    return std::nullopt;
+  }
   return attempt(arm(system_), inputs, "arm");
 }
 

@@ -157,8 +157,10 @@ void Px4Bridge::on_odometry(const msg::VehicleOdometry& message) {
     if (estimate_.position_valid) estimated_ns_ = now_ns;
     if (settings_.samples != Samples::kOdometry || version_.state == VersionState::kUnknown) return;
     sampled_ns_ = now_ns;
-    estimate_.stamp_ns = clock_.to_host(message.timestamp(), now_ns);
+    // Of the IMU sample that it was propagated to; message.timestamp() is when it was published.
+    estimate_.stamp_ns = clock_.to_host(message.timestamp_sample(), now_ns);
     estimate_.sequence = ++samples_;
+    estimate_.fuses_mocap = vision_.passed() > 0;
     out = comms::to_message(estimate_);
     comms::set_obeyed_command(watchdog_.obeyed(), out);
   }

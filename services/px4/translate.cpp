@@ -52,6 +52,11 @@ Vector3d vector(const std::array<float, 3>& in) { return {in[0], in[1], in[2]}; 
 bool is_known(const std::array<float, 3>& in) {
   return std::all_of(in.begin(), in.end(), [](float value) { return std::isfinite(value); });
 }
+// Variances about the body's axes to those about the axes of the frame: the diagonal of R diag(v) R^T.
+std::array<float, 3> rotated(const std::array<float, 3>& variance_frd, const Quaterniond& q_ned_from_frd) {
+  const Eigen::Matrix3d r = q_ned_from_frd.toRotationMatrix();
+  return floats(Vector3d(r.cwiseAbs2() * vector(variance_frd)));
+}
 // Standard deviations; 0: not known.
 Vector3d deviation(const std::array<float, 3>& variance) {
   return is_known(variance) ? Vector3d(vector(variance).cwiseMax(0.0).cwiseSqrt())
@@ -134,7 +139,7 @@ msg::VehicleOdometry to_px4(const plant::PoseSample& pose, const PoseDeviation& 
   message.velocity(kUnusedVector);
   message.angular_velocity(kUnusedVector);
   message.position_variance().fill(square(deviation.position_m));
-  message.orientation_variance().fill(square(deviation.attitude_rad));
+  message.orientation_variance().fill(square(deviation.attitude_rad));  // alike about all axes
   message.velocity_variance(kUnusedVector);
   message.reset_counter(reset_counter);
   message.quality(kBestQuality);
@@ -201,7 +206,7 @@ Fault from_px4(const msg::VehicleOdometry& message, plant::OdometrySample& odome
       check.within("velocity", value, -kGreatestSpeed, kGreatestSpeed);
   for (const float value : message.angular_velocity())
     check.within("angular_velocity", value, -kGreatestRate, kGreatestRate);
-  check.at_most("pose_frame", message.pose_frame(), kFrameNed);
+  check.within("pose_frame", message.pose_frame(), kFrameNed, kFrameNed);
   const std::array<float, 4>& q = message.q();
   check.unit("q", {q[0], q[1], q[2], q[3]});
   if (!check.ok()) return check.fault();
@@ -213,9 +218,8 @@ Fault from_px4(const msg::VehicleOdometry& message, plant::OdometrySample& odome
   odometry.body_rates_frd = vector(message.angular_velocity());
   odometry.position_deviation = deviation(message.position_variance());
   odometry.velocity_deviation = deviation(message.velocity_variance());
-  odometry.rotation_deviation = deviation(message.orientation_variance());
+  odometry.rotation_deviation = deviation(rotated(message.orientation_variance(), odometry.q_ned_from_frd));
   odometry.resets += static_cast<std::uint8_t>(message.reset_counter() - odometry.resets);
-  odometry.fuses_mocap = true;
   return {};
 }
 

@@ -27,6 +27,7 @@ std::optional<msg::VehicleOdometry> Vision::take(const plant::PoseSample& pose, 
   if (last_ && pose.stamp_ns <= last_->stamp_ns) return std::nullopt;
   if (last_ && jumps(pose)) ++resets_;
   last_ = pose;
+  if (settings_.rate_hz <= 0.0) return std::nullopt;
   const auto period_ns = static_cast<std::int64_t>(kRateMargin * 1e9 / settings_.rate_hz);
   if (passed_ > 0 && pose.stamp_ns - passed_ns_ < period_ns) return std::nullopt;
   passed_ns_ = pose.stamp_ns;

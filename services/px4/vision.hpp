@@ -16,7 +16,7 @@ enum class VisionStamps {
 
 struct VisionSettings {
   PoseDeviation deviation;
-  double rate_hz = 100.0;  // the most
+  double rate_hz = 100.0;  // the most; 0: none, PX4 has sensors of its own
   VisionStamps stamps = VisionStamps::kNow;
 };
 

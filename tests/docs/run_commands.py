@@ -236,7 +236,8 @@ case "$name ${1-} ${2-}" in
     "swiftlet mission resume" | "swiftlet mission skip" | "swiftlet mission clear" | \
     "swiftlet arm "* | "swiftlet disarm "* | "swiftlet takeoff "* | "swiftlet goto "* | "swiftlet land "* | "swiftlet hold "* | \
     "swiftlet stop "* | "swiftlet set control" | "swiftlet trajectory "* | "swiftlet stream "* | "swiftlet status "* | "swiftlet watch "* | \
-    "swiftlet list "* | "swiftlet record "* | "swiftlet check vehicle") add --localhost-only ;;
+    "swiftlet list "* | "swiftlet record "* | "swiftlet check vehicle" | \
+    "swiftlet fleet goto" | "swiftlet fleet land" | "swiftlet fleet stop") add --localhost-only ;;
 esac
 exec "$DOCS_BIN/$name" "${words[@]}"
 """

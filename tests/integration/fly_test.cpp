@@ -11,6 +11,7 @@
 #include "tests/support/campaign.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/hop_mission.hpp"
+#include "tests/support/plant_log.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -52,17 +53,9 @@ class Fly : public testing::Test {
       log_text_ = all_output(fly);
       output_ = fly.output();
       errors_ = fly.errors();
-      if (delay_ms() < 100.0) return;
+      if (behind_real_time_ms(log_text_) < 100.0) return;
     }
   }
-  // By how much the plant fell behind real time in total, from its last log line.
-  double delay_ms() const {
-    const std::size_t at = log_text_.rfind("behind real time ");
-    const std::size_t comma = log_text_.find(", ", at);
-    return at == std::string::npos || comma == std::string::npos ? 0.0
-                                                                 : std::stod(log_text_.substr(comma + 2));
-  }
-
   // All output, for failure messages.
   std::string all_output(const Program& fly) const {
     std::string text = fly.output() + fly.errors();
@@ -136,7 +129,8 @@ TEST_F(Fly, SpeedScalesRealTime) {
   EXPECT_LT(rate_hz, 1.5 * 550.0);
   // The plant says for how long it did not run: time stood still meanwhile.
   const double measured_s = report.at("cycles").get<double>() / rate_hz;
-  EXPECT_GT(rate_hz * measured_s / (measured_s - 1e-3 * delay_ms()), 1.5 * 450.0) << log_text_;
+  EXPECT_GT(rate_hz * measured_s / (measured_s - 1e-3 * behind_real_time_ms(log_text_)), 1.5 * 450.0)
+      << log_text_;
   EXPECT_LT(report.at("rms_3d_m"), 0.010);
 }
 

@@ -4,14 +4,17 @@
 #include <cmath>
 #include <csignal>
 #include <filesystem>
+#include <future>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <unistd.h>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/ground/flight/network_transport.hpp"
 #include "swiftlet/services/dds/periodic_task.hpp"
 #include "tests/support/hop_mission.hpp"
 #include "tests/support/separate_processes.hpp"
@@ -249,6 +252,59 @@ TEST_F(LivingVehicle, ADeadControlServiceIsReportedSilentFirst) {
   EXPECT_TRUE(eventually(
       [&] { return watch.output().find("kl1: CONTROL SERVICE SILENT for ") != std::string::npos; }, kTimeout))
       << watch.output();
+}
+
+class SilentProgress final : public ground::Progress {
+ public:
+  void update(int, const std::string&) override {}
+  void say(const std::string&) override {}
+};
+
+// GIVEN a flight that is armed and waits for another one WHEN its start is refused then THEN the vehicle is disarmed again.
+TEST_F(LivingVehicle, IsDisarmedAgainWhenTheStartIsRefused) {
+  start_all();
+  wait_until_ready();
+  const ground::MissionFile mission = ground::parse_mission_file(kHopMission, "hop.yaml", control::Limits());
+  ground::StartBarrier barrier(2);
+  SilentProgress progress;
+  const ground::NetworkTransport::Watch watch{[] { return std::nullopt; }, [] { return 0; }, &barrier, true};
+  auto flight = std::async(std::launch::async, [&]() -> std::string {
+    ground::NetworkTransport vehicle(*client_, record_, mission, runtime::Clock::kRealtime, watch, progress);
+    try {
+      ground::fly_mission(vehicle, 10.0);
+    } catch (const ground::FlightFailure& failure) {
+      return failure.what();
+    }
+    return "completed";
+  });
+  const auto mode_is = [](const View& view, control::Mode mode) {
+    return view.control.message.mode() == static_cast<std::uint8_t>(mode);
+  };
+  ASSERT_TRUE(client_->wait(kTimeout, [&](const View& view) {
+    return mode_is(view, control::Mode::kArmed) &&
+           view.mission.message.state() == msg::MissionStatus_Constants::UPLOADED;
+  }));
+  ASSERT_EQ(run("swiftlet", {"mission", "clear"}).exit_code, 0);
+  barrier.ready();
+  EXPECT_EQ(flight.get(), "mission refused: no mission is uploaded; upload one first; disarmed");
+  EXPECT_TRUE(
+      client_->wait(kTimeout, [&](const View& view) { return mode_is(view, control::Mode::kDisarmed); }));
+}
+
+// The fence of the mission is about the vehicle, not about the origin.
+TEST_F(LivingVehicle, FliesAMissionFromWhereItStands) {
+  start_all({}, {"--start", "1.5", "0.5"});
+  wait_until_ready();
+  const std::string mission = folder_.write(
+      "here.yaml",
+      "frame: ned\ntolerance_m: 0.1\ngeofence: {min_m: [1, -0.5, -2], max_m: [2.5, 1.5, 0.2]}\nitems:\n"
+      "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.5}\n  - {kind: land, speed_m_s: 0.4}\n");
+  const ProgramResult fly = run("swiftlet", {"fly", mission, "--attach", "--localhost-only", "--skip-check",
+                                             "--json", "--record", folder_.path() / "record"});
+  ASSERT_EQ(fly.exit_code, 0) << fly.errors;
+  const json report = json::parse(fly.output);
+  EXPECT_NEAR(report.at("start_m")[0], 1.5, 0.02);
+  EXPECT_NEAR(report.at("start_m")[1], 0.5, 0.02);
 }
 
 TEST(Attached, AFlightThatFindsNothingSaysWhereItLooked) {

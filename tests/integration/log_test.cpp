@@ -77,7 +77,8 @@ std::size_t lost_of(const mcap::Reader& file, const std::string& topic) {
   return 0;
 }
 
-// Two recorders at once: `swiftlet record`, and that of a flight with processes that run already.
+// Two recorders at once: `swiftlet record`, and that of a flight with processes that run already. A recorder receives
+// no request that was sent before both processes knew each other: requests are repeated until it has some.
 TEST_F(Log, HoldsEveryMessageOfAFlight) {
   const std::string file = path("flight.mcap");
   const auto recorder = start("swiftlet", {"record", "--output", file, "--json"});
@@ -85,11 +86,20 @@ TEST_F(Log, HoldsEveryMessageOfAFlight) {
   start_vehicle();
   const auto mocap = start("swiftlet-mocap");
   const auto control = start("swiftlet-control");
-  const ProgramResult flight =
-      run_program("swiftlet",
-                  on_this_domain({"fly", folder_.write("hop.yaml", kHopMission), "--attach", "--skip-check",
-                                  "--mcap", "--record", path("record"), "--json"}),
-                  folder_.path(), kStuck);
+  const std::string mission = folder_.write("hop.yaml", kHopMission);
+  const auto request = [&](std::vector<std::string> words) {
+    return run_program("swiftlet", on_this_domain(std::move(words)), folder_.path(), kStuck).exit_code;
+  };
+  ASSERT_TRUE(eventually([&] {
+    request({"disarm"});
+    request({"mission", "upload", mission});
+    const auto heads = heads_of(mcap::Reader(file, mcap::Access::kScanned));
+    return heads.count("/kl1/command") == 1 && heads.count("/kl1/mission") == 1;
+  }));
+  const ProgramResult flight = run_program("swiftlet",
+                                           on_this_domain({"fly", mission, "--attach", "--skip-check",
+                                                           "--mcap", "--record", path("record"), "--json"}),
+                                           folder_.path(), kStuck);
   ASSERT_EQ(flight.exit_code, 0) << flight.errors;
   recorder->signal(SIGINT);
   ASSERT_EQ(recorder->wait(kStuck), 0) << recorder->errors();

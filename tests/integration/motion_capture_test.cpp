@@ -20,6 +20,7 @@
 #include "swiftlet/io/mocap/room.hpp"
 #include "tests/support/hop_mission.hpp"
 #include "tests/support/natnet_server.hpp"
+#include "tests/support/plant_log.hpp"
 #include "tests/support/separate_processes.hpp"
 #include "tests/support/terminal.hpp"
 #include "tests/support/vrpn_server.hpp"
@@ -109,17 +110,10 @@ class MotionCapture : public SeparateProcesses {
         process->signal(SIGTERM);
         EXPECT_EQ(process->wait(kStuck), 0) << process->errors();
       }
-      if (behind_real_time_ms() < 100.0) break;
+      if (behind_real_time_ms(plant_->errors()) < 100.0) break;
     }
     EXPECT_EQ(result.exit_code, 0) << result.errors << mocap_->errors() << control_->errors();
     return result.exit_code == 0 ? json::parse(result.output).at("rms_3d_m").get<double>() : 1e9;
-  }
-  // By how much the plant fell behind in total, from its last log line.
-  double behind_real_time_ms() const {
-    const std::string text = plant_->errors();
-    const std::size_t at = text.rfind("behind real time ");
-    const std::size_t comma = text.find(", ", at);
-    return at == std::string::npos || comma == std::string::npos ? 0.0 : std::stod(text.substr(comma + 2));
   }
   std::string hop() const {
     const std::string file = (folder_.path() / "hop.yaml").string();

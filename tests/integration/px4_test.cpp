@@ -1,8 +1,11 @@
 // swiftlet-px4 with control and motion capture as processes, and a scripted PX4 (tests/support/px4/scripted_px4.hpp) in the test.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -12,6 +15,7 @@
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/program.hpp"
@@ -56,7 +60,7 @@ class Px4Flight : public testing::Test {
     of_bridge.insert(of_bridge.end(), extra_bridge_.begin(), extra_bridge_.end());
     bridge_ = start("swiftlet-px4", of_bridge);
     mocap_ = start("swiftlet-mocap");
-    control_ = start("swiftlet-control", {"--level", level});
+    control_ = start("swiftlet-control", {"--level", level, "--control", control_file_});
     client_ = std::make_unique<ground::Client>(network("ground"));
   }
   void wait_until_ready() {
@@ -105,6 +109,7 @@ class Px4Flight : public testing::Test {
   const plant::Vehicle vehicle_;
   const ScriptedPx4Settings settings_;
   std::vector<std::string> extra_bridge_;  // arguments
+  std::string control_file_ = "motor_lag";
   std::unique_ptr<ScriptedPx4> px4_;
   std::unique_ptr<Program> bridge_, mocap_, control_;
   std::unique_ptr<ground::Client> client_;
@@ -288,6 +293,47 @@ TEST_F(Px4Odometry, FliesAndLands) {
   ASSERT_TRUE(ask(msg::Command_Constants::LAND).accepted());
   EXPECT_TRUE(wait_for(Mode::kDisarmed)) << reason() << errors();
   ASSERT_TRUE(eventually([&] { return !px4_->armed(); }));
+}
+
+// PX4 publishes its estimate late by a varying time. Its stamp is that of the sample: in equal intervals.
+TEST_F(Px4Odometry, IsStampedByItsSample) {
+  extra_bridge_ = {"--samples", "odometry"};
+  std::mutex mutex;
+  std::vector<double> off_us;  // of the interval
+  std::int64_t last_ns = 0;
+  comms::Node node(network("listener"));
+  const comms::Subscription subscription =
+      node.subscribe<msg::VehicleOdometry>(comms::topics::kVehicleOdometry, [&](const auto& message) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (last_ns > 0)
+          off_us.push_back(std::abs(1e-3 * static_cast<double>(message.stamp_ns() - last_ns) - 1e4));
+        last_ns = message.stamp_ns();
+      });
+  start_all("attitude");
+  ASSERT_TRUE(eventually([&] {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return off_us.size() > 200;
+  })) << errors();
+  const std::lock_guard<std::mutex> lock(mutex);
+  std::nth_element(off_us.begin(), off_us.begin() + 100, off_us.end());
+  EXPECT_LT(off_us[100], 1500.0);
+}
+
+// GIVEN control that is flown by PX4's own estimate, which is made from the poses of motion capture WHEN these end THEN it descends
+// without position, although PX4 still sends one.
+TEST_F(Px4Odometry, MadeFromMotionCaptureIsLostWithIt) {
+  std::string settings = runtime::read_text_file(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
+  const std::string mocap = "odometry: {estimate: mocap";
+  ASSERT_NE(settings.find(mocap), std::string::npos);
+  control_file_ = folder_.write(
+      "own.yaml", settings.replace(settings.find(mocap), mocap.size(), "odometry: {estimate: vehicle"));
+  extra_bridge_ = {"--samples", "odometry"};
+  start_all("attitude");
+  hover();
+  EXPECT_EQ(client_->view().control.message.estimate_source(),
+            msg::ControlStatus_Constants::ESTIMATE_OF_VEHICLE);
+  mocap_.reset();
+  EXPECT_TRUE(wait_for(Mode::kDescent)) << reason() << errors();
 }
 
 // GIVEN two instances of PX4 WHEN `swiftlet fly --vehicle px4` flies a mission with both THEN it starts mocap, bridge and control,

@@ -34,7 +34,7 @@ static const double NEAR_M = 0.05;
 static const double GOAL_ENU[3] = {0.6, -0.4, 0.9};
 
 typedef struct {
-  dds_entity_t participant, waitset, readers[INPUTS], graph, goal, velocity, publications;
+  dds_entity_t participant, waitset, readers[INPUTS], graph, goal, velocity, publications, subscriptions;
   topic_t topics[INPUTS], graph_topic;
   void* newest[INPUTS];
   uint64_t counts[INPUTS];
@@ -81,6 +81,7 @@ static void join_ros(peer_t* peer, int domain, const char* vehicle, int seconds)
       peer->participant, topic_in(peer->participant, "%s", "ros_discovery_info", peer->graph_topic.type), qos, NULL);
   dds_delete_qos(qos);
   peer->publications = dds_create_reader(peer->participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, NULL, NULL);
+  peer->subscriptions = dds_create_reader(peer->participant, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, NULL, NULL);
 }
 
 static void pump_ros(peer_t* peer, const char* waiting_for) {
@@ -111,6 +112,27 @@ static void topic_of_writer(peer_t* peer, const rmw_dds_common_msg_dds__Gid_* gi
     if (infos[i].valid_data && memcmp(writer->key.v, gid->data, sizeof gid->data) == 0) snprintf(name, size, "%s", writer->topic_name);
   }
   dds_return_loan(peer->publications, samples, count);
+}
+
+// Prints topic, type and user data of the endpoints of others.
+static void print_endpoints(const peer_t* peer, dds_entity_t endpoints, const char* kind) {
+  enum { MOST = 512 };
+  static void* samples[MOST];
+  static dds_sample_info_t infos[MOST];
+  memset(samples, 0, sizeof samples);
+  dds_guid_t own;
+  dds_get_guid(peer->participant, &own);
+  const int count = dds_read(endpoints, samples, infos, MOST, MOST);
+  for (int i = 0; i < count; ++i) {
+    const dds_builtintopic_endpoint_t* endpoint = samples[i];
+    if (!infos[i].valid_data || memcmp(&endpoint->participant_key, &own, sizeof own) == 0) continue;
+    void* data = NULL;
+    size_t size = 0;
+    const bool has_data = dds_qget_userdata(endpoint->qos, &data, &size);
+    printf("%s %s %s %.*s\n", kind, endpoint->topic_name, endpoint->type_name, has_data ? (int)size : 0, has_data ? (const char*)data : "");
+    dds_free(data);
+  }
+  dds_return_loan(endpoints, samples, count);
 }
 
 // Waits for the node /vehicle/name, with a writer of its topic.
@@ -206,6 +228,8 @@ int main(int argc, char** argv) {
   if (fabs(pose->pose.position.y - end[1]) > 2 * NEAR_M || fabs(pose->pose.position.z - end[2]) > 2 * NEAR_M)
     fail("the vehicle drifted to %g %g %g", pose->pose.position.x, pose->pose.position.y, pose->pose.position.z);
   printf("velocities: obeyed\n");
+  print_endpoints(&peer, peer.publications, "writer");
+  print_endpoints(&peer, peer.subscriptions, "reader");
   for (int i = 0; i < INPUTS; ++i) dds_sample_free(peer.newest[i], inputs[i].type, DDS_FREE_ALL);
   dds_delete(peer.participant);
   return 0;

@@ -5,6 +5,7 @@ usage: run.py BIN WORK
 
 BIN holds the programs. WORK is a folder for the build of the C programs and for logs.
 """
+import json
 import os
 import pathlib
 import re
@@ -20,6 +21,7 @@ sys.path.insert(0, str(ROOT / "tests" / "docs"))
 sys.path.insert(0, str(ROOT / "docs" / "site"))
 from manual_text import fences  # noqa: E402
 from run_commands import lock_domain  # noqa: E402
+from type_hashes import published  # noqa: E402
 
 PATIENCE_S = 60
 DEBIAN_PYTHON = "/usr/bin/python3"  # with Debian's python3-rosidl
@@ -132,7 +134,27 @@ class Interop:
             for command in (["arm"], ["takeoff", "0.6"]):
                 processes.run("swiftlet", *command)
             output = self.finish(self.peer("ros", processes.domain, "kl1", PATIENCE_S), "the program of ROS 2")
-        print("".join(f"interop: ROS 2: {line}\n" for line in output.splitlines()), end="")
+        endpoints = re.findall(r"^(writer|reader) (\S+) (\S+) (.*)$", output, re.MULTILINE)
+        print("".join(f"interop: ROS 2: {line}\n" for line in output.splitlines() if not line.startswith(("writer", "reader"))), end="")
+        return endpoints
+
+
+def check_type_hashes(endpoints):
+    """Each endpoint states the hash by which ROS 2 knows its type, in its user data."""
+    shown = subprocess.run([DEBIAN_PYTHON, "-B", "-c", "import json, type_hashes; print(json.dumps(type_hashes.by_rosidl()))"],
+                           cwd=HERE, text=True, stdout=subprocess.PIPE, check=True).stdout
+    known = {**published(), **json.loads(shown.splitlines()[-1])}
+    seen = set()
+    for kind, topic, wire_type, user_data in endpoints:
+        ros_type = wire_type.replace("::dds_::", "::").replace("::", "/").rstrip("_")
+        if user_data != f"typehash={known[ros_type]};":
+            sys.exit(f"interop: the {kind} of {topic} states '{user_data}', the hash of {ros_type} is {known[ros_type]}")
+        seen.add((kind, ros_type))
+    least = {("writer", "swiftlet_msgs/msg/ControlStatus"), ("reader", "swiftlet_msgs/msg/Command"), ("writer", "geometry_msgs/msg/PoseStamped"),
+             ("reader", "geometry_msgs/msg/Twist"), ("writer", "tf2_msgs/msg/TFMessage"), ("writer", "rmw_dds_common/msg/ParticipantEntitiesInfo")}
+    if least - seen:
+        sys.exit(f"interop: not found: {sorted(least - seen)}")
+    print(f"interop: {len(endpoints)} endpoints state the hashes of their {len({one for _, one in seen})} types as ROS 2 computes them")
 
 
 def main(programs, work):
@@ -142,7 +164,7 @@ def main(programs, work):
     if missing:
         sys.exit(f"interop: never decoded: {', '.join(sorted(missing))}")
     print(f"interop: Cyclone DDS decoded all {len(topics)} topics", flush=True)
-    interop.join_ros()
+    check_type_hashes(interop.join_ros())
     package = subprocess.run([DEBIAN_PYTHON, "-B", HERE / "ros2_package.py", "--rosidl"], text=True, stdout=subprocess.PIPE, check=True)
     print(package.stdout.splitlines()[-1])  # rosidl names each file
 

@@ -10,21 +10,22 @@ export const launch = () => puppeteer.launch({
   args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
 });
 
-// Calls look(page, ms) with the page when it is ready, and how long that took.
+// file: a path, or the URL of a server. Calls look(page, ms) with the page when it is ready, and how long that took.
 export async function withPage(browser, file, {width, scheme = 'light'}, look) {
   const page = await browser.newPage();
+  const address = file.includes('://') ? file : 'file://' + file;
   const faults = [];
   page.on('console', (message) => {
     if (['error', 'warn'].includes(message.type())) faults.push(`console: ${message.text()}`);
   });
   page.on('pageerror', (error) => faults.push(`error: ${error.stack}`));
   page.on('request', (request) => {
-    if (request.url() !== 'file://' + file && !request.url().startsWith('data:')) faults.push(`loads ${request.url()}`);
+    if (request.url() !== address && !request.url().startsWith('data:')) faults.push(`loads ${request.url()}`);
   });
   await page.emulateMediaFeatures([{name: 'prefers-color-scheme', value: scheme}]);
   await page.setViewport({width, height: 900});
   const started = performance.now();
-  await page.goto('file://' + file);
+  await page.goto(address);
   await page.waitForFunction(() => document.documentElement.dataset.ready === 'true', {timeout: 30000});
   await look(page, performance.now() - started);
   require(faults.length === 0, `${file}: ${faults.join('\n')}`);

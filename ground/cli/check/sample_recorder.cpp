@@ -59,8 +59,10 @@ void add_state(TopicRecord<Sample>& record, const comms::Subscription& subscript
 }  // namespace
 
 SampleRecorder::SampleRecorder(const comms::NodeSettings& settings)
-    : vehicle_(settings.vehicle), client_(random_number()), node_(listening(settings)) {
-  if (settings.security.empty()) clock_ = node_.publish(topics::kClockRequest);
+    : vehicle_(settings.vehicle),
+      client_(random_number()),
+      node_(listening(settings)),
+      clock_(node_.publish(topics::kClockRequest)) {
   recording_.begin_ns = runtime::monotonic_ns();
   node_.on_peer([this](const comms::PeerEvent& event) { count_peer(event); });
   const auto subscribe = [this](const auto& topic, auto& record) {
@@ -157,12 +159,11 @@ bool SampleRecorder::record(std::chrono::milliseconds time, const std::function<
 }
 
 void SampleRecorder::ask_clock() {
-  if (!clock_) return;
   msg::ClockRequest request;
   request.client(client_);
   request.sequence_number(++clock_requests_);
   request.sent_ns(runtime::monotonic_ns());
-  clock_->publish(request);
+  clock_.publish(request);
 }
 
 VehicleRecording SampleRecorder::recording() const {

@@ -61,8 +61,7 @@ class SampleRecorder {
 
   comms::Node node_;
   std::uint64_t clock_requests_ = 0;
-  std::optional<comms::Publisher<comms::msg::ClockRequest>>
-      clock_;  // not with security: ground may not write it
+  comms::Publisher<comms::msg::ClockRequest> clock_;
   // Last: their callbacks use all members above.
   comms::Subscription imu_, odometry_, battery_, mocap_, rotor_speeds_, info_, clock_replies_,
       controller_states_, actuator_commands_;

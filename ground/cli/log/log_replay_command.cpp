@@ -74,8 +74,16 @@ int publish(const Options& options, const mcap::Reader& file) {
     return interrupts.count() == 0;
   });
   progress.close();
+  std::string incomplete;
+  if (totals.refused > 0)
+    incomplete =
+        fmt::format("{} messages are of other types or versions than this program's", totals.refused);
+  if (totals.published == 0) incomplete = "no message was published";
+  if (interrupts.count() > 0) incomplete = "interrupted";
   if (options.json) {
     std::printf("%s\n", nlohmann::ordered_json({{"file", options.file},
+                                                {"complete", incomplete.empty()},
+                                                {"reason", incomplete},
                                                 {"published", totals.published},
                                                 {"refused", totals.refused},
                                                 {"time_s", totals.time_s},
@@ -86,17 +94,11 @@ int publish(const Options& options, const mcap::Reader& file) {
     fmt::print("replay: {}: {} messages of {:.1f} s published, {} refused; the latest was {:.1f} ms late\n",
                options.file, totals.published, totals.time_s, totals.refused, totals.largest_delay_s * 1e3);
   }
-  return interrupts.count() == 0 && totals.refused == 0 ? kDone : kFailed;
+  if (!incomplete.empty()) std::fprintf(stderr, "swiftlet: replay: incomplete: %s\n", incomplete.c_str());
+  return incomplete.empty() ? kDone : kFailed;
 }
 
-// How far the commands lie apart, in the unit of the signal that differs most.
-double largest_difference(const ControlReplay& replay) {
-  double largest = 0.0;
-  for (const SignalDifference& signal : replay.commands.signals) largest = std::max(largest, signal.max);
-  return largest;
-}
-
-void print(const Options& options, const ControlReplay& replay, bool same) {
+void print(const Options& options, const ControlReplay& replay, const std::string& difference) {
   fmt::print("replay: {}: {} IMU samples and {} requests into swiftlet-control (vehicle {}, control {})\n",
              options.file, replay.imu_samples, replay.requests, replay.vehicle_file, replay.control_file);
   fmt::print("  {} of {} recorded commands compared, {} requests answered otherwise\n",
@@ -104,14 +106,17 @@ void print(const Options& options, const ControlReplay& replay, bool same) {
   for (const SignalDifference& signal : replay.commands.signals)
     fmt::print("  {:<24} RMS {:>10.3g}, max {:>10.3g} at {:.3f} s\n", signal.name, signal.rms, signal.max,
                signal.max_at_s);
-  fmt::print("  {}\n",
-             same ? fmt::format("the controller does the same, within {:g}", options.tolerance)
-                  : fmt::format("the controller does not do the same within {:g}", options.tolerance));
+  fmt::print("  {}\n", difference.empty()
+                           ? fmt::format("the controller does the same, within {:g}", options.tolerance)
+                           : fmt::format("the controller does not do the same within {:g}: {}",
+                                         options.tolerance, difference));
 }
 
-nlohmann::ordered_json to_json(const Options& options, const ControlReplay& replay, bool same) {
+nlohmann::ordered_json to_json(const Options& options, const ControlReplay& replay,
+                               const std::string& difference) {
   nlohmann::ordered_json json = {{"file", options.file},
-                                 {"same", same},
+                                 {"same", difference.empty()},
+                                 {"reason", difference},
                                  {"tolerance", options.tolerance},
                                  {"vehicle", replay.vehicle_file},
                                  {"control", replay.control_file},
@@ -140,14 +145,13 @@ int into_control(const Options& options, const mcap::Reader& file) {
     return interrupts.count() == 0;
   });
   progress.close();
-  const bool same = replay.commands.compared > 0 && replay.other_answers == 0 &&
-                    largest_difference(replay) <= options.tolerance;
+  const std::string difference = difference_of(replay, options.tolerance);
   if (options.json) {
-    std::printf("%s\n", to_json(options, replay, same).dump(2).c_str());
+    std::printf("%s\n", to_json(options, replay, difference).dump(2).c_str());
   } else {
-    print(options, replay, same);
+    print(options, replay, difference);
   }
-  return same ? kDone : kFailed;
+  return difference.empty() ? kDone : kFailed;
 }
 
 }  // namespace
@@ -192,7 +196,9 @@ Command add_log_replay_command(runtime::CommandLine log) {
       "Only topics of Swiftlet are published, and only under names that no vehicle of the domain has. The "
       "requests are among them:\na running controller of that name would obey them.\n\nexample: swiftlet log "
       "replay flight.mcap --speed 2 --vehicle-name old\nexample: swiftlet log replay flight.mcap "
-      "--into-control --control mine.yaml");
+      "--into-control --control mine.yaml\nExit codes: 0 all messages were published, or the controller does "
+      "the same; 1 not "
+      "so; 2 the file is invalid.");
   return {app, [options] {
             const mcap::Reader file(options->file);
             return options->into_control ? into_control(*options, file) : publish(*options, file);

@@ -11,6 +11,7 @@
 #include <variant>
 
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/cli/check/sample_recorder.hpp"
 #include "swiftlet/ground/cli/mocap/mocap_commands.hpp"
@@ -19,10 +20,12 @@
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/logs/flight_log_files.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
+namespace fs = std::filesystem;
 using identification::FlightLog;
 using namespace std::chrono_literals;
 
@@ -50,6 +53,8 @@ class TopicColumns {
   double number(const std::vector<mcap::Value>& values, const std::string& column) const {
     const auto found = index_.find(column);
     if (found == index_.end()) throw runtime::ConfigError(file_name_, 0, topic_, "has no field " + column);
+    if (std::holds_alternative<std::string>(values[found->second]))
+      throw runtime::ConfigError(file_name_, 0, topic_, column + " is a text, must be a number");
     return number_of(values[found->second]);
   }
   Eigen::Vector3d vector(const std::vector<mcap::Value>& values, const std::string& name) const {
@@ -99,18 +104,31 @@ FlightLog cut(const FlightLog& log, double from_s, double until_s) {
   return out;
 }
 
+// The record of this vehicle: a folder of several has one for each. Throws ConfigError if it is of another one.
+fs::path record_of(const fs::path& file, const std::string& vehicle) {
+  const fs::path record = fs::is_directory(file / vehicle) ? file / vehicle : file;
+  const fs::path report = (fs::is_directory(record) ? record : record.parent_path()) / "report.json";
+  if (!fs::exists(report)) return record;
+  const auto json = nlohmann::json::parse(runtime::read_text_file(report.string()), nullptr, false);
+  const bool says = json.is_object() && json.contains("vehicle_name") && json["vehicle_name"].is_string();
+  const std::string of = says ? json["vehicle_name"].get<std::string>() : vehicle;
+  if (of != vehicle)
+    throw runtime::ConfigError(file.string(), 0, "", "is a flight of " + of + ", not of " + vehicle);
+  return record;
+}
+
 }  // namespace
 
 FlightLog read_motion(const std::string& file, const std::string& vehicle, std::optional<double> from_s,
                       std::optional<double> until_s) {
   FlightLog log;
-  if (std::filesystem::path(file).extension() == ".mcap") {
+  if (fs::path(file).extension() == ".mcap") {
     log = read_mcap(file, vehicle);
   } else {
     // The commands, which a vehicle file translates, are not used.
     const plant::Vehicle any =
         runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, "kaylion"));
-    log = read_flight_log(file, any, BodyAxes::kDetected).log;
+    log = read_flight_log(record_of(file, vehicle), any, BodyAxes::kDetected).log;
   }
   if (log.poses.empty())
     throw std::runtime_error(file +

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <limits>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "swiftlet/ground/pages/recorded/flight_topics.hpp"
 #include "swiftlet/ground/recording/log_table.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/natural_order.hpp"
 
 namespace swiftlet::pages {
 namespace {
@@ -14,7 +17,7 @@ namespace {
 constexpr double kNsPerS = 1e9;
 
 // Those whose topics /<vehicle>/estimate or /<vehicle>/ground_truth have messages.
-std::set<std::string> vehicles_of(const mcap::Reader& file) {
+std::vector<std::string> vehicles_of(const mcap::Reader& file) {
   std::set<std::string> vehicles;
   for (const auto& [id, channel] : file.channels()) {
     const std::size_t end = channel.topic.find('/', 1);
@@ -25,7 +28,9 @@ std::set<std::string> vehicles_of(const mcap::Reader& file) {
     if (!empty && (topic == "estimate" || topic == "ground_truth"))
       vehicles.insert(channel.topic.substr(1, end - 1));
   }
-  return vehicles;
+  std::vector<std::string> names(vehicles.begin(), vehicles.end());
+  std::sort(names.begin(), names.end(), runtime::comes_before);
+  return names;
 }
 
 void set_range(FlightLog& flight) {
@@ -56,7 +61,7 @@ FlightLog flight_of(const mcap::Reader& file, const std::string& vehicle) {
 }  // namespace
 
 std::vector<FlightLog> flights_in(const mcap::Reader& file, const std::string& name) {
-  const std::set<std::string> vehicles = vehicles_of(file);
+  const std::vector<std::string> vehicles = vehicles_of(file);
   if (vehicles.empty())
     throw runtime::ConfigError(file.name(), 0, "",
                                "holds no flight: no topic /<vehicle>/estimate or ground_truth");

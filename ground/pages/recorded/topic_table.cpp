@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "swiftlet/ground/recording/log_table.hpp"
+#include "swiftlet/io/config_error.hpp"
 
 namespace swiftlet::pages {
 namespace {
@@ -11,13 +12,24 @@ namespace {
 constexpr const char* kStamp = "stamp_ns";
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-bool is_wanted(const std::string& column, const std::vector<std::string>& names) {
-  return std::find(names.begin(), names.end(), column.substr(0, column.find('['))) != names.end();
+using Kind = mcap::Column::Kind;
+
+// The member of a column: "position_ned" of "position_ned[0]", "items" of "items.length".
+std::string member_of(const std::string& column) { return column.substr(0, column.find_first_of("[.")); }
+
+bool is_one_of(const std::string& name, const std::vector<std::string>& names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+const char* type_of(const mcap::Column& column) {
+  if (column.name.find('.') != std::string::npos)
+    return column.name == member_of(column.name) + ".length" ? "a sequence" : "a message";
+  return column.kind == Kind::kText ? "a text" : "a number";
 }
 
 std::int64_t integer_of(const mcap::Value& value) {
   if (const auto* const number = std::get_if<std::int64_t>(&value)) return *number;
-  return static_cast<std::int64_t>(ground::number_of(value));
+  return static_cast<std::int64_t>(std::get<std::uint64_t>(value));
 }
 
 }  // namespace
@@ -38,7 +50,8 @@ std::string TopicTable::text(const std::string& name, std::size_t row) const {
 }
 
 TopicTable read_topic(const mcap::Reader& file, const std::string& topic,
-                      const std::vector<std::string>& names) {
+                      const std::vector<std::string>& number_names,
+                      const std::vector<std::string>& text_names) {
   TopicTable table;
   const std::vector<std::string> topics = ground::decodable_topics(file);
   if (!std::binary_search(topics.begin(), topics.end(), topic)) return table;
@@ -46,13 +59,25 @@ TopicTable read_topic(const mcap::Reader& file, const std::string& topic,
   std::size_t stamp = kNone;
   std::vector<std::pair<std::size_t, std::vector<double>*>> numbers;
   std::vector<std::pair<std::size_t, std::vector<std::string>*>> texts;
+  const auto require = [&](bool fits, const mcap::Column& column, const char* what) {
+    if (!fits)
+      throw runtime::ConfigError(file.name(), 0, topic,
+                                 member_of(column.name) + " is " + type_of(column) + ", must be " + what);
+  };
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (columns[i].name == kStamp) stamp = i;
-    if (!is_wanted(columns[i].name, names)) continue;
-    if (columns[i].kind == mcap::Column::Kind::kText) {
-      texts.emplace_back(i, &table.texts[columns[i].name]);
-    } else {
-      numbers.emplace_back(i, &table.numbers[columns[i].name]);
+    const mcap::Column& column = columns[i];
+    const std::string member = member_of(column.name);
+    const bool is_plain = column.name.find('.') == std::string::npos;
+    if (member == kStamp) {
+      require(is_plain && (column.kind == Kind::kSigned || column.kind == Kind::kUnsigned), column,
+              "an integer");
+      stamp = i;
+    } else if (is_one_of(member, number_names)) {
+      require(is_plain && column.kind != Kind::kText, column, "a number");
+      numbers.emplace_back(i, &table.numbers[column.name]);
+    } else if (is_one_of(member, text_names)) {
+      require(is_plain && column.kind == Kind::kText, column, "a text");
+      texts.emplace_back(i, &table.texts[column.name]);
     }
   }
   ground::for_each_row(

@@ -27,9 +27,10 @@ struct TopicTable {
   std::string text(const std::string& name, std::size_t row) const;
 };
 
-// names: of the members to read, of arrays without index. The table is empty if the file has no such topic. Messages
-// older than one before them are left out. Throws ConfigError for a damaged file.
+// number_names, text_names: of the members to read, of arrays without index. The table is empty if the file has no such topic.
+// Messages older than one before them are left out. Throws ConfigError for a damaged file, or if a member is of another type.
 TopicTable read_topic(const mcap::Reader& file, const std::string& topic,
-                      const std::vector<std::string>& names);
+                      const std::vector<std::string>& number_names,
+                      const std::vector<std::string>& text_names = {});
 
 }  // namespace swiftlet::pages

@@ -19,11 +19,12 @@ std::uint64_t random_id() {
 
 }  // namespace
 
-ClockClient::ClockClient(Node& node, std::function<std::int64_t()> own_ns)
+ClockClient::ClockClient(Node& node, std::function<std::int64_t()> own_ns, Reporting reporting)
     : own_ns_(std::move(own_ns)),
       id_(random_id()),
       requests_(node.publish(topics::kClockRequest)),
-      status_(node.publish(topics::kClockStatus)),
+      status_(reporting == Reporting::kPublished ? std::optional(node.publish(topics::kClockStatus))
+                                                 : std::nullopt),
       replies_(node.subscribe<msg::ClockReply>(topics::kClockReply,
                                                [this](const msg::ClockReply& reply) { take(reply); })) {}
 
@@ -54,6 +55,7 @@ void ClockClient::take(const msg::ClockReply& reply) {
   const ClockEstimate& clock = *filter_.estimate();
   const bool is_certain = filter_.exchanges() >= ClockFilter::kStepExchanges && !filter_.is_in_doubt();
   latest_.put({clock, is_certain});
+  if (!status_) return;
   log_changes(is_certain, clock, now_ns);
   publish_status(is_certain, clock, now_ns);
 }
@@ -87,7 +89,7 @@ void ClockClient::publish_status(bool is_known, const ClockEstimate& clock, std:
   status.round_trip_ns(2.0 * clock.half_round_trip_ns);
   status.steps(static_cast<std::uint32_t>(filter_.steps()));
   status.known(is_known);
-  status_.publish(status);
+  status_->publish(status);
 }
 
 }  // namespace swiftlet::comms

@@ -13,15 +13,20 @@
 
 namespace swiftlet::comms {
 
-// For a process at the border of the domain, whose measurements carry stamps of another clock: it asks the vehicle for its
-// clock, filters the answers and publishes what it knows as clock_status. Neither clock needs to be right or steady.
+// For a process with a clock of its own: it asks the vehicle for its clock and filters the answers. Neither clock needs to
+// be right or steady.
 class ClockClient {
  public:
+  enum class Reporting {
+    kPublished,  // what is known, as clock_status, and in the log: for motion capture, whose frames carry stamps of that clock
+    kNone
+  };
+
   static constexpr std::chrono::milliseconds kPeriod{50};       // of the requests
   static constexpr std::chrono::milliseconds kFirstPeriod{10};  // while the vehicle's clock is unknown
 
   // own_ns: reads the own clock; each may have any origin. Called in several threads.
-  ClockClient(Node& node, std::function<std::int64_t()> own_ns);
+  ClockClient(Node& node, std::function<std::int64_t()> own_ns, Reporting reporting = Reporting::kPublished);
 
   // Call these two in one thread, for each measurement. Neither waits.
   void ask_if_due();
@@ -58,7 +63,7 @@ class ClockClient {
   Time status_due_;
 
   Publisher<msg::ClockRequest> requests_;
-  Publisher<msg::ClockStatus> status_;
+  std::optional<Publisher<msg::ClockStatus>> status_;
   Subscription replies_;  // last: its callback uses all members above
 };
 

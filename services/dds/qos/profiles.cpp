@@ -1,6 +1,8 @@
 #include "swiftlet/services/dds/qos/profiles.hpp"
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/qos/duration.hpp"
@@ -29,6 +31,14 @@ bool is_reliable(Qos profile) {
   return is_latched(profile) || profile == Qos::kRequest || profile == Qos::kReply;
 }
 bool is_long(Qos profile) { return profile == Qos::kLatchedLarge || profile == Qos::kRequest; }
+
+// As rmw_dds_common encodes it.
+template <class EndpointQos>
+void set_user_data(EndpointQos& qos, const char* hash) {
+  if (hash == nullptr) return;
+  const std::string text = "typehash=" + std::string(hash) + ";";
+  qos.user_data().data_vec(std::vector<std::uint8_t>(text.begin(), text.end()));
+}
 
 void set_fragments(dds::DataWriterQos& qos) {
   if (kHasFlowControllers) {
@@ -114,5 +124,9 @@ dds::DataReaderQos reader_qos(Qos profile, int deadline_ms, Transport transport,
   }
   return qos;
 }
+
+void state_type_hash(dds::DataWriterQos& qos, const char* hash) { set_user_data(qos, hash); }
+
+void state_type_hash(dds::DataReaderQos& qos, const char* hash) { set_user_data(qos, hash); }
 
 }  // namespace swiftlet::comms

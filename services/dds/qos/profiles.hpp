@@ -24,4 +24,8 @@ eprosima::fastdds::dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, s
 eprosima::fastdds::dds::DataReaderQos reader_qos(Qos profile, int deadline_ms, Transport transport,
                                                  Delivery delivery);
 
+// States the type hash of an endpoint in its user data, where ROS 2 looks for it. hash: may be null.
+void state_type_hash(eprosima::fastdds::dds::DataWriterQos& qos, const char* hash);
+void state_type_hash(eprosima::fastdds::dds::DataReaderQos& qos, const char* hash);
+
 }  // namespace swiftlet::comms

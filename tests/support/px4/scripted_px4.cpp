@@ -14,6 +14,7 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
+constexpr std::uint64_t kLatePublicationUs = 5'000;
 constexpr std::int64_t kPeriodNs = 10'000'000;
 constexpr int kStatusTicks = 50;
 constexpr int kBatteryTicks = 10;
@@ -268,7 +269,10 @@ void ScriptedPx4::publish() {
     publisher.publish(message);
   };
   if (imu) send(sensors_, sensors);
-  send(odometry_, odometry);
+  // As PX4 does, it is published some time after the sample that it is of.
+  odometry.timestamp_sample(stamp_us());
+  odometry.timestamp(odometry.timestamp_sample() + (tick % 2 == 0 ? kLatePublicationUs : 0));
+  odometry_.publish(odometry);
   if (tick % kBatteryTicks == 0) send(battery_, battery);
   if (!changed && tick % kStatusTicks != 0) return;
   send(flags_, flags);

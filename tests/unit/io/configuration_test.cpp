@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/io/program_directory.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 
 namespace swiftlet::runtime {
@@ -51,6 +52,15 @@ TEST_F(FindConfig, SearchesBesideTheExecutable) {
   const fs::path executable = fs::read_symlink("/proc/self/exe");
   EXPECT_EQ(directories[0], (executable.parent_path().parent_path() / "share/swiftlet/config").string());
   EXPECT_EQ(directories[1], (executable.parent_path().parent_path().parent_path() / "config").string());
+}
+
+TEST_F(FindConfig, SearchesBesideTheProgramsOfALibraryThatAnotherProgramLoads) {
+  ::unsetenv("SWIFTLET_CONFIG_DIR");
+  set_program_directory("/opt/swiftlet/bin");
+  const std::vector<std::string> directories = config_directories();
+  set_program_directory({});
+  EXPECT_EQ(directories, (std::vector<std::string>{"/opt/swiftlet/share/swiftlet/config", "/opt/config"}));
+  EXPECT_EQ(program_directory(), fs::read_symlink("/proc/self/exe").parent_path());
 }
 
 TEST_F(FindConfig, ErrorListsTheSearchedPaths) {

@@ -35,6 +35,10 @@ class ScriptedVehicle final : public MissionTransport {
   }
   Status status() const override { return status_; }
   std::string abort_reason() const override { return "mocap lost"; }
+  [[noreturn]] void abandon(const std::string& reason) override {
+    calls_.emplace_back("abandon");
+    throw FlightFailure(reason);
+  }
 
   int refusals_ = 0;
   bool retry_ = true;
@@ -96,10 +100,11 @@ TEST(MissionRunner, DoesNotRetryAnArmingThatCannotSucceed) {
   EXPECT_EQ(vehicle.status_.stamp_ns, 0);
 }
 
-TEST(MissionRunner, TellsWhyTheMissionWasRefused) {
+TEST(MissionRunner, TellsWhyTheMissionWasRefusedAndLeavesNoVehicleArmed) {
   ScriptedVehicle vehicle;
   vehicle.start_ = {false, false, "item 2 is outside the fence"};
   EXPECT_EQ(failure_of(vehicle), "mission refused: item 2 is outside the fence");
+  EXPECT_EQ(vehicle.calls_, (std::vector<std::string>{"ready", "arm", "others", "start", "abandon"}));
   EXPECT_EQ(vehicle.steps_, 0);
 }
 

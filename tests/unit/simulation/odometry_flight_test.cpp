@@ -206,6 +206,23 @@ TEST_P(OdometryFaults, MotionCaptureIsLostForTenSeconds) {
   RecordProperty("fastest", std::to_string(lost.speed) + " m/s, then " + std::to_string(back.speed) + " m/s");
 }
 
+// GIVEN an own estimate that the vehicle makes from our poses WHEN these end THEN it is as lost as ours is, whatever the setting,
+// although the vehicle goes on to call its position valid.
+TEST_P(OdometryFaults, MadeFromMotionCaptureIsLostWithIt) {
+  world_.odometry.source = OdometrySource::kMocap;
+  lose_mocap(9.0, 10.0);
+  ClosedLoop loop(vehicle_, world_, settings_, 1);
+  hover(loop);
+  run(loop, 8.99 - loop.time_s());
+  ASSERT_EQ(mode(loop), Mode::kHolding);
+  run(loop, settings_.failsafe.mocap_timeout_s + 0.1);
+  EXPECT_EQ(mode(loop), Mode::kDescent);
+  EXPECT_FALSE(loop.controller.status().has_pose);
+  EXPECT_EQ(odometry(loop).in_force, GetParam() == OdometryUse::kVehicle);
+  ASSERT_TRUE(loop.step_until([&] { return mode(loop) == Mode::kDisarmed; }, 9.0));
+  EXPECT_TRUE(loop.plant.on_ground());
+}
+
 INSTANTIATE_TEST_SUITE_P(Settings, OdometryFaults,
                          testing::Values(OdometryUse::kMocap, OdometryUse::kVehicle, OdometryUse::kBoth),
                          [](const auto& test) {

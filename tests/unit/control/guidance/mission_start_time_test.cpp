@@ -63,6 +63,21 @@ TEST_F(MissionStartTime, StartsFromRestInTheAirOnly) {
   EXPECT_EQ(supervisor_.state().guidance.path.start_ns, start_ns_);
 }
 
+// The reference of a landing sinks on for a minute; the touchdown comes before.
+TEST_F(MissionStartTime, StartsAgainAfterALanding) {
+  mission_.items.back() = {MissionItemKind::kLand, {0, 0, 0}, 0.0, true, 0.4, 0.0};
+  for (int flight = 0; flight < 2; ++flight) {
+    ASSERT_TRUE(ask(RequestKind::kArm).accepted);
+    ASSERT_TRUE(upload(mission_).accepted);
+    const Outcome start = start_in(1.0, 700'000);
+    ASSERT_TRUE(start.accepted) << start.reason;
+    ASSERT_TRUE(step_until([&] { return control_setpoint_.control_mode == ControlMode::kFly; }, 3.0));
+    EXPECT_EQ(supervisor_.state().guidance.path.start_ns, start_ns_ + std::llround(kSpoolUp_s * 1e9));
+    ASSERT_TRUE(step_until(Mode::kDisarmed, 30.0));
+    ASSERT_EQ(supervisor_.mission().state, MissionState::kCompleted);
+  }
+}
+
 TEST_F(MissionStartTime, RefusesThePastAndTheFarFuture) {
   ASSERT_TRUE(ask(RequestKind::kArm).accepted);
   ASSERT_TRUE(upload(mission_).accepted);

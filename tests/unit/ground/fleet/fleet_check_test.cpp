@@ -1,5 +1,6 @@
 #include "swiftlet/ground/fleet/fleet_check.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/ground/fleet/fleet_plot.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -57,6 +59,21 @@ TEST_F(FleetCheckTest, AcceptsTheConfiguredFleet) {
     EXPECT_LT((path.at(path.duration_s()) - check.vehicles[other].path.at(0.0)).norm(), 1e-4);
   }
   EXPECT_NE(check_table(check).find("swap6 can be flown in "), std::string::npos);
+}
+
+TEST_F(FleetCheckTest, IsDrawnWithItsLeastClearance) {
+  const FleetCheck check = check_fleet(load_fleet_file(kFleets + "swap6.yaml"));
+  const plot::Figure figure = fleet_figure(check);
+  ASSERT_EQ(figure.panels.size(), 6U);
+  for (const std::size_t panel : {0, 1, 2, 4, 5}) EXPECT_EQ(figure.panels[panel].series.size(), 6U) << panel;
+  EXPECT_EQ(figure.panels[4].series[2].label, "cf3");
+  double least = 1e9;
+  for (const plot::Point& point : figure.panels[3].series[0].points) least = std::min(least, point.y);
+  EXPECT_NEAR(least, check.pairs.front().closest.clearance, 0.02);
+  const plot::Point end = figure.panels[4].series[0].points.back();
+  const Eigen::Vector3d lands = check.vehicles[0].path.at(1e3);
+  EXPECT_NEAR(end.x, lands.y(), 1e-9) << "east";
+  EXPECT_NEAR(end.y, lands.x(), 1e-9) << "north";
 }
 
 // Two trajectories that cross at different times, but end at one spot.

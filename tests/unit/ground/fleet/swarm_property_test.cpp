@@ -21,6 +21,8 @@ constexpr double kStep_s = 0.02;
 constexpr double kMonitor_s = 0.04;  // period of the monitor
 constexpr double kReaction_s = 0.1;  // from an order until the vehicle obeys
 constexpr double kSpeed = 0.7;       // m/s, peak
+constexpr double kTakenSpeed = 0.3;  // m/s, of one that the pilot flies
+constexpr double kTaken_s = 10.0;    // how long
 const control::Limits kLimits = [] {
   control::Limits limits;
   limits.max_reference_acceleration = 2.0;
@@ -94,7 +96,8 @@ std::optional<Swarm> draw(Random& random) {
   return swarm;
 }
 
-enum class Fault { kNone, kStopped, kLost, kLate };
+// kTaken: a pilot takes the vehicle above another one, lets it hover there, and back.
+enum class Fault { kNone, kStopped, kLost, kLate, kTaken };
 
 // A vehicle that follows its path exactly, with the time scaling of the controller.
 class Kinematic {
@@ -105,13 +108,18 @@ class Kinematic {
   }
 
   void obey(const Order& order, double now_s) {
-    if (order.kind == asked_.kind) return;
+    if (order.kind == asked_.kind && (order.place_ned - asked_.place_ned).norm() < 0.2) return;
     asked_ = order;
     obeys_at_s_ = now_s + kReaction_s;
   }
 
   void step(double now_s, Fault fault, bool failed) {
     if (failed && fault == Fault::kStopped) return;
+    if (fault == Fault::kTaken && taken_to_ && (failed || off_path_)) {
+      off_path_ = failed || !fly_to(path_.at(time_s_), kTakenSpeed);
+      if (failed) fly_to(*taken_to_, kTakenSpeed);
+      return;
+    }
     if (failed && fault == Fault::kLost) {
       if (!lost_since_s_) lost_since_s_ = now_s;
       if (now_s - *lost_since_s_ < 1.0) return advance(now_s);
@@ -120,28 +128,40 @@ class Kinematic {
     }
     if (failed && fault == Fault::kLate) return;
     if (asked_.kind == Order::Kind::kStepAside && now_s >= obeys_at_s_) {
-      off_path_ = true;
-      const Eigen::Vector3d way = asked_.place_ned - place_;
-      place_ += way.normalized() * std::min(way.norm(), 0.8 * kStep_s);
-      return;
+      off_path_ = aside_ = true;
+      fly_to(asked_.place_ned, 0.8);
+    } else if (!off_path_) {
+      advance(now_s);
+    } else if (asked_.kind == Order::Kind::kFly && now_s >= obeys_at_s_) {
+      // Back to where it has left its path, and on from there.
+      off_path_ = !fly_to(path_.at(time_s_), 0.5);
     }
-    if (!off_path_) advance(now_s);
   }
 
   VehicleNews news(double heard_s, double now_s) const {
     VehicleNews news;
     news.reference_ned = news.position_ned = place_;
     news.age_s = now_s - heard_s;
-    news.flies_plan = !off_path_;
     news.rotors_off = time_s_ >= path_.duration_s();
     return news;
   }
 
+  void take_to(const Eigen::Vector3d& place_ned) {
+    if (!taken_to_) taken_to_ = place_ned;
+  }
   const Eigen::Vector3d& place() const { return place_; }
   bool has_ended() const { return time_s_ >= path_.duration_s(); }
   bool slowed() const { return slowed_; }
+  bool was_aside() const { return aside_; }
 
  private:
+  // Returns true when it is there.
+  bool fly_to(const Eigen::Vector3d& to, double speed) {
+    const Eigen::Vector3d way = to - place_;
+    place_ += way.normalized() * std::min(way.norm(), speed * kStep_s);
+    return (to - place_).norm() < 1e-6;
+  }
+
   void advance(double now_s) {
     const bool lands = time_s_ >= path_.pieces().back().start_s;
     const bool runs = lands || asked_.kind == Order::Kind::kFly || now_s < obeys_at_s_;
@@ -160,7 +180,9 @@ class Kinematic {
   double vehicle_s_ = 0.0, time_s_ = 0.0;
   control::TimeScaling clock_;
   std::optional<double> lost_since_s_;
+  std::optional<Eigen::Vector3d> taken_to_;
   bool off_path_ = false;
+  bool aside_ = false;  // it was, once
   bool slowed_ = false;
 };
 
@@ -168,7 +190,27 @@ struct Outcome {
   double safety = 1e9, body = 1e9;  // least clearances
   bool all_landed = true;           // but the failed one
   bool any_slowed = false;
+  int aside = 0, back = 0;  // that stepped aside, and of these that landed at the end of their paths
 };
+
+// Above the nearest other one that flies.
+std::optional<Eigen::Vector3d> place_above_another(const std::vector<Kinematic>& vehicles,
+                                                   std::size_t failing) {
+  std::optional<Eigen::Vector3d> nearest;
+  const Eigen::Vector3d& here = vehicles[failing].place();
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    const Eigen::Vector3d& there = vehicles[i].place();
+    if (i == failing || there.z() > -0.2) continue;
+    if (!nearest || (there - here).norm() < (*nearest - here).norm()) nearest = there;
+  }
+  if (nearest) nearest->z() -= 1.0;
+  return nearest;
+}
+
+double duration_of(Fault fault) {
+  if (fault == Fault::kLate) return 1.0;
+  return fault == Fault::kTaken ? kTaken_s : 1e9;
+}
 
 Outcome fly(const Swarm& swarm, Fault fault, std::size_t failing, double fails_s) {
   std::vector<Kinematic> vehicles;
@@ -182,10 +224,13 @@ Outcome fly(const Swarm& swarm, Fault fault, std::size_t failing, double fails_s
   std::vector<VehicleNews> heard(vehicles.size());
   double heard_s = 0.0;
   Outcome out;
-  const int steps = static_cast<int>((duration_s + 10.0) / kStep_s);
+  const int steps = static_cast<int>((duration_s + (fault == Fault::kTaken ? 60.0 : 10.0)) / kStep_s);
   for (int k = 0; k < steps; ++k) {
     const double now_s = k * kStep_s;
-    const bool failed = now_s >= fails_s && (fault != Fault::kLate || now_s < fails_s + 1.0);
+    const bool failed = now_s >= fails_s && now_s < fails_s + duration_of(fault);
+    if (failed && fault == Fault::kTaken) {
+      if (const auto place = place_above_another(vehicles, failing)) vehicles[failing].take_to(*place);
+    }
     if (k % 2 == 0) {
       for (std::size_t i = 0; i < vehicles.size(); ++i) {
         const bool silent = fault == Fault::kLost && i == failing && failed;
@@ -202,6 +247,10 @@ Outcome fly(const Swarm& swarm, Fault fault, std::size_t failing, double fails_s
       for (std::size_t j = 0; j < i; ++j) {
         const Eigen::Vector3d apart = vehicles[j].place() - vehicles[i].place();
         out.safety = std::min(out.safety, clearance(kSafety, kSafety, apart));
+        // The pilot looks after the vehicle that he flies, and who stands with its rotors off cannot make way.
+        const bool of_failing = i == failing || j == failing;
+        if (of_failing && (fault == Fault::kTaken || vehicles[i].has_ended() || vehicles[j].has_ended()))
+          continue;
         out.body = std::min(out.body, clearance(kBody, kBody, apart));
       }
     }
@@ -209,6 +258,8 @@ Outcome fly(const Swarm& swarm, Fault fault, std::size_t failing, double fails_s
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     out.all_landed = out.all_landed && (i == failing || vehicles[i].has_ended());
     out.any_slowed = out.any_slowed || vehicles[i].slowed();
+    out.aside += vehicles[i].was_aside() ? 1 : 0;
+    out.back += vehicles[i].was_aside() && vehicles[i].has_ended() ? 1 : 0;
   }
   return out;
 }
@@ -216,7 +267,7 @@ Outcome fly(const Swarm& swarm, Fault fault, std::size_t failing, double fails_s
 TEST(RandomSwarms, StayApartAndNeverCollideWhenOneFails) {
   Random random(2026);
   const int swarms = tests::draws(40, 10'000);
-  int flown = 0, drawn = 0, slowed_by_late = 0, landed_despite_late = 0;
+  int flown = 0, drawn = 0, slowed_by_late = 0, landed_despite_late = 0, aside = 0, back = 0;
   while (flown < swarms) {
     ++drawn;
     const std::optional<Swarm> swarm = draw(random);
@@ -228,10 +279,14 @@ TEST(RandomSwarms, StayApartAndNeverCollideWhenOneFails) {
     const auto failing = static_cast<std::size_t>(
         std::uniform_int_distribution<std::size_t>(0, swarm->vehicles.size() - 1)(random));
     const double fails_s = uniform(random, 0.0, swarm->vehicles[failing].path.duration_s());
-    for (const Fault fault : {Fault::kStopped, Fault::kLost, Fault::kLate}) {
+    for (const Fault fault : {Fault::kStopped, Fault::kLost, Fault::kLate, Fault::kTaken}) {
       const Outcome outcome = fly(*swarm, fault, failing, fails_s);
       EXPECT_GE(outcome.body, 1.0) << "swarm " << drawn << ", fault " << static_cast<int>(fault)
                                    << " of vehicle " << failing << " at " << fails_s << " s";
+      if (fault == Fault::kTaken) {
+        aside += outcome.aside;
+        back += outcome.back;
+      }
       if (fault != Fault::kLate) continue;
       slowed_by_late += outcome.any_slowed ? 1 : 0;
       landed_despite_late += outcome.all_landed ? 1 : 0;
@@ -239,9 +294,14 @@ TEST(RandomSwarms, StayApartAndNeverCollideWhenOneFails) {
   }
   EXPECT_EQ(landed_despite_late, flown) << "one that is late holds nobody up for good";
   EXPECT_GT(slowed_by_late, 0) << "the faults must matter";
+  EXPECT_GT(aside, 0);
+  EXPECT_EQ(back, aside) << "who stepped aside flies on to the end";
   RecordProperty("drawn", drawn);
-  std::printf("%d swarms of %d drawn: in %d others slowed down for the one that was late\n", flown, drawn,
-              slowed_by_late);
+  std::printf(
+      "%d swarms of %d drawn: in %d others slowed down for the one that was late; %d vehicles stepped aside, "
+      "of which %d "
+      "flew their paths to the end\n",
+      flown, drawn, slowed_by_late, aside, back);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/ground/flight/flight_inputs.hpp"
 #include "swiftlet/ground/flight/in_process_flight.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -120,6 +121,41 @@ TEST_F(LaunchConfigurationTest, SaysHowMuchSlowerAFileIsWithinTheLimits) {
   EXPECT_NE(reason.find("the limit is 2.00 m/s; slower by 1."), std::string::npos) << reason;
   flight.reading.time_scale = std::stod(reason.substr(reason.find("--time-scale ") + 13));
   EXPECT_EQ(refusal(flight), "it was accepted");
+}
+
+TEST_F(LaunchConfigurationTest, FliesModelsThatAreInNoFile) {
+  FlightInputs given;
+  given.vehicle = plan_flight(options("square")).vehicle;
+  given.vehicle->name = "heavy";
+  given.vehicle->mass_kg *= 1.05;
+  given.mission = plan_flight(options("square")).mission;
+  given.mission->name = "mine";
+  const LaunchConfiguration plan = plan_flight(options("not used"), given);
+  EXPECT_EQ(plan.vehicle.mass_kg, given.vehicle->mass_kg);
+  const FlightReport report = fly(plan);
+  EXPECT_TRUE(report.completed) << report.reason;
+  EXPECT_EQ(report.vehicle + " " + report.mission, "heavy mine");
+}
+
+TEST_F(LaunchConfigurationTest, RefusesAModelThatBreaksARuleOrCannotFlyTheMission) {
+  const auto refusal_of = [&](const FlightInputs& given) -> std::string {
+    try {
+      plan_flight(options("square"), given);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "it was accepted";
+  };
+  FlightInputs given;
+  given.vehicle = plan_flight(options("square")).vehicle;
+  given.vehicle->mass_kg = -1.0;
+  EXPECT_EQ(refusal_of(given), "vehicle: mass: is -1, must be a finite number above 0");
+  given.vehicle = plan_flight(options("square")).vehicle;
+  given.control = plan_flight(options("square")).control;
+  given.mission = plan_flight(options("square")).mission;
+  given.mission->name = "mine";
+  given.control->limits.max_tilt_rad = 0.01;
+  EXPECT_EQ(refusal_of(given).rfind("mine: ", 0), 0U) << refusal_of(given);
 }
 
 }  // namespace

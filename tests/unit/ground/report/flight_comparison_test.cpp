@@ -104,5 +104,12 @@ TEST_F(FlightComparison, RefusesFoldersWithoutAFlight) {
   EXPECT_THROW(load_recorded_flight(folder_.path()), runtime::ConfigError);
 }
 
+TEST_F(FlightComparison, CountsTheVehiclesOfARecord) {
+  for (const char* const vehicle : {"kl10", "kl2", "kl1"}) flight(vehicle, "0.001", "2.0");
+  std::vector<std::string> names;
+  for (const std::filesystem::path& one : flights_of(folder_.path())) names.push_back(one.filename());
+  EXPECT_EQ(names, (std::vector<std::string>{"kl1", "kl2", "kl10"}));
+}
+
 }  // namespace
 }  // namespace swiftlet::ground

@@ -56,6 +56,10 @@ TEST(RosGoal, RefusesWhatIsNoPoseInTheMap) {
   expect_refusal(pose("base_link", {1, 2, 3}, 0.0), "its frame is 'base_link', must be map");
   expect_refusal(pose("map", {1, kInfinite, 3}, 0.0), "its position is not finite");
   expect_refusal(pose("map", {1, 2, 3}, 0.0, 0.5), "its orientation is no unit quaternion");
+  std::string unknown;
+  EXPECT_FALSE(goal_of(pose("map", {1, 2, 0}, 0.0), std::nan(""), unknown));
+  EXPECT_EQ(unknown, "it has no height, and that of the vehicle is not known yet");
+  EXPECT_TRUE(goal_of(pose("map", {1, 2, 3}, 0.0), std::nan(""), unknown)) << unknown;
   Bytes whole = pose("map", {1, 2, 3}, 0.0);
   for (std::size_t size = 0; size < whole.size(); ++size)
     expect_refusal(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)),
@@ -82,6 +86,8 @@ TEST(RosVelocity, RefusesWhatAVehicleCannotFly) {
   EXPECT_EQ(refusal, "it is not finite");
   EXPECT_FALSE(velocity_of(twist({1, 0, 0}, {0.1, 0, 0}), 0.0, refusal));
   EXPECT_EQ(refusal, "its roll or pitch rate is not 0");
+  EXPECT_FALSE(velocity_of(twist({1, 0, 0}, {0, 0, 0}), std::nan(""), refusal));
+  EXPECT_EQ(refusal, "the heading of the vehicle is not known yet");
   EXPECT_FALSE(velocity_of({}, 0.0, refusal));
   EXPECT_EQ(refusal, "it is no geometry_msgs/Twist");
 }

@@ -5,8 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/mcap/merge.hpp"
 #include "swiftlet/io/mcap/reader.hpp"
+#include "swiftlet/io/mcap/topic_decoder.hpp"
 #include "swiftlet/io/mcap/writer.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/io/config_error_check.hpp"
@@ -221,6 +223,28 @@ TEST_F(McapTest, WhatIsNoMcapFileIsRefused) {
               Reader(folder_.write("magic", {kMagic.begin(), kMagic.end()}));
             }),
             path("magic") + ": byte 8: there is no header");
+}
+
+// Two recorders may have given a topic a channel each, but columns of one type are not read as those of another.
+TEST_F(McapTest, ATopicOfTwoTypesIsRefused) {
+  const auto fault_of = [&](const std::string& second) -> std::string {
+    const std::string path = folder_.path() / (second.substr(0, 6) + ".mcap");
+    Writer file(path, {});
+    for (const std::string& definition : {std::string("float64 x\nstring name"), second}) {
+      const std::uint16_t schema = file.add_schema("test_msgs/msg/A", "ros2msg", definition);
+      file.add_channel("/kl1/a", schema, "cdr", {});
+    }
+    file.close();
+    try {
+      TopicDecoder(Reader(path), "/kl1/a");
+    } catch (const runtime::ConfigError& fault) {
+      return fault.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(fault_of("float64 x\nstring name"), "");
+  EXPECT_NE(fault_of("string x\nfloat64 name").find("/kl1/a: was recorded with types that differ"),
+            std::string::npos);
 }
 
 TEST_F(McapTest, FlushingNothingChangesNothing) {

@@ -53,6 +53,49 @@ TEST(Ulog, IsReadUpToItsEnd) {
   EXPECT_EQ(log.read("motion", {"valid"}).rows(), 2U);
 }
 
+// The flags stand first, after the header: 8 bytes to ignore, 8 not to ignore, three offsets of appended data.
+std::string with_appended_at(std::string bytes, std::uint64_t offset) {
+  constexpr std::size_t kFlags = 16 + 3;
+  bytes[kFlags + 8] = 1;
+  bytes.replace(kFlags + 16, 8, UlogWriter::raw(offset));
+  return bytes;
+}
+
+// After a crash PX4 appends its dump to a log whose last message was cut off.
+TEST(Ulog, AppendedDataIsReadBehindAMessageThatWasCutOff) {
+  const UlogWriter whole = written();
+  const std::string cut = whole.bytes().substr(0, whole.bytes().size() - 5);
+  UlogWriter more;
+  const std::size_t begin = more.bytes().size();
+  more.message('I', "dump");
+  std::string fields(37, '\1');
+  more.data(7, 5'000'000, fields);
+  const std::string bytes = with_appended_at(cut + more.bytes().substr(begin), cut.size());
+  const Log log(bytes, "a.ulg");
+  EXPECT_TRUE(log.ends_early()) << "the part before";
+  const Table table = log.read("motion", {"valid"});
+  ASSERT_EQ(table.rows(), 3U);
+  EXPECT_DOUBLE_EQ(table.time_s[1], 1.01);
+  EXPECT_DOUBLE_EQ(table.time_s[2], 5.0);
+  EXPECT_FALSE(
+      Log(with_appended_at(whole.bytes() + more.bytes().substr(begin), whole.bytes().size()), "a.ulg")
+          .ends_early());
+  EXPECT_TRUE(Log(with_appended_at(cut, cut.size() + 100), "a.ulg").ends_early()) << "it was lost itself";
+  EXPECT_THROW(Log(with_appended_at(bytes, 20), "a.ulg"), runtime::ConfigError) << "within the flags";
+}
+
+TEST(Ulog, PaddingHasItsPlaceAndIsNotLoggedAtTheEnd) {
+  UlogWriter file;
+  file.format("inner:uint8_t a;uint8_t[3] _padding0;");
+  file.format("padded:uint64_t timestamp;inner[2] parts;;float x;uint8_t[4] _padding0;");
+  file.subscribe(3, "padded");
+  file.data(3, 1'000'000, std::string("\5\0\0\0\6\0\0\0", 8) + UlogWriter::raw(2.5F));
+  const Table table = Log(file.bytes(), "a.ulg").read("padded", {"parts[1].a", "x"});
+  ASSERT_EQ(table.rows(), 1U);
+  EXPECT_EQ(table.columns[0][0], 6.0);
+  EXPECT_EQ(table.columns[1][0], 2.5);
+}
+
 std::string fault_of(const std::string& bytes, const std::string& topic, const std::string& field) {
   try {
     Log(bytes, "a.ulg").read(topic, {field});
@@ -73,6 +116,17 @@ TEST(Ulog, NamesWhatIsMissing) {
   file.subscribe(9, "loop");
   file.data(9, 1, "");
   EXPECT_EQ(fault_of(file.bytes(), "loop", "x"), "a.ulg: has no format of loop");
+  file.format("short:uint64_t timestamp;float x;");
+  file.subscribe(11, "short");
+  file.data(11, 1, "ab");
+  EXPECT_EQ(fault_of(file.bytes(), "short", "x"),
+            "a.ulg: has no message of topic short that is as long as its format");
+  for (const std::string field : {"float", "float[] x", "float[0] x", "float[2 x", "float[70000] x", " x"}) {
+    UlogWriter odd = written();
+    odd.format("odd:uint64_t timestamp;" + field + ";");
+    EXPECT_EQ(fault_of(odd.bytes(), "motion", "valid"),
+              "a.ulg: has a format that is not understood: odd, field '" + field + "'");
+  }
   std::string flags(40, '\0');
   flags[9] = 1;
   file.message('B', flags);

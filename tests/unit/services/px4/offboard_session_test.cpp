@@ -172,6 +172,22 @@ TEST_F(Px4Session, ThePilotTakesOver) {
   EXPECT_EQ(commands_.size(), sent);
 }
 
+// The pilot chooses another mode while PX4 refuses to arm for a while: it is not armed in that mode.
+TEST_F(Px4Session, IsNotArmedInAModeOfThePilot) {
+  rules_.refuses_to_arm = true;
+  inputs_.rotors_wanted = true;
+  ASSERT_TRUE(until(Phase::kArming));
+  run(0.2);
+  rules_.pilot_selects(kPosition, now_ns_ / 1000);
+  rules_.refuses_to_arm = false;
+  ASSERT_TRUE(until(Phase::kRefused));
+  EXPECT_EQ(session_.fault(), "PX4 must not be armed: it is in mode Position");
+  run(2.0);
+  EXPECT_FALSE(rules_.armed());
+  inputs_.rotors_wanted = false;
+  ASSERT_TRUE(until(Phase::kDisarmed)) << "and can be begun anew";
+}
+
 TEST_F(Px4Session, TheFailsafeIsNamed) {
   fly();
   reaches_px4_ = false;  // nothing arrives there: PX4's failsafe lands

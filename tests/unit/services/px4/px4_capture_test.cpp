@@ -77,6 +77,8 @@ TEST_F(Px4Capture, EveryLayoutIsThatOnTheWire) {
     EXPECT_LT(odometry.velocity_ned.norm(), 3.0);
     EXPECT_LT(odometry.body_rates_frd.norm(), 6.0);
     EXPECT_EQ(odometry.resets % 256, message.reset_counter());
+    EXPECT_LE(message.timestamp_sample(), message.timestamp());
+    EXPECT_LT(message.timestamp() - message.timestamp_sample(), 20'000U) << "us";
   }
   for (const msg::VehicleStatus& message : all_of<msg::VehicleStatusPubSubType>("out/vehicle_status_v1")) {
     ASSERT_FALSE(px4::check(message)) << px4::check(message).text;

@@ -133,6 +133,26 @@ TEST(Px4Translate, ItsEstimateHasWhatItKnows) {
   EXPECT_TRUE(estimate.velocity_valid);
 }
 
+// PX4 has the variances of the orientation about the body's axes; position and velocity have theirs in the frame.
+TEST(Px4Translate, ItsOrientationVarianceIsTurnedIntoTheFrame) {
+  msg::VehicleOdometry message;
+  message.pose_frame(1);
+  message.velocity_frame(1);
+  message.position_variance({0.25F, 1.0F, 4.0F});
+  message.velocity_variance({0.25F, 1.0F, 4.0F});
+  message.orientation_variance({0.01F, 0.04F, 0.09F});
+  const auto half = static_cast<float>(std::sqrt(0.5));
+  message.q({half, 0.0F, 0.0F, half});  // forward is east
+  plant::OdometrySample estimate;
+  ASSERT_FALSE(from_px4(message, estimate));
+  EXPECT_LT((estimate.rotation_deviation - Vector3d(0.2, 0.1, 0.3)).norm(), 1e-6);
+  EXPECT_LT((estimate.position_deviation - Vector3d(0.5, 1.0, 2.0)).norm(), 1e-6);
+  EXPECT_LT((estimate.velocity_deviation - Vector3d(0.5, 1.0, 2.0)).norm(), 1e-6);
+  message.q({half, half, 0.0F, 0.0F});  // on its right side: right is down
+  ASSERT_FALSE(from_px4(message, estimate));
+  EXPECT_LT((estimate.rotation_deviation - Vector3d(0.1, 0.3, 0.2)).norm(), 1e-6);
+}
+
 // A layout that has changed shows as values that cannot be.
 TEST(Px4Translate, NonsenseIsRefusedByName) {
   msg::SensorCombined sensors;
@@ -149,11 +169,13 @@ TEST(Px4Translate, NonsenseIsRefusedByName) {
   msg::VehicleOdometry odometry;
   plant::OdometrySample estimate;
   odometry.q({1.0F, 0.0F, 0.0F, 0.0F});
+  EXPECT_STREQ(from_px4(odometry, estimate).text, "pose_frame is 0, must be between 1 and 1") << "unknown";
+  odometry.pose_frame(1);
   odometry.position({0.0F, 3e7F, 0.0F});
   EXPECT_STREQ(from_px4(odometry, estimate).text, "position is 3e+07, must be between -100000 and 100000");
   odometry.position({0.0F, 0.0F, 0.0F});
   odometry.pose_frame(2);
-  EXPECT_STREQ(from_px4(odometry, estimate).text, "pose_frame is 2, must be at most 1") << "FRD";
+  EXPECT_STREQ(from_px4(odometry, estimate).text, "pose_frame is 2, must be between 1 and 1") << "FRD";
 
   msg::BatteryStatus battery;
   battery.voltage_v(1e12F);

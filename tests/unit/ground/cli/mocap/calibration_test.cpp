@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <functional>
+#include <optional>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -11,8 +13,10 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/ground/cli/mocap/body_statistics.hpp"
+#include "swiftlet/ground/cli/mocap/recorded_motion.hpp"
 #include "swiftlet/io/mocap/room.hpp"
 #include "swiftlet/math/rotation_vector.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 
 namespace swiftlet::ground {
@@ -175,6 +179,30 @@ TEST(BodyStatistics, CountWhatArrivesOfEachBody) {
   EXPECT_NEAR(first.longest_gap_s, 0.06, 1e-9);
   EXPECT_EQ(list.bodies().at(1).frames, 2U);
   EXPECT_EQ(list.bodies().at(1).untracked, 2U);
+}
+
+// A record of several vehicles has a folder for each; that of another one is not taken for this one's.
+TEST(RecordedMotion, IsOfItsOwnVehicle) {
+  const tests::TemporaryFolder folder;
+  for (const std::string name : {"kl1", "kl2"}) {
+    std::filesystem::create_directory(folder.path() / name);
+    folder.write(name + "/report.json", "{\"vehicle_name\": \"" + name + "\"}");
+  }
+  const auto fault_of = [](const std::filesystem::path& record, const std::string& vehicle) -> std::string {
+    try {
+      read_motion(record, vehicle, std::nullopt, std::nullopt);
+    } catch (const std::runtime_error& fault) {
+      return fault.what();
+    }
+    return "";
+  };
+  EXPECT_NE(fault_of(folder.path() / "kl2", "kl1").find("kl2: is a flight of kl2, not of kl1"),
+            std::string::npos);
+  EXPECT_NE(fault_of(folder.path() / "kl2" / "sensors.csv", "kl1").find("is a flight of kl2, not of kl1"),
+            std::string::npos);
+  const std::string missing = fault_of(folder.path(), "kl2");  // it has no sensors.csv
+  EXPECT_NE(missing.find((folder.path() / "kl2").string()), std::string::npos) << missing;
+  EXPECT_EQ(missing.find("is a flight of"), std::string::npos) << missing;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/ground/pages/flight_page.hpp"
+#include "swiftlet/ground/pages/recorded/flight_topics.hpp"
 #include "swiftlet/ground/recording/cdr_writer.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/mcap/writer.hpp"
@@ -50,6 +51,10 @@ class FlightFile {
           "float64[4] attitude_setpoint\n",
           stamp_ns, reference(stamp_ns, height + 0.01));
     }
+  }
+
+  void attach(const std::string& name, const std::string& text) {
+    file_.write(mcap::Attachment{0, 0, name, "application/yaml", text});
   }
 
   void add_mode(const std::string& vehicle, std::int64_t stamp_ns, std::uint8_t mode,
@@ -134,6 +139,65 @@ TEST_F(FlightPage, HoldsEachVehicleAndEscapesTexts) {
   EXPECT_EQ(page.find("</script><b>"), std::string::npos);
   EXPECT_NE(page.find("<td>stopped: &lt;/script&gt;&lt;b&gt;</td>"), std::string::npos);
   EXPECT_EQ(page.find("<script src"), std::string::npos) << "loads another file";
+}
+
+TEST_F(FlightPage, KnowsMotionCaptureFromTheAttachedSettingsOfTheVehicle) {
+  {
+    FlightFile file(path_);
+    for (const char* const vehicle : {"/a", "/b"}) file.add_climb(vehicle, 20);
+    file.attach("control.yaml", "estimator: {mocap_position_m: 0.002, mocap_orientation_rad: 0.01}\n");
+    file.attach("b/control.yaml", "estimator: {mocap_position_m: 0.004, mocap_orientation_rad: 0.02}\n");
+    file.attach("motor_lag.yaml", "estimator: {mocap_position_m: 1}\n");
+  }
+  const mcap::Reader file(path_);
+  EXPECT_EQ(read_flight_topics(file, "a").pose_deviation_m, 0.002);
+  EXPECT_EQ(read_flight_topics(file, "a").pose_deviation_rad, 0.01);
+  EXPECT_EQ(read_flight_topics(file, "b").pose_deviation_m, 0.004);
+}
+
+TEST_F(FlightPage, NamesASignalOfAnotherType) {
+  const auto fault_of = [&](const std::string& definition, ground::CdrWriter payload) -> std::string {
+    {
+      FlightFile file(path_);
+      file.add_climb("/kl1", 20);
+      file.add("/kl1/control_status", definition, kFirstNs, std::move(payload));
+    }
+    try {
+      flights();
+    } catch (const runtime::ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  ground::CdrWriter payload;
+  payload.put(kFirstNs).text("holding").put(2.0);
+  EXPECT_NE(fault_of("int64 stamp_ns\nstring mode\nfloat64 x\n", std::move(payload))
+                .find("/kl1/control_status: mode is a text, must be a number"),
+            std::string::npos);
+  payload = ground::CdrWriter();
+  payload.put(kFirstNs).put(std::uint8_t{2}).put(2.0);
+  EXPECT_NE(fault_of("int64 stamp_ns\nuint8 mode\nfloat64 reason\n", std::move(payload))
+                .find("/kl1/control_status: reason is a number, must be a text"),
+            std::string::npos);
+  payload = ground::CdrWriter();
+  payload.put(kFirstNs).put(std::uint32_t{0});
+  EXPECT_NE(fault_of("int64 stamp_ns\nuint8[] mode\n", std::move(payload))
+                .find("/kl1/control_status: mode is a sequence, must be a number"),
+            std::string::npos);
+  payload = ground::CdrWriter();
+  payload.text("now").put(std::uint8_t{2});
+  EXPECT_NE(fault_of("string stamp_ns\nuint8 mode\n", std::move(payload))
+                .find("/kl1/control_status: stamp_ns is a text, must be an integer"),
+            std::string::npos);
+}
+
+TEST_F(FlightPage, CountsTheVehicles) {
+  {
+    FlightFile file(path_);
+    for (const char* const vehicle : {"/kl10", "/kl2"}) file.add_climb(vehicle, 20);
+  }
+  EXPECT_EQ(flights().at(0).vehicle, "kl2");
+  EXPECT_EQ(flights().at(1).vehicle, "kl10");
 }
 
 TEST_F(FlightPage, SaysWhatIsMissing) {

@@ -1,4 +1,4 @@
-#include "swiftlet/ground/cli/simulation/gains_command.hpp"
+#include "swiftlet/ground/batch/gains_report.hpp"
 
 #include <complex>
 #include <limits>

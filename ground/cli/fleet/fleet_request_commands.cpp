@@ -1,0 +1,291 @@
+// `swiftlet fleet goto`, `land` and `stop`: requests to running vehicles, all that are seen or those that are named.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/ground/cli/fleet/fleet_commands.hpp"
+#include "swiftlet/ground/cli/request_command.hpp"
+#include "swiftlet/ground/client/context.hpp"
+#include "swiftlet/ground/client/vehicle.hpp"
+#include "swiftlet/ground/fleet/formation.hpp"
+#include "swiftlet/services/dds/search_text.hpp"
+#include "swiftlet/services/dds/vehicle_list.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using control::Mode;
+
+struct Options : RequestOptions {
+  std::string names;  // empty: all that are seen
+  double look_s = 1.5;
+  Ellipsoid safety;
+};
+
+struct GotoOptions : Options {
+  double north_m = 0.0;
+  double east_m = 0.0;
+  std::optional<double> z_ned_m;
+  std::optional<double> height_m;  // instead of z
+  double speed = 0.5;
+};
+
+struct LandOptions : Options {
+  double speed = 0.4;
+};
+
+struct StopOptions : Options {
+  bool yes = false;
+};
+
+// A vehicle that is seen, as it was then.
+struct Seen {
+  std::string name;
+  VehicleState state;
+  bool is_wanted = false;
+
+  bool flies() const { return !control::rotors_off(state.mode) && state.mode != Mode::kArmed; }
+};
+
+// Names of the vehicles in the domain, and of the wanted ones that were not seen. Sorted.
+std::vector<std::string> names_in(const Context& context, const Options& options) {
+  std::this_thread::sleep_for(std::chrono::duration<double>(options.look_s));
+  std::vector<std::string> names = context.discovered_vehicles();
+  if (!options.names.empty()) {
+    for (const std::string& name : comms::vehicles_of_list(options.names)) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  if (names.empty())
+    throw std::runtime_error(fmt::format("no vehicle found in domain {} within {:g} s{}",
+                                         options.network.domain, options.look_s,
+                                         comms::search_text(options.network)));
+  return names;
+}
+
+bool is_wanted(const std::string& name, const Options& options) {
+  if (options.names.empty()) return true;
+  const std::vector<std::string> wanted = comms::vehicles_of_list(options.names);
+  return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+}
+
+// Throws std::runtime_error if the place of one is not known: it may be in the way.
+std::vector<Seen> look(const Context& context, const Options& options) {
+  std::vector<std::unique_ptr<Vehicle>> vehicles;
+  for (const std::string& name : names_in(context, options))
+    vehicles.push_back(std::make_unique<Vehicle>(context, name));
+  const auto deadline = std::chrono::steady_clock::now() + options.timeout();
+  std::vector<Seen> seen;
+  for (const std::unique_ptr<Vehicle>& vehicle : vehicles) {
+    const auto is_known = [](const VehicleState& state) {
+      return state.age_s < 1.0 && state.reference_position_ned_m.allFinite() &&
+             state.position_ned_m.allFinite();
+    };
+    const auto rest =
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+    if (!vehicle->wait_until(is_known, std::max(rest, std::chrono::milliseconds(0))))
+      throw std::runtime_error(vehicle->name() + ": mode and position are not known: nothing was sent");
+    seen.push_back({vehicle->name(), vehicle->state(), is_wanted(vehicle->name(), options)});
+  }
+  return seen;
+}
+
+FormationVehicle formation_vehicle(const Seen& vehicle) {
+  const bool flies = vehicle.flies();
+  return {vehicle.name, flies ? vehicle.state.reference_position_ned_m : vehicle.state.position_ned_m, flies,
+          flies && vehicle.is_wanted};
+}
+
+// Throws InputError unless all that fly hold their positions, and all that are named fly.
+void require_holding(const std::vector<Seen>& seen, const Options& options) {
+  for (const Seen& vehicle : seen) {
+    if (vehicle.flies() && vehicle.state.mode != Mode::kHolding)
+      throw InputError(fmt::format("{} is {}; hold it first: nothing was sent", vehicle.name,
+                                   control::to_string(vehicle.state.mode)));
+    if (!options.names.empty() && vehicle.is_wanted && !vehicle.flies())
+      throw InputError(vehicle.name + " does not fly: nothing was sent");
+  }
+}
+
+// The options of the request for these vehicles.
+RequestOptions request_to(const std::vector<std::string>& names, const Options& options) {
+  RequestOptions request = options;
+  request.network.vehicle = fmt::format("{}", fmt::join(names, ","));
+  return request;
+}
+
+int go_to(const GotoOptions& options) {
+  if (options.z_ned_m.has_value() == options.height_m.has_value())
+    throw InputError("goto: needs either z (down: negative is up) or --height (up, above the ground)");
+  std::vector<Seen> seen;
+  {
+    const Context context(options.network);
+    seen = look(context, options);
+  }
+  require_holding(seen, options);
+  std::vector<FormationVehicle> vehicles;
+  std::vector<std::string> members;
+  for (const Seen& vehicle : seen) {
+    vehicles.push_back(formation_vehicle(vehicle));
+    if (vehicles.back().is_member) members.push_back(vehicle.name);
+  }
+  if (members.empty()) throw InputError("no vehicle flies: nothing was sent");
+  const Eigen::Vector3d centre(options.north_m, options.east_m,
+                               options.z_ned_m.value_or(-options.height_m.value_or(0.0)));
+  const std::vector<Eigen::Vector3d> targets = formation_targets(vehicles, centre);
+  std::map<std::string, Eigen::Vector3d> target_of;
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    if (!vehicles[i].is_member) continue;
+    const control::Outcome above = control::check_above_ground(vehicles[i].name.c_str(), targets[i].z());
+    if (!above.accepted) throw InputError(std::string(above.reason) + ": nothing was sent");
+    target_of[vehicles[i].name] = targets[i];
+  }
+  const std::string refusal = formation_refusal(vehicles, targets, options.speed, options.safety);
+  if (!refusal.empty()) throw InputError(refusal + ": nothing was sent");
+  VehicleRequest request{
+      "goto", [&](Vehicle& vehicle) {
+        return vehicle.go_to({target_of.at(vehicle.name()), std::nullopt, options.speed}, options.timeout());
+      }};
+  request.undo = [&](Vehicle& vehicle) { return vehicle.hold(options.timeout()); };
+  request.undo_from = Mode::kHolding;
+  request.undone = "holds";
+  request.not_undone = "does NOT hold";
+  request.cause = "did not accept it";
+  return run_request(request_to(members, options), request);
+}
+
+int land(const LandOptions& options) {
+  std::vector<Seen> seen;
+  {
+    const Context context(options.network);
+    seen = look(context, options);
+  }
+  std::vector<FormationVehicle> vehicles;
+  for (const Seen& vehicle : seen) vehicles.push_back(formation_vehicle(vehicle));
+  const auto obstacles = landing_obstacles(vehicles, options.safety);
+  std::vector<std::string> landing;
+  int kept = 0;
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    if (!vehicles[i].is_member) continue;
+    if (!obstacles[i]) {
+      landing.push_back(vehicles[i].name);
+      continue;
+    }
+    ++kept;
+    std::fprintf(stderr,
+                 "swiftlet: land: %s: was not landed: it would come down on %s; move it aside first\n",
+                 vehicles[i].name.c_str(), vehicles[*obstacles[i]].name.c_str());
+  }
+  if (landing.empty() && kept == 0) throw InputError("no vehicle flies: nothing was sent");
+  if (landing.empty()) return kFailed;
+  const int code =
+      run_request(request_to(landing, options),
+                  {"land", [&](Vehicle& vehicle) { return vehicle.land(options.speed, options.timeout()); }});
+  return kept == 0 ? code : kFailed;
+}
+
+int stop(const StopOptions& options) {
+  std::vector<std::string> names;
+  if (options.names.empty()) {
+    const Context context(options.network);
+    names = names_in(context, options);
+  } else {
+    names = comms::vehicles_of_list(options.names);  // without looking for others: it is urgent
+  }
+  if (!options.yes) {
+    if (isatty(STDIN_FILENO) == 0 || isatty(STDERR_FILENO) == 0)
+      throw InputError("stop: requires --yes without a terminal: vehicles in the air fall");
+    std::fprintf(stderr, "The rotors turn off at once, also in the air: %s fall.\nType stop to do it: ",
+                 fmt::format("{}", fmt::join(names, ",")).c_str());
+    std::string typed;
+    std::getline(std::cin, typed);
+    if (typed != "stop") throw InputError("stop: not confirmed, nothing was sent");
+  }
+  return run_request(request_to(names, options),
+                     {"stop", [&](Vehicle& vehicle) { return vehicle.stop(options.timeout()); },
+                      OnInterrupt::kNothing, true});
+}
+
+// Adds the subcommand with the options that all three have.
+runtime::CommandLine add_subcommand(runtime::CommandLine fleet, const std::string& name,
+                                    const std::string& description, const std::string& example,
+                                    const std::shared_ptr<Options>& options) {
+  const runtime::CommandLine app = add_request_subcommand(fleet, name, description, example, options);
+  app.remove_option("--vehicle-name");
+  app.add_option("--vehicle-name", options->names,
+                 "only these, a list such as kl1,kl2; default: all that are seen")
+      .check([](const std::string& names) { return comms::fault_of_vehicle_list(names); }, "NAMES");
+  app.add_option("--time", options->look_s, "how long to look for vehicles, s")
+      .range(0.2, 60.0)
+      .show_default();
+  return app;
+}
+
+void add_safety_options(runtime::CommandLine app, Ellipsoid& safety) {
+  app.add_option("--radius-xy", safety.radius_xy_m, "half of the distance that two keep across, m")
+      .range(0.01, 10.0)
+      .show_default();
+  app.add_option("--radius-z", safety.radius_z_m, "half of the distance that two keep in height, m")
+      .range(0.01, 10.0)
+      .show_default();
+}
+
+}  // namespace
+
+Command add_fleet_goto_command(runtime::CommandLine fleet) {
+  const auto options = std::make_shared<GotoOptions>();
+  const runtime::CommandLine app = add_subcommand(
+      fleet, "goto",
+      "Move the formation of the vehicles that hover: its centre to a position, all keep their offsets",
+      "swiftlet fleet goto 1 0 -1.5\nRefused, before anything is sent, if two would come too near to each "
+      "other, or to one that "
+      "stays.",
+      options);
+  app.add_option("x", options->north_m, "north, m, of the mean of their positions").required().finite();
+  app.add_option("y", options->east_m, "east, m").required().finite();
+  runtime::Option z = app.add_option("z", options->z_ned_m, "down, m: negative is up").finite();
+  app.add_option("--height", options->height_m, "height above the ground, m, instead of z")
+      .positive()
+      .excludes(z);
+  app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
+  add_safety_options(app, options->safety);
+  return {app, [options] { return go_to(*options); }};
+}
+
+Command add_fleet_land_command(runtime::CommandLine fleet) {
+  const auto options = std::make_shared<LandOptions>();
+  const runtime::CommandLine app =
+      add_subcommand(fleet, "land", "Land all vehicles that fly where they are, but none on another one",
+                     "swiftlet fleet land --speed 0.3", options);
+  app.add_option("--speed", options->speed,
+                 "peak speed, m/s; at most descent_speed_m_s of the control settings")
+      .positive()
+      .show_default();
+  add_safety_options(app, options->safety);
+  return {app, [options] { return land(*options); }};
+}
+
+Command add_fleet_stop_command(runtime::CommandLine fleet) {
+  const auto options = std::make_shared<StopOptions>();
+  options->look_s = 1.0;
+  const runtime::CommandLine app = add_subcommand(
+      fleet, "stop", "Emergency stop: turn the rotors of all vehicles off at once, also in the air",
+      "swiftlet fleet stop --yes", options);
+  app.add_flag("--yes,-y", options->yes, "do not ask for confirmation");
+  return {app, [options] { return stop(*options); }};
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,160 @@
+#include "swiftlet/ground/view/foxglove.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+namespace swiftlet::ground::foxglove {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint8_t kMessageData = 1;
+constexpr std::uint8_t kServiceCallRequest = 2;
+constexpr std::uint8_t kServiceCallResponse = 3;
+constexpr const char* kEncoding = "cdr";
+constexpr const char* kSchemaEncoding = "ros2msg";
+
+template <class Number, class Out>
+void put(Number number, Out out) {
+  for (std::size_t i = 0; i < sizeof(Number); ++i, number >>= 8U) *out++ = static_cast<std::uint8_t>(number);
+}
+
+std::uint32_t number_at(const std::uint8_t* data) {
+  std::uint32_t number = 0;
+  for (std::size_t i = sizeof(number); i-- > 0;) number = number << 8U | data[i];
+  return number;
+}
+
+Json schema_of(const std::string& name, const std::string& definition) {
+  return {{"encoding", kEncoding},
+          {"schemaName", name},
+          {"schemaEncoding", kSchemaEncoding},
+          {"schema", definition}};
+}
+
+// Invalid UTF-8 of a vehicle's sentence becomes a replacement character.
+std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+std::optional<std::uint32_t> id_of(const Json& json) {
+  if (!json.is_number_unsigned()) return std::nullopt;
+  const auto id = json.get<std::uint64_t>();
+  if (id > std::numeric_limits<std::uint32_t>::max()) return std::nullopt;
+  return static_cast<std::uint32_t>(id);
+}
+
+ClientMessage subscribe_of(const Json& json) {
+  Subscribe subscribe;
+  const auto list = json.find("subscriptions");
+  if (list == json.end() || !list->is_array()) return Fault{"subscribe: subscriptions is not a list"};
+  for (const Json& one : *list) {
+    if (!one.is_object()) return Fault{"subscribe: a subscription is not an object"};
+    const auto id = id_of(one.value("id", Json()));
+    const auto channel = id_of(one.value("channelId", Json()));
+    if (!id || !channel)
+      return Fault{"subscribe: id and channelId must be whole numbers from 0 to 4294967295"};
+    subscribe.subscriptions.push_back({*id, *channel});
+  }
+  return subscribe;
+}
+
+ClientMessage unsubscribe_of(const Json& json) {
+  Unsubscribe unsubscribe;
+  const auto list = json.find("subscriptionIds");
+  if (list == json.end() || !list->is_array()) return Fault{"unsubscribe: subscriptionIds is not a list"};
+  for (const Json& one : *list) {
+    const auto id = id_of(one);
+    if (!id) return Fault{"unsubscribe: an id must be a whole number from 0 to 4294967295"};
+    unsubscribe.subscriptions.push_back(*id);
+  }
+  return unsubscribe;
+}
+
+}  // namespace
+
+std::string server_info(const std::string& program, const std::string& session) {
+  return text_of({{"op", "serverInfo"},
+                  {"name", program},
+                  {"capabilities", {"services"}},
+                  {"supportedEncodings", {kEncoding}},
+                  {"metadata", Json::object()},
+                  {"sessionId", session}});
+}
+
+std::string advertise(const std::vector<Channel>& channels) {
+  Json list = Json::array();
+  for (const Channel& channel : channels) {
+    Json entry = {{"id", channel.id}, {"topic", channel.topic}};
+    entry.update(schema_of(channel.schema->name, channel.schema->definition));
+    list.push_back(std::move(entry));
+  }
+  return text_of({{"op", "advertise"}, {"channels", std::move(list)}});
+}
+
+std::string advertise(const std::vector<Service>& services) {
+  Json list = Json::array();
+  for (const Service& service : services) {
+    list.push_back({{"id", service.id},
+                    {"name", service.name},
+                    {"type", service.type},
+                    {"request", schema_of(service.request_type, service.request)},
+                    {"response", schema_of(service.response_type, service.response)},
+                    {"requestSchema", service.request},
+                    {"responseSchema", service.response}});
+  }
+  return text_of({{"op", "advertiseServices"}, {"services", std::move(list)}});
+}
+
+std::string status(Level level, const std::string& message) {
+  return text_of({{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}});
+}
+
+std::string service_failure(std::uint32_t service, std::uint32_t call, const std::string& message) {
+  return text_of(
+      {{"op", "serviceCallFailure"}, {"serviceId", service}, {"callId", call}, {"message", message}});
+}
+
+MessageHead message_head(std::uint32_t subscription, std::int64_t time_ns) {
+  MessageHead head{};
+  head[0] = kMessageData;
+  put(subscription, head.begin() + 1);
+  put(static_cast<std::uint64_t>(time_ns), head.begin() + 1 + sizeof(subscription));
+  return head;
+}
+
+mcap::Bytes service_response(std::uint32_t service, std::uint32_t call, const mcap::Bytes& response) {
+  const std::string_view encoding = kEncoding;
+  mcap::Bytes out = {kServiceCallResponse};
+  put(service, std::back_inserter(out));
+  put(call, std::back_inserter(out));
+  put(static_cast<std::uint32_t>(encoding.size()), std::back_inserter(out));
+  out.insert(out.end(), encoding.begin(), encoding.end());
+  out.insert(out.end(), response.begin(), response.end());
+  return out;
+}
+
+ClientMessage parse_text(std::string_view text) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object()) return Fault{"the message is not a JSON object"};
+  const Json op = json.value("op", Json());
+  if (op == "subscribe") return subscribe_of(json);
+  if (op == "unsubscribe") return unsubscribe_of(json);
+  return Fault{"op " + text_of(op) + " is not served: only subscribe and unsubscribe are"};
+}
+
+ClientMessage parse_binary(const std::uint8_t* data, std::size_t size) {
+  constexpr std::size_t kHead = 1 + 3 * sizeof(std::uint32_t);
+  if (size < kHead || data[0] != kServiceCallRequest) return Fault{"the binary message is no service call"};
+  ServiceCall call;
+  call.service = number_at(data + 1);
+  call.call = number_at(data + 1 + sizeof(std::uint32_t));
+  const std::size_t length = number_at(data + 1 + 2 * sizeof(std::uint32_t));
+  if (length > size - kHead) return Fault{"the encoding of the service call is cut off"};
+  call.encoding.assign(data + kHead, data + kHead + length);
+  call.request.assign(data + kHead + length, data + size);
+  return call;
+}
+
+}  // namespace swiftlet::ground::foxglove

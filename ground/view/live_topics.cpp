@@ -1,0 +1,152 @@
+#include "swiftlet/ground/view/live_topics.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <utility>
+
+#include "swiftlet/services/messages/all_topics.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t kQueueBytes = std::size_t{8} << 20U;
+constexpr std::size_t kLogLines = 50;  // of a vehicle, for viewers that come later
+
+std::int64_t wall_now_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+struct LiveTopics::Vehicle {
+  Vehicle(const comms::Participant& participant, const std::string& name)
+      : node(participant, name), standard(name) {}
+
+  comms::Node node;
+  StandardMessages standard;
+};
+
+// A topic of a vehicle.
+struct LiveTopics::Source {
+  Vehicle* vehicle = nullptr;
+  std::string topic;  // "imu"
+  std::uint32_t channel = 0;
+  std::uint16_t number = 0;
+  std::function<comms::Subscription(Source&)> subscribe;
+  std::atomic<std::uint64_t> dropped{0};
+  std::size_t users = 0;
+  std::optional<comms::Subscription> subscription;  // while it has users
+};
+
+LiveTopics::LiveTopics(const Context& context) : participant_(context.participant()), queue_(kQueueBytes) {}
+
+LiveTopics::~LiveTopics() = default;
+
+std::uint32_t LiveTopics::add_channel(const std::string& topic, const comms::MessageSchema& schema) {
+  const auto [known, is_new] = known_.try_emplace(topic, static_cast<std::uint32_t>(channels_.size()));
+  if (is_new) {
+    channels_.push_back({known->second, topic, &schema});
+    states_.emplace_back();
+  }
+  return known->second;
+}
+
+template <class T>
+void LiveTopics::add_topic(Vehicle& vehicle, const comms::Topic<T>& topic) {
+  sources_.emplace_back();
+  Source& source = sources_.back();
+  source.vehicle = &vehicle;
+  source.topic = topic.name;
+  source.number = static_cast<std::uint16_t>(sources_.size() - 1);
+  source.subscribe = [this, topic](Source& of) {
+    return of.vehicle->node.subscribe_raw<T>(topic, [this, &of](const comms::RawSample& sample) {
+      const std::int64_t now_ns = wall_now_ns();
+      if (!queue_.put({of.number,
+                       static_cast<std::uint32_t>(sample.sequence_number),
+                       now_ns,
+                       now_ns,
+                       {sample.payload, sample.size}}))
+        ++of.dropped;
+    });
+  };
+}
+
+void LiveTopics::add_vehicle(const std::string& name) {
+  Vehicle& vehicle = vehicles_.emplace_back(participant_, name);
+  const std::size_t first = sources_.size();
+  comms::for_each_topic([&](const auto& topic) {
+    using Message = typename std::decay_t<decltype(topic)>::Message;
+    add_topic(vehicle, topic);
+    Source& source = sources_.back();
+    source.channel = add_channel("/" + name + "/" + source.topic, comms::schema_of<Message>());
+    states_[source.channel].sources.push_back(&source);
+    states_[source.channel].is_event = topic.qos == comms::Qos::kRequest || topic.qos == comms::Qos::kReply;
+  });
+  for (const StandardTopic& standard : vehicle.standard.topics()) {
+    const std::uint32_t channel = add_channel(standard.topic, *standard.schema);
+    State& state = states_[channel];
+    for (std::size_t i = first; i < sources_.size(); ++i) {
+      const bool follows = std::find(standard.sources.begin(), standard.sources.end(), sources_[i].topic) !=
+                           standard.sources.end();
+      if (!follows) continue;
+      state.sources.push_back(&sources_[i]);
+      for (std::size_t user = 0; user < state.users; ++user) ++sources_[i].users;
+      if (sources_[i].users > 0 && !sources_[i].subscription)
+        sources_[i].subscription = sources_[i].subscribe(sources_[i]);
+    }
+    if (!standard.is_log) continue;
+    state.is_event = true;
+    state.kept = kLogLines;
+    use(channel);
+  }
+}
+
+std::vector<LiveTopics::Live> LiveTopics::use(std::uint32_t channel) {
+  State& state = states_.at(channel);
+  for (Source* const source : state.sources) {
+    if (!source->subscription) source->subscription = source->subscribe(*source);
+  }
+  for (Source* const source : state.sources) ++source->users;
+  ++state.users;
+  return {state.last.begin(), state.last.end()};
+}
+
+void LiveTopics::release(std::uint32_t channel) {
+  State& state = states_.at(channel);
+  if (--state.users == 0) state.last.clear();
+  for (Source* const source : state.sources) {
+    if (--source->users == 0) source->subscription.reset();
+  }
+}
+
+void LiveTopics::take_all(const std::function<void(std::uint32_t, const Live&)>& take) {
+  queue_.take_all(0ms, [&](const mcap::Message& message) {
+    Source& source = sources_[message.channel_id];
+    const auto hand_on = [&](std::uint32_t channel, mcap::Bytes payload) {
+      State& state = states_[channel];
+      if (state.users == 0) return;
+      state.last.push_back(
+          {message.log_time_ns, std::make_shared<const mcap::Bytes>(std::move(payload)), state.is_event});
+      if (state.last.size() > state.kept) state.last.pop_front();
+      take(channel, state.last.back());
+    };
+    const bool is_used = states_[source.channel].users > 0;
+    if (is_used) hand_on(source.channel, {message.payload.data, message.payload.data + message.payload.size});
+    if (source.users == states_[source.channel].users) return;  // no standard message is in use
+    for (StandardMessage& follows : source.vehicle->standard.of(source.topic, message))
+      hand_on(known_.at(follows.topic), std::move(follows.payload));
+  });
+}
+
+std::uint64_t LiveTopics::dropped() const {
+  std::uint64_t sum = 0;
+  for (const Source& source : sources_) sum += source.dropped;
+  return sum;
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,66 @@
+// The parts of the module swiftlet._core, a function for each, and what they have in common. They convert arguments and
+// results; what they call is in the libraries.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <pybind11/eigen.h>
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "swiftlet/control/types/settings.hpp"
+#include "swiftlet/ground/flight/flight_inputs.hpp"
+#include "swiftlet/io/mcap/message_decoder.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/plant/simulation/settings.hpp"
+
+namespace swiftlet::python {
+
+namespace py = pybind11;
+
+using WithoutGil = py::call_guard<py::gil_scoped_release>;
+template <class T>
+using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
+
+// A model, or the name or file of one.
+using VehicleArgument = std::variant<std::string, plant::Vehicle>;
+using ControlArgument = std::variant<std::string, control::ControlSettings>;
+using SimulationArgument = std::variant<std::string, plant::SimulationSettings>;
+
+plant::Vehicle vehicle_of(const VehicleArgument& argument);
+control::ControlSettings control_of(const ControlArgument& argument);
+plant::SimulationSettings simulation_of(const SimulationArgument& argument);
+
+// Throws InputError of the module.
+[[noreturn]] void refuse(const std::string& sentence);
+// Throws the exception of the module of this name ("RequestError") with the attribute `kind`. Needs the GIL.
+[[noreturn]] void raise(const char* exception, const std::string& reason, const char* kind);
+// Throws KeyboardInterrupt if the user has asked for it. Needs the GIL.
+void check_signals();
+
+inline std::chrono::milliseconds milliseconds(double seconds) {
+  return std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1e3));
+}
+
+// A copy. Shape (size) if columns is 0, else (size / columns, columns).
+template <class T>
+py::array_t<T> array_of(const std::vector<T>& values, std::size_t columns = 0) {
+  if (columns == 0) return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
+  return py::array_t<T>({values.size() / columns, columns}, values.data());
+}
+
+void add_errors(py::module_& module);
+void add_models(py::module_& module);
+void add_gains(py::module_& module);
+void add_simulation(py::module_& module);
+void add_environments(py::module_& module);
+void add_logs(py::module_& module);
+void add_client(py::module_& module);
+
+}  // namespace swiftlet::python

@@ -1,0 +1,99 @@
+#include "swiftlet/simulation/vector_environment.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace swiftlet::ground {
+
+VectorEnvironment::VectorEnvironment(const World& nominal, const HoverTask& task,
+                                     const Dispersion& dispersion, std::size_t count, std::size_t threads)
+    : observation_size_(static_cast<std::size_t>(HoverEnvironment::observation_size(nominal.vehicle))),
+      parts_(std::min(count, threads)) {
+  environments_.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) environments_.emplace_back(nominal, task, dispersion);
+  for (std::size_t part = 1; part < parts_; ++part) threads_.emplace_back([this, part] { work(part); });
+}
+
+VectorEnvironment::~VectorEnvironment() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ends_ = true;
+  }
+  changed_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+}
+
+void VectorEnvironment::reset(const std::uint64_t* seeds) {
+  for_all([&](std::size_t i) { environments_[i].reset(seeds[i]); });
+}
+
+void VectorEnvironment::reset() {
+  for_all([&](std::size_t i) { environments_[i].reset(); });
+}
+
+void VectorEnvironment::step(const Step& step) {
+  for_all([&](std::size_t i) { this->step(i, step); });
+}
+
+void VectorEnvironment::step(std::size_t index, const Step& step) {
+  HoverEnvironment& environment = environments_[index];
+  double* const observation = step.observations + index * observation_size_;
+  double* const last = step.final_observations + index * observation_size_;
+  const auto outcome = environment.step(step.actions + index * bounds().low.size());
+  step.rewards[index] = outcome.reward;
+  step.terminated[index] = outcome.terminated;
+  step.truncated[index] = outcome.truncated;
+  if (outcome.terminated || outcome.truncated) {
+    environment.observe(last);
+    environment.reset();
+  } else {
+    std::fill_n(last, observation_size_, 0.0);
+  }
+  environment.observe(observation);
+}
+
+void VectorEnvironment::observe(double* observations) const {
+  for (std::size_t i = 0; i < environments_.size(); ++i)
+    environments_[i].observe(observations + i * observation_size_);
+}
+
+void VectorEnvironment::for_all(const std::function<void(std::size_t index)>& use) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    use_ = &use;
+    busy_ = parts_ - 1;
+    ++round_;
+  }
+  changed_.notify_all();
+  run_part(0);
+  std::unique_lock<std::mutex> lock(mutex_);
+  changed_.wait(lock, [this] { return busy_ == 0; });
+  if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
+}
+
+// The environments of a part are next to each other.
+void VectorEnvironment::run_part(std::size_t part) {
+  try {
+    const std::size_t count = environments_.size();
+    for (std::size_t i = count * part / parts_; i < count * (part + 1) / parts_; ++i) (*use_)(i);
+  } catch (...) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!error_) error_ = std::current_exception();
+  }
+}
+
+void VectorEnvironment::work(std::size_t part) {
+  std::uint64_t done = 0;
+  std::unique_lock<std::mutex> lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [&] { return ends_ || round_ != done; });
+    if (ends_) return;
+    done = round_;
+    lock.unlock();
+    run_part(part);
+    lock.lock();
+    if (--busy_ == 0) changed_.notify_all();
+  }
+}
+
+}  // namespace swiftlet::ground
