@@ -7,8 +7,7 @@ namespace swiftlet::pages {
 namespace {
 
 constexpr const char* kBody = R"(<h1>Swiftlet live</h1>
-<p id="connection" role="status">connecting</p>
-<p id="slow" class="warning" role="status" hidden></p>
+<p id="state"><span id="connection" role="status">connecting</span> <span id="slow" role="status"></span></p>
 <div class="controls">
 <button type="button" id="hold-all">Hold all</button>
 <button type="button" id="land-all">Land all</button>

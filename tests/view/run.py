@@ -48,7 +48,7 @@ class Vehicles:
         self.log = stack.enter_context((work / "processes.log").open("w", encoding="utf-8"))
         self.stack, self.work = stack, work
         for name in ("plant", "mocap", "control"):
-            self.start(programs / f"swiftlet-{name}", *self.named, *(["--per-row", "4"] if name == "plant" else []))
+            self.start(programs / f"swiftlet-{name}", *self.named, *(["--per-row", "3"] if name == "plant" else []))
         self.server = self.start(self.swiftlet, "view", *self.network, "--port", "0", stdout=subprocess.PIPE)
         self.url = self.server.stdout.readline().strip()
         require(self.url.startswith("http://127.0.0.1:"), f"the URL of the page is '{self.url}'")

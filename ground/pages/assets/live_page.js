@@ -135,13 +135,12 @@ swiftlet.livePage = (() => {
     client = new swiftlet.Foxglove(url(), {
       state: (text, isOpen) => {
         get('connection').textContent = text;
-        get('connection').className = isOpen ? 'quiet' : 'warning';
+        get('state').className = isOpen ? 'quiet' : 'warning';
         document.documentElement.dataset.ready = String(isOpen);
       },
       channel: addChannel,
       status: ({message}) => {
-        get('slow').textContent = message;
-        get('slow').hidden = false;
+        get('slow').textContent = message;  // in a line that is there already: buttons must not move
       },
     });
     addControls();
