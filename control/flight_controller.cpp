@@ -86,12 +86,11 @@ void FlightController::on_pose(const plant::PoseSample& sample) {
 }
 
 void FlightController::on_battery(const plant::BatterySample& sample) {
-  const Allocator::Supply supply = impl_->allocator.supply_at(sample.voltage_v);
-  if (!supply.plausible) return;
+  if (!impl_->allocator.supply_at(sample.voltage_v).plausible) return;
   impl_->has_battery = true;
   impl_->battery_stamp_ns = sample.stamp_ns;
   impl_->supply_voltage_v = sample.voltage_v;
-  impl_->supply = supply;
+  impl_->supply_observer.correct(sample.voltage_v);
 }
 
 void FlightController::on_rotor_speeds(const plant::RotorSpeedSample& sample) {
@@ -119,8 +118,8 @@ Outcome FlightController::on_setpoint(const Setpoint& setpoint) {
 
 FlightState FlightController::state() const {
   const Impl& l = *impl_;
-  return {l.supervisor.state(), l.position.integral(), l.command.rotor_state, l.command.throttle,
-          l.gain_change};
+  return {l.supervisor.state(), l.position.integral(), l.command.rotor_state,
+          l.command.throttle,   l.gain_change,         l.lift.lifted_off() ? l.lift.ratio() : 0.0};
 }
 
 void FlightController::adopt(const FlightState& state, const Mission* mission, const Trajectory* trajectory) {
@@ -131,11 +130,16 @@ void FlightController::adopt(const FlightState& state, const Mission* mission, c
   l.command.throttle = state.throttle;
   l.gain_change = state.gains;
   l.gains_are_constant = false;
+  l.lift.reset();
+  if (state.lift_ratio > 0.0) {
+    l.lift.adopt(state.lift_ratio);
+    l.lift_off_ns = state.supervisor.now_ns;
+  }
 }
 
 bool FlightController::detects_airborne() const {
   const Impl& l = *impl_;
-  const Vector3d lift_frd(0.0, 0.0, -l.rotors.thrust_n() / l.vehicle.mass_kg);
+  const Vector3d lift_frd(0.0, 0.0, -l.lift_now());
   const Vector3d unexplained = l.specific_force_frd - l.estimate().accelerometer_bias - lift_frd;
   return unexplained.norm() < kStandingLift * plant::kGravity;
 }

@@ -10,9 +10,12 @@
 #include "swiftlet/control/attitude/attitude_controller.hpp"
 #include "swiftlet/control/estimation/disturbance_observer.hpp"
 #include "swiftlet/control/estimation/estimate_source.hpp"
+#include "swiftlet/control/estimation/lift_observer.hpp"
+#include "swiftlet/control/estimation/moment_observer.hpp"
 #include "swiftlet/control/estimation/odometry_motion.hpp"
 #include "swiftlet/control/estimation/poses_ahead.hpp"
 #include "swiftlet/control/estimation/rotor_observer.hpp"
+#include "swiftlet/control/estimation/supply_observer.hpp"
 #include "swiftlet/control/estimation/takeoff_consistency.hpp"
 #include "swiftlet/control/flight_controller.hpp"
 #include "swiftlet/control/level_commands.hpp"
@@ -32,6 +35,7 @@ struct FlightController::Impl {
   double store_sample(const plant::ImuSample& sample);
   SupervisorInputs inputs() const;
   void observe(const ControlSetpoint& setpoint, double dt_s);
+  void observe_sliding(double dt_s);
   AttitudeDemand outer_loop(const ControlSetpoint& setpoint, double dt_s);
   Wrench inner_loop(const AttitudeDemand& demand) const;
   void command_vehicle(const ControlSetpoint& setpoint, const AttitudeDemand& demand);
@@ -57,9 +61,23 @@ struct FlightController::Impl {
 
   // The outer loop for each control mode.
   AttitudeDemand follow_reference(bool integrate, double dt_s);
-  AttitudeDemand spool_up(double lift_fraction) const;
+  AttitudeDemand spool_up(double lift_fraction, double dt_s);
   AttitudeDemand descend_level(double speed) const;
   AttitudeDemand follow_direct_setpoint(const ControlSetpoint& setpoint) const;
+
+  // With learnt lift and ground effect: modelled lift (m/s^2) of the rotors now, over that of the vehicle file, and the mass that the
+  // commanded thrust is to carry.
+  double ground_effect_now() const;
+  Eigen::Vector3d expected_disturbance() const;  // m/s^2, NED, to compensate
+  double modelled_lift() const { return ground_effect_now() * rotors.thrust_n() / vehicle.mass_kg; }
+  double lift_now() const { return lift.ratio() * modelled_lift(); }
+  double carried_mass_kg() const { return vehicle.mass_kg / (lift.ratio() * ground_effect_now()); }
+  // The thrust command leads the observed thrust, so that the thrust follows with this lag.
+  double thrust_lead() const {
+    return level == plant::ControlLevel::kActuators ? settings.rough_air.thrust_lead : 0.0;
+  }
+  double thrust_lag_s() const { return rotor_lag_s / (1.0 + thrust_lead()); }
+  bool observes_lift_off() const { return settings.rough_air.learn_lift && controls_position(); }
 
   bool controls_position() const { return level != plant::ControlLevel::kTrajectory; }
 
@@ -73,7 +91,10 @@ struct FlightController::Impl {
   bool brings_odometry = false;  // the vehicle, in place of IMU samples
   PosesAhead poses_ahead;
   RotorObserver rotors;
+  LiftObserver lift;
+  std::int64_t lift_off_ns = 0;  // stamp of the lift-off; 0: not yet
   DisturbanceObserver disturbance;
+  MomentObserver moment;  // of the incremental law
   TakeoffConsistencyMonitor takeoff_monitor;
   PositionController position;
   AttitudeController attitude;
@@ -94,8 +115,9 @@ struct FlightController::Impl {
   Eigen::Vector3d specific_force_frd = Eigen::Vector3d::Zero();
   bool has_battery = false;
   std::int64_t battery_stamp_ns = 0;
-  double supply_voltage_v;
-  Allocator::Supply supply;
+  double supply_voltage_v;  // measured
+  SupplyObserver supply_observer;
+  Allocator::Supply supply;  // now
   VehicleFault vehicle_fault{};
   std::int64_t vehicle_fault_since_ns = 0;  // of the first step with it
   plant::ControlLevel level = plant::ControlLevel::kActuators;

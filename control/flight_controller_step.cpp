@@ -9,6 +9,7 @@
 #include "swiftlet/control/flight_controller_impl.hpp"
 #include "swiftlet/control/position/thrust_attitude_map.hpp"
 #include "swiftlet/math/euler.hpp"
+#include "swiftlet/plant/model/rotor.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -21,6 +22,8 @@ constexpr int kUnusableToFault = 200;  // unusable IMU samples in a row to a fau
 constexpr double kDescentGain = 4.0;   // 1/s, vertical speed error to acceleration, level descent
 constexpr double kBrakeGain = 2.0;     // 1/s, the same for the horizontal speed
 constexpr double kDescentLimit = 2.0;  // m/s^2, of that acceleration
+// Of the lag of the attitude loop, by which the law kLead leads. A longer lead helps little more in gusts, and passes on more noise.
+constexpr double kLeadShare = 2.0 / 3.0;
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
@@ -36,13 +39,15 @@ FlightController::Impl::Impl(const plant::Vehicle& vehicle_in, const ControlSett
       estimate_source(settings_in.estimator.odometry, settings_in.failsafe.mocap_timeout_s),
       poses_ahead(settings_in.estimator.detectors.recovery.longest_wait_s),
       rotors(vehicle_in, settings_in.estimator.rotor_speed_bandwidth),
-      disturbance(settings_in.disturbance),
+      disturbance(settings_in.disturbance, settings_in.rough_air.law == DisturbanceLaw::kIncremental),
+      moment(vehicle_in.inertia),
       takeoff_monitor(settings_in.estimator.detectors.takeoff_consistency),
       position(settings_in.position, settings_in.limits, design_in),
       attitude(vehicle_in, settings_in.attitude, design_in),
       allocator(vehicle_in),
       supervisor({settings_in.limits, settings_in.arming, settings_in.failsafe}),
       supply_voltage_v(allocator.plausible_supply().assumed),
+      supply_observer(vehicle_in, supply_voltage_v),
       supply(allocator.supply_at(supply_voltage_v)) {
   command.rotor_count = vehicle.rotor_count();
   sent = command;
@@ -79,7 +84,7 @@ bool FlightController::Impl::predict(const plant::ImuSample& sample) {
 std::optional<plant::ImuSample> FlightController::Impl::predict(const plant::OdometrySample& sample) {
   const bool finite = sample.q_ned_from_frd.coeffs().allFinite() && sample.body_rates_frd.allFinite();
   if (!finite || sample.stamp_ns <= last_stamp_ns) return std::nullopt;
-  const MeanMotion mean = odometry_motion.step(sample, rotors.thrust_n() / vehicle.mass_kg);
+  const MeanMotion mean = odometry_motion.step(sample, lift_now());
   const plant::ImuSample imu{sample.stamp_ns, sample.sequence, mean.specific_force_frd,
                              sample.body_rates_frd};
   if (!estimator.predict(imu, mean)) return std::nullopt;
@@ -113,7 +118,8 @@ SupervisorInputs FlightController::Impl::inputs() const {
   inputs.supply_voltage_v = supply_voltage_v;
   inputs.battery_age_s = seconds(estimate.stamp_ns - battery_stamp_ns);
   inputs.vertical_specific_force_residual =
-      -(specific_force_frd.z() - estimate.accelerometer_bias.z()) - rotors.thrust_n() / vehicle.mass_kg;
+      -(specific_force_frd.z() - estimate.accelerometer_bias.z()) - lift_now();
+  if (observes_lift_off()) inputs.lift_off_ns = lift.lifted_off() ? lift_off_ns : kNoLiftOffYet;
   inputs.takeoff_inconsistent = takeoff_monitor.contradicted();
   inputs.specific_force_frd = specific_force_frd;
   inputs.rotor_speed = *std::max_element(rotors.speeds().begin(), rotors.speeds().end());
@@ -140,7 +146,9 @@ double FlightController::Impl::store_sample(const plant::ImuSample& sample) {
   last_stamp_ns = sample.stamp_ns;
   specific_force_frd = sample.specific_force_frd;
   if (level == plant::ControlLevel::kActuators) {
-    rotors.step(dt_s, command, supply_voltage_v);
+    supply_observer.step(dt_s, command, rotors.speeds());
+    supply = allocator.supply_at(supply_observer.voltage_v());
+    rotors.step(dt_s, command, supply_observer.voltage_v());
   } else {
     rotors.step(dt_s, thrust_n);
   }
@@ -181,9 +189,16 @@ void FlightController::Impl::observe(const ControlSetpoint& setpoint, double dt_
     case ControlMode::kIdle:
       position.reset();
       disturbance.reset();
+      moment.reset();
+      lift.reset();
       return;
     case ControlMode::kSpoolUp:
       takeoff_monitor.begin(estimate.accelerometer_bias, estimate.position_ned.z());
+      if (!observes_lift_off()) return;
+      lift.step_on_ground(dt_s, specific_force_frd - estimate.accelerometer_bias, estimate.q_ned_from_frd,
+                          modelled_lift());
+      lift_off_ns = last_stamp_ns;
+      observe_sliding(dt_s);
       return;
     case ControlMode::kLevelDescent:
       return;
@@ -192,16 +207,27 @@ void FlightController::Impl::observe(const ControlSetpoint& setpoint, double dt_
     case ControlMode::kBodyRates:
       takeoff_monitor.step(dt_s, specific_force_frd, estimate.q_ned_from_frd, estimate.position_ned.z());
       if (!setpoint.integrate || !controls_position()) return;
+      if (settings.rough_air.learn_lift)
+        lift.step_in_flight(dt_s, specific_force_frd - estimate.accelerometer_bias, modelled_lift());
+      if (settings.rough_air.law == DisturbanceLaw::kIncremental)
+        moment.step(dt_s, gains.disturbance_bandwidth, estimate.body_rates_frd, rotors.moment_frd());
       disturbance.step(dt_s, specific_force_frd - estimate.accelerometer_bias, estimate.q_ned_from_frd,
-                       rotors.thrust_n() / vehicle.mass_kg);
+                       lift_now());
       return;
   }
+}
+
+// On the ground the contact hides the vertical disturbance. The horizontal one shows once the vehicle slides.
+void FlightController::Impl::observe_sliding(double dt_s) {
+  if (modelled_lift() < LiftObserver::kLeastLift) return;
+  const Vector3d force_frd = specific_force_frd - estimate().accelerometer_bias;
+  disturbance.step(dt_s, force_frd, estimate().q_ned_from_frd, -force_frd.z());
 }
 
 AttitudeDemand FlightController::Impl::outer_loop(const ControlSetpoint& setpoint, double dt_s) {
   switch (setpoint.control_mode) {
     case ControlMode::kSpoolUp:
-      return spool_up(setpoint.lift_fraction);
+      return spool_up(setpoint.lift_fraction, dt_s);
     case ControlMode::kLevelDescent:
       return descend_level(setpoint.descent_speed);
     case ControlMode::kAttitude:
@@ -212,29 +238,52 @@ AttitudeDemand FlightController::Impl::outer_loop(const ControlSetpoint& setpoin
   }
 }
 
+double FlightController::Impl::ground_effect_now() const {
+  const RoughAirSettings& of = settings.rough_air;
+  if (!(of.rotor_radius_m > 0.0)) return 1.0;
+  const double above_m = supervisor.state().guidance.ground_z_ned - estimate().position_ned.z();
+  return plant::ground_effect(of.rotor_radius_m, of.rotor_height_m + above_m);
+}
+
+// The disturbance, horizontally nearer to the time at which the tilt that is commanded now will have been reached. Slowly changing angles
+// follow with the lag k_rate / k_angle.
+Vector3d FlightController::Impl::expected_disturbance() const {
+  Vector3d expected = disturbance.acceleration_ned();
+  if (settings.rough_air.law != DisturbanceLaw::kLead) return expected;
+  const double lag_s = gains.attitude_rate.head<2>().sum() / gains.attitude_angle.head<2>().sum();
+  expected.head<2>() += kLeadShare * lag_s * disturbance.rate_ned().head<2>();
+  const double squared = expected.squaredNorm();
+  const double limit = gains.disturbance_limit;
+  if (squared > limit * limit) expected *= limit / std::sqrt(squared);
+  return expected;
+}
+
 // Eq. (48), then the map from its acceleration to thrust and attitude.
 AttitudeDemand FlightController::Impl::follow_reference(bool integrate, double dt_s) {
   const Estimate& estimate = this->estimate();
   const PositionCommand wanted = position.step(estimate.position_ned, estimate.velocity_ned, reference, dt_s,
                                                !integrate || !controls_position());
-  const ThrustAttitude outer = thrust_attitude(
-      vehicle.mass_kg, wanted.acceleration_ned - disturbance.acceleration_ned(), max_tilt_tangent);
+  const ThrustAttitude outer =
+      thrust_attitude(carried_mass_kg(), wanted.acceleration_ned - expected_disturbance(), max_tilt_tangent);
   if (heading.yaw_rad != reference.yaw_rad) heading = reference.yaw_rad;
   AttitudeDemand demand;
   demand.thrust_n = outer.thrust_n;
   demand.attitude.body_z_ned = outer.body_z_ned;
   demand.attitude.heading = heading;
   if (settings.attitude.feed_forward) {
-    const ReferenceMotion on_reference = reference_motion(vehicle.mass_kg, reference, heading);
+    const ReferenceMotion on_reference = reference_motion(carried_mass_kg(), reference, heading);
     demand.attitude.body_rates = on_reference.body_rates;
     demand.attitude.body_accelerations = on_reference.body_accelerations;
-    demand.thrust_n += rotor_lag_s * on_reference.thrust_rate;  // leads the rotor lag
+    demand.thrust_n += thrust_lag_s() * on_reference.thrust_rate;  // leads the rotor lag
   }
   return demand;
 }
 
-AttitudeDemand FlightController::Impl::spool_up(double lift_fraction) const {
+// Level; where lift-off is observed, tilted as in flight as soon as the legs carry little enough.
+AttitudeDemand FlightController::Impl::spool_up(double lift_fraction, double dt_s) {
   AttitudeDemand upright;
+  if (observes_lift_off() && modelled_lift() > LiftObserver::kLeastLift)
+    upright = follow_reference(false, dt_s);
   upright.thrust_n = lift_fraction * vehicle.mass_kg * plant::kGravity;
   upright.attitude.heading = reference.yaw_rad;
   return upright;
@@ -245,7 +294,7 @@ AttitudeDemand FlightController::Impl::descend_level(double speed) const {
   Vector3d acceleration_ned = -kBrakeGain * estimate.velocity_ned;
   acceleration_ned.z() = kDescentGain * (speed - estimate.velocity_ned.z());
   acceleration_ned = acceleration_ned.cwiseMax(-kDescentLimit).cwiseMin(kDescentLimit);
-  const ThrustAttitude outer = thrust_attitude(vehicle.mass_kg, acceleration_ned, max_tilt_tangent);
+  const ThrustAttitude outer = thrust_attitude(carried_mass_kg(), acceleration_ned, max_tilt_tangent);
   AttitudeDemand braking;
   braking.thrust_n = outer.thrust_n;
   braking.attitude.body_z_ned = outer.body_z_ned;
@@ -258,7 +307,7 @@ AttitudeDemand FlightController::Impl::follow_direct_setpoint(const ControlSetpo
   AttitudeDemand demand;
   demand.rates_only = setpoint.control_mode == ControlMode::kBodyRates;
   const Eigen::Quaterniond& q = demand.rates_only ? estimate().q_ned_from_frd : setpoint.q_ned_from_frd;
-  demand.thrust_n = setpoint.specific_thrust * vehicle.mass_kg;
+  demand.thrust_n = setpoint.specific_thrust * carried_mass_kg();
   demand.attitude.body_z_ned = body_z(q);
   demand.attitude.heading = euler_angles(q).heading;
   demand.attitude.body_rates = setpoint.body_rates_frd;
@@ -284,7 +333,10 @@ Wrench FlightController::Impl::inner_loop(const AttitudeDemand& demand) const {
 void FlightController::Impl::command_vehicle(const ControlSetpoint& setpoint, const AttitudeDemand& demand) {
   command.rotor_state = plant::RotorState::kRunning;
   if (level == plant::ControlLevel::kActuators) {
-    allocate(demand, inner_loop(demand));
+    Wrench wrench = inner_loop(demand);
+    wrench.moment_frd -= moment.moment_frd();
+    wrench.thrust_n += thrust_lead() * (wrench.thrust_n - rotors.thrust_n());
+    allocate(demand, wrench);
   } else {
     command_level(setpoint, demand);
   }

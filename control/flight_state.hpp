@@ -15,7 +15,8 @@ struct FlightState {
   Eigen::Vector3d position_integral = Eigen::Vector3d::Zero();  // m/s^2, in NED
   plant::RotorState rotor_state = plant::RotorState::kOff;      // of the last command, as is throttle
   plant::PerRotor throttle{};
-  GainChange gains;  // in force, or changing
+  GainChange gains;         // in force, or changing
+  double lift_ratio = 0.0;  // of LiftObserver; 0: not lifted off
 };
 
 }  // namespace swiftlet::control

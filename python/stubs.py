@@ -31,9 +31,9 @@ def python_type(text, is_argument):
     text = re.sub(r"numpy\.ndarray\[numpy\.(\w+)(?:\[[^\]]*\])?(?:, flags\.\w+)*\]",
                   "ArrayLike" if is_argument else array, text)
     text = text.replace("numpy.ndarray", "NDArray[Any]")
-    text = re.sub(r"\bdict\b", "Dict[str, Any]", text)
-    text = re.sub(r"\btuple\b|\bTuple\b(?!\[)", "Tuple[Any, ...]", text)
-    text = re.sub(r"\blist\b", "List[Any]", text)
+    text = re.sub(r"\bdict\b(?!\[)", "Dict[str, Any]", text)
+    text = re.sub(r"\b[tT]uple\b(?!\[)", "Tuple[Any, ...]", text)
+    text = re.sub(r"\blist\b(?!\[)", "List[Any]", text)
     text = re.sub(r"\bobject\b", "Any", text)
     if is_argument:
         text = re.sub(r"\bArray\b", "ArrayLike", text)

@@ -87,6 +87,7 @@ class HoverEnvironment {
   // body rates (rad/s, FRD), and the speed of each rotor over that of hover.
   void observe(double* observation) const;
 
+  const ActionBounds& bounds() const { return bounds_; }
   const plant::PlantSimulation& plant() const { return flight_->plant; }
 
  private:

@@ -7,8 +7,7 @@ namespace swiftlet::ground {
 
 VectorEnvironment::VectorEnvironment(const World& nominal, const HoverTask& task,
                                      const Dispersion& dispersion, std::size_t count, std::size_t threads)
-    : bounds_(action_bounds(task, nominal.vehicle)),
-      observation_size_(static_cast<std::size_t>(HoverEnvironment::observation_size(nominal.vehicle))),
+    : observation_size_(static_cast<std::size_t>(HoverEnvironment::observation_size(nominal.vehicle))),
       parts_(std::min(count, threads)) {
   environments_.reserve(count);
   for (std::size_t i = 0; i < count; ++i) environments_.emplace_back(nominal, task, dispersion);
@@ -40,7 +39,7 @@ void VectorEnvironment::step(std::size_t index, const Step& step) {
   HoverEnvironment& environment = environments_[index];
   double* const observation = step.observations + index * observation_size_;
   double* const last = step.final_observations + index * observation_size_;
-  const auto outcome = environment.step(step.actions + index * bounds_.low.size());
+  const auto outcome = environment.step(step.actions + index * bounds().low.size());
   step.rewards[index] = outcome.reward;
   step.terminated[index] = outcome.terminated;
   step.truncated[index] = outcome.truncated;

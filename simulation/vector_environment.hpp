@@ -26,7 +26,7 @@ class VectorEnvironment {
 
   std::size_t count() const { return environments_.size(); }
   std::size_t observation_size() const { return observation_size_; }
-  const ActionBounds& bounds() const { return bounds_; }
+  const ActionBounds& bounds() const { return environments_.front().bounds(); }
 
   // Begins the first episode of a seed for each environment. seeds: count() of them.
   void reset(const std::uint64_t* seeds);
@@ -55,7 +55,6 @@ class VectorEnvironment {
   void work(std::size_t part);
 
   std::vector<HoverEnvironment> environments_;
-  ActionBounds bounds_;
   std::size_t observation_size_;
 
   std::mutex mutex_;  // guards all below

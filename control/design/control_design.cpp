@@ -74,6 +74,12 @@ StateSpace attitude_axis_model(AttitudeModel model, double rotor_lag_s) {
   return axis;
 }
 
+// tau y' = gain ((1 + lead) u - lead observed y) - y.
+RotorResponse led(const RotorResponse& rotors, double lead) {
+  const double faster = 1.0 + lead * rotors.gain * rotors.observed;
+  return {rotors.lag_s / faster, rotors.gain * (1.0 + lead) / faster, rotors.observed};
+}
+
 Loop attitude_loop(const Eigen::Vector3d& k, const RotorResponse& moment) {
   const StateSpace axis = attitude_axis_model(AttitudeModel::kMotorLag, moment.lag_s);
   return {axis.a, axis.b * moment.gain, Eigen::RowVector3d(k[0], k[1], k[2] * moment.observed)};
@@ -166,7 +172,8 @@ ControlDesign design(const plant::Vehicle& vehicle, const ControlSettings& setti
   d.z = position_axis("z", settings.position.z);
   analyse(d.x, horizontal_position_loop(d.x.gains, d.pitch.k, {lag}));
   analyse(d.y, horizontal_position_loop(d.y.gains, d.roll.k, {lag}));
-  analyse(d.z, vertical_position_loop(d.z.gains, {lag}));
+  d.thrust_lead = settings.rough_air.thrust_lead;
+  analyse(d.z, vertical_position_loop(d.z.gains, led({lag}, d.thrust_lead)));
   return d;
 }
 

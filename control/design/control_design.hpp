@@ -45,6 +45,7 @@ struct PositionAxisDesign {
 
 struct ControlDesign {
   double rotor_lag_s = 0.0;  // tau_m of Eq. (18)
+  double thrust_lead = 0.0;  // as RoughAirSettings
   AttitudeAxisDesign roll, pitch, yaw;
   PositionAxisDesign x, y, z;  // poles and margins: x over pitch, y over roll (yaw 0), z over the rotors
 };
@@ -63,6 +64,9 @@ struct RotorResponse {
   double gain = 1.0;
   double observed = 1.0;
 };
+
+// The response of rotors whose command u leads what is observed of them: u + lead (u - observed response).
+RotorResponse led(const RotorResponse& rotors, double lead);
 
 // The gains k (2 or 3 entries are used) closed around the axis with rotor lag, cut at the rotor command.
 Loop attitude_loop(const Eigen::Vector3d& k, const RotorResponse& moment);

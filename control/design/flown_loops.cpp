@@ -41,6 +41,26 @@ Rotors behind_delay(const ObservedRotors& of, double delay_s) {
   return rotors;
 }
 
+// The command compensates the part of the response that is not observed, behind the low pass of the disturbance observer: of
+// first order, or of second order in incremental inversion. bandwidth: rad/s; 0: none.
+void compensate(Rotors& rotors, double bandwidth, bool incremental) {
+  if (!(bandwidth > 0.0)) return;
+  const Index estimate = rotors.a.rows();
+  const Index n = estimate + (incremental ? 2 : 1);
+  const Index last = n - 1;
+  const double gain = incremental ? bandwidth * bandwidth : bandwidth;
+  rotors.a.conservativeResizeLike(MatrixXd::Zero(n, n));
+  rotors.b.conservativeResizeLike(VectorXd::Zero(n));
+  rotors.a(last, Rotors::kResponse) = gain;
+  rotors.a(last, Rotors::kObserved) = -gain;
+  rotors.a(last, estimate) = -gain;
+  if (incremental) {
+    rotors.a(estimate, last) = 1.0;
+    rotors.a(last, last) = -std::sqrt(2.0) * bandwidth;
+  }
+  rotors.a.col(estimate) -= rotors.b;
+}
+
 // States: angle, rate, then those of the rotors.
 FlownLoop attitude(const Eigen::Vector3d& k, const Rotors& rotors) {
   const Index n = 2 + rotors.a.rows();
@@ -89,25 +109,17 @@ FlownLoop flown_position_loop(const RptGains& gains, const MatrixXd& inner_a, co
 
 FlownLoop flown_vertical_loop(const RptGains& gains, const ObservedRotors& observed,
                               double disturbance_bandwidth, double delay_s) {
-  const Rotors rotors = behind_delay(observed, delay_s);
-  const bool compensated = disturbance_bandwidth > 0.0;
-  const Index n = rotors.a.rows();
-  MatrixXd a = rotors.a;
-  VectorXd b = rotors.b;
-  if (compensated) {  // one more state, the disturbance, which the command compensates
-    a.conservativeResizeLike(MatrixXd::Zero(n + 1, n + 1));
-    b.conservativeResizeLike(VectorXd::Zero(n + 1));
-    a(n, Rotors::kResponse) = disturbance_bandwidth;
-    a(n, Rotors::kObserved) = -disturbance_bandwidth;
-    a(n, n) = -disturbance_bandwidth;
-    a.col(n) -= b;
-  }
-  return flown_position_loop(gains, a, b, RowVectorXd::Unit(a.rows(), Rotors::kResponse));
+  Rotors rotors = behind_delay(observed, delay_s);
+  rotors.a.col(Rotors::kObserved) -= observed.thrust_lead * rotors.b;
+  rotors.b *= 1.0 + observed.thrust_lead;
+  compensate(rotors, disturbance_bandwidth, observed.incremental);
+  return flown_position_loop(gains, rotors.a, rotors.b,
+                             RowVectorXd::Unit(rotors.a.rows(), Rotors::kResponse));
 }
 
 std::array<FlownLoop, 6> flown_loops(const ControlGains& gains, const ObservedRotors& observed,
                                      double delay_s) {
-  const Rotors rotors = behind_delay(observed, delay_s);
+  Rotors rotors = behind_delay(observed, delay_s);
   const auto attitude_k = [&](Index axis) {
     return Eigen::Vector3d(gains.attitude_angle[axis], gains.attitude_rate[axis],
                            gains.attitude_acceleration[axis]);
@@ -115,6 +127,7 @@ std::array<FlownLoop, 6> flown_loops(const ControlGains& gains, const ObservedRo
   const auto position_k = [&](Index axis) {
     return RptGains{gains.position_p[axis], gains.position_v[axis], gains.position_i[axis]};
   };
+  if (observed.incremental) compensate(rotors, gains.disturbance_bandwidth, true);
   const FlownLoop roll = attitude(attitude_k(0), rotors);
   const FlownLoop pitch = attitude(attitude_k(1), rotors);
   return {roll,
@@ -127,8 +140,12 @@ std::array<FlownLoop, 6> flown_loops(const ControlGains& gains, const ObservedRo
 
 std::array<FlownLoop, 6> flown_loops(const ControlDesign& design, const ControlSettings& settings,
                                      double delay_s) {
-  return flown_loops(control_gains(design, settings),
-                     {design.rotor_lag_s, settings.estimator.rotor_speed_bandwidth}, delay_s);
+  return flown_loops(control_gains(design, settings), observed_rotors(design.rotor_lag_s, settings), delay_s);
+}
+
+ObservedRotors observed_rotors(double rotor_lag_s, const ControlSettings& settings) {
+  return {rotor_lag_s, settings.estimator.rotor_speed_bandwidth, settings.rough_air.thrust_lead,
+          settings.rough_air.law == DisturbanceLaw::kIncremental};
 }
 
 // The reference is one more state, which is constant.

@@ -5,8 +5,11 @@
 //   whose phase is exact to 0.1 degrees for omega T < 2.
 // - The rotor observer runs the motor model on the commands as they are sent, without the delay, and is
 //   corrected by the measured rotor speeds. Its moment is the third state of the attitude law.
+// - The thrust command leads the thrust of the rotor observer, as RoughAirSettings::thrust_lead.
 // - The disturbance observer compares the vertical acceleration with the thrust of the rotor observer. A
-//   delay makes the two differ. On the horizontal axes it has no effect in hover.
+//   delay makes the two differ. On the horizontal axes it has no effect in hover, with or without lead. That of the
+//   incremental law compares the moments likewise.
+// - The lift observer takes the ratio of two signals behind one filter: it closes no loop.
 // - The Kalman filter integrates gyro and accelerometer, and corrects drift by poses at their own stamps. For
 //   sensors without errors its estimate is the true state, whatever its gains: it adds no lag.
 #pragma once
@@ -32,8 +35,13 @@ struct FlownLoop {
 // The rotors with their observer.
 struct ObservedRotors {
   double lag_s = 0.0;
-  double correction = 0.0;  // rad/s, bandwidth of the correction by measured speeds
+  double correction = 0.0;   // rad/s, bandwidth of the correction by measured speeds
+  double thrust_lead = 0.0;  // as RoughAirSettings
+  bool incremental = false;  // DisturbanceLaw::kIncremental
 };
+
+// Of a controller that commands the rotors with these settings.
+ObservedRotors observed_rotors(double rotor_lag_s, const ControlSettings& settings);
 
 constexpr std::array<const char*, 6> kFlownLoopNames = {"roll", "pitch", "yaw", "x", "y", "z"};
 

@@ -124,7 +124,8 @@ std::array<FlownLoop, 6> level_loops(ControlLevel level, const ControlGains& gai
           yaw,
           position_loop_over(position_gains(gains, 0), commanded(pitch)),
           position_loop_over(position_gains(gains, 1), commanded(roll)),
-          flown_vertical_loop(position_gains(gains, 2), rotors, gains.disturbance_bandwidth, delay_s)};
+          flown_vertical_loop(position_gains(gains, 2), {rotors.lag_s, rotors.correction},
+                              gains.disturbance_bandwidth, delay_s)};
 }
 
 }  // namespace swiftlet::control

@@ -57,7 +57,8 @@ LoopSet loops_on(const ControlDesign& design, const plant::Vehicle& designed, co
   const RotorResponse roll = moment(0, thrust_ratio);
   const RotorResponse pitch = moment(1, thrust_ratio);
   const RotorResponse yaw = moment(2, torque_ratio);
-  const RotorResponse lift{lag, hover.thrust_gain * designed.mass_kg / flown.mass_kg};
+  const double mass_ratio = flown.mass_kg / designed.mass_kg;
+  const RotorResponse lift{lag, hover.thrust_gain / mass_ratio, mass_ratio / thrust_ratio};
   const double tilt_gain =
       designed.mass_kg * plant::kGravity / (designed.rotor_count() * hover.commanded_thrust_n);
 
@@ -66,7 +67,7 @@ LoopSet loops_on(const ControlDesign& design, const plant::Vehicle& designed, co
           attitude_loop(design.yaw.k, yaw),
           horizontal_position_loop(design.x.gains, design.pitch.k, pitch, tilt_gain),
           horizontal_position_loop(design.y.gains, design.roll.k, roll, tilt_gain),
-          vertical_position_loop(design.z.gains, lift)};
+          vertical_position_loop(design.z.gains, led(lift, design.thrust_lead))};
 }
 
 PhaseMargins margins_on(const ControlDesign& design, const plant::Vehicle& designed,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "swiftlet/control/estimation/estimator.hpp"
 #include "swiftlet/control/guidance/guidance_state.hpp"
@@ -19,6 +20,9 @@ struct FlownPlan {
   const Trajectory* trajectory = nullptr;  // being flown; null in other modes
 };
 
+// Stamp of a lift-off that is awaited and has not come.
+constexpr std::int64_t kNoLiftOffYet = std::numeric_limits<std::int64_t>::max();
+
 struct GuidanceContext {
   const Limits& limits;  // of the settings, or of the mission while it runs or is paused
   const FailsafeSettings& failsafe;
@@ -27,6 +31,7 @@ struct GuidanceContext {
   Mode mode;  // selects the manoeuvre
   std::int64_t now_ns;
   GuidanceState& state;
+  std::int64_t lift_off_ns = 0;  // of the present take-off; 0: not observed; or kNoLiftOffYet
 };
 
 inline double elapsed_s(std::int64_t from_ns, std::int64_t to_ns) {

@@ -13,11 +13,20 @@ namespace swiftlet::control {
 namespace {
 
 constexpr double kSpoolUp_s = 0.8;
-constexpr double kSpoolUpLift = 0.95;    // of the weight, at the end of the spool-up
-constexpr double kFlareHeight_m = 0.08;  // the planned path of a landing ends here, then the vehicle sinks
-constexpr double kSinkSpeed = 0.15;      // m/s
-constexpr double kSink_s = 60.0;         // longest duration
-constexpr double kBlindDepth_m = 0.1;    // below the ground, by dead reckoning
+constexpr double kSpoolUpLift = 0.95;  // of the weight, at the end of the spool-up
+// Where lift-off is observed, thrust rises fast up to a lift below that of any vehicle, then slowly until lift-off.
+constexpr double kFastLift = 0.75;  // of the weight
+constexpr double kFastLift_s = 0.45;
+constexpr double kLiftRate = 3.0;  // of the weight, per second
+constexpr double kMostLift = 1.5;  // of the weight
+constexpr double kLongestSpoolUp_s = 1.5;
+constexpr double kRiseSpeed = 0.05;       // m/s, from lift-off until it is clear of the ground
+constexpr double kMostRiseSpeed = 0.2;    // m/s
+constexpr double kClearHeight_m = 0.003;  // above the ground
+constexpr double kFlareHeight_m = 0.08;   // the planned path of a landing ends here, then the vehicle sinks
+constexpr double kSinkSpeed = 0.15;       // m/s
+constexpr double kSink_s = 60.0;          // longest duration
+constexpr double kBlindDepth_m = 0.1;     // below the ground, by dead reckoning
 constexpr double kMinMove_s = 0.5;
 constexpr int kJoinAttempts = 16;  // attempts to join a trajectory from motion, each with more time
 constexpr double kJoinStretch = 1.25;
@@ -86,12 +95,48 @@ PolynomialSegment join_inside(const Limits& limits, Reference from, const Eigen:
   }
 }
 
-void climb(const GuidanceContext& context) {
+// A reference that moves up from a place.
+void rise_from(const GuidanceContext& context, const Eigen::Vector3d& place_ned, double speed) {
+  PolynomialSegment up;
+  up.duration_s = kLongestSpoolUp_s;
+  up.x = {place_ned.x()};
+  up.y = {place_ned.y()};
+  up.z = {place_ned.z(), -speed};
+  up.yaw = {context.state.path.at(context.now_ns).yaw_rad};
+  context.state.path.follow(up, context.now_ns);
+}
+
+void climb_from(const GuidanceContext& context, Eigen::Vector3d top, std::int64_t start_ns) {
   GuidanceState& state = context.state;
   state.phase = Phase::kPath;
-  Eigen::Vector3d top = state.path.at(context.now_ns).position_ned;
   top.z() = state.climb_to_z_ned;
-  start_move(context, top, true, 0.0, state.climb_speed, state.phase_since_ns + nanoseconds(kSpoolUp_s));
+  start_move(context, top, true, 0.0, state.climb_speed, start_ns);
+}
+
+// The spool-up ends after its time. Where lift-off is observed, the vehicle then rises until it is clear of the
+// ground, and the climb begins with its own motion above the place where it left the ground: wind may have pushed it while
+// its legs carried little.
+void advance_spool_up(const GuidanceContext& context) {
+  GuidanceState& state = context.state;
+  const double elapsed = elapsed_s(state.phase_since_ns, context.now_ns);
+  const Eigen::Vector3d& place_ned = context.estimate.position_ned;
+  const bool on_time = elapsed >= kSpoolUp_s;
+  if (context.lift_off_ns == 0) {
+    if (on_time)
+      climb_from(context, state.path.at(context.now_ns).position_ned,
+                 state.phase_since_ns + nanoseconds(kSpoolUp_s));
+    return;
+  }
+  const bool lifted_off = context.lift_off_ns <= context.now_ns;
+  if (lifted_off && !state.path.moving)
+    rise_from(context, state.path.at(context.now_ns).position_ned, kRiseSpeed);
+  const bool clear = lifted_off && place_ned.z() < state.ground_z_ned - kClearHeight_m;
+  if (clear && on_time) {
+    rise_from(context, place_ned, std::clamp(-context.estimate.velocity_ned.z(), 0.0, kMostRiseSpeed));
+    return climb_from(context, place_ned, context.now_ns);
+  }
+  if (elapsed >= kLongestSpoolUp_s)
+    climb_from(context, state.path.at(context.now_ns).position_ned, context.now_ns);
 }
 
 // The planned part of a landing is over: sinks until touchdown is detected.
@@ -399,8 +444,7 @@ void advance(const GuidanceContext& context) {
   if (context.estimate.position_ned.z() < state.ground_z_ned - kAirborneHeight_m) state.airborne = true;
   if (context.mode == Mode::kSetpoint && goes_past_position(state.setpoint_kind))
     return follow_estimate(context);
-  if (state.phase == Phase::kSpoolUp && elapsed_s(state.phase_since_ns, context.now_ns) >= kSpoolUp_s)
-    climb(context);
+  if (state.phase == Phase::kSpoolUp && context.now_ns >= state.phase_since_ns) advance_spool_up(context);
   if (state.phase != Phase::kPath) return;
   if (context.mode == Mode::kMission) return advance_mission(context);
   if (context.state.mission_paused() && state.pause == MissionPause::kNone) return advance_item(context);
@@ -443,7 +487,11 @@ double blind_descent_speed(const GuidanceContext& context) {
 }
 
 double spool_up_lift(const GuidanceContext& context) {
-  return kSpoolUpLift * std::min(1.0, elapsed_s(context.state.phase_since_ns, context.now_ns) / kSpoolUp_s);
+  const double elapsed = elapsed_s(context.state.phase_since_ns, context.now_ns);
+  if (context.lift_off_ns == 0) return kSpoolUpLift * std::min(1.0, elapsed / kSpoolUp_s);
+  const double slow_s = elapsed - kFastLift_s;
+  return slow_s < 0.0 ? kFastLift * elapsed / kFastLift_s
+                      : std::min(kFastLift + kLiftRate * slow_s, kMostLift);
 }
 
 }  // namespace swiftlet::control

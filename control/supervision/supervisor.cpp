@@ -84,6 +84,7 @@ ControlSetpoint Supervisor::setpoint(const SupervisorInputs& inputs) {
   const GuidanceContext guidance = context(inputs).guidance();
   ControlSetpoint setpoint;
   setpoint.reference = reference(guidance);
+  const bool lifted_off = inputs.lift_off_ns > 0 && inputs.lift_off_ns != kNoLiftOffYet;
   if (rotors_off(state_.mode)) {
     setpoint.control_mode = ControlMode::kOff;
   } else if (state_.mode == Mode::kArmed) {
@@ -93,7 +94,7 @@ ControlSetpoint Supervisor::setpoint(const SupervisorInputs& inputs) {
     setpoint.descent_speed = blind_descent_speed(guidance);
   } else if (state_.guidance.phase == Phase::kSpoolUp && state_.now_ns < state_.guidance.phase_since_ns) {
     setpoint.control_mode = ControlMode::kIdle;  // until the mission's start time
-  } else if (state_.guidance.phase == Phase::kSpoolUp) {
+  } else if (state_.guidance.phase == Phase::kSpoolUp && !lifted_off) {
     setpoint.control_mode = ControlMode::kSpoolUp;
     setpoint.lift_fraction = spool_up_lift(guidance);
   } else if (state_.mode == Mode::kSetpoint && goes_past_position(state_.guidance.setpoint_kind)) {
@@ -109,7 +110,7 @@ ControlSetpoint Supervisor::setpoint(const SupervisorInputs& inputs) {
     setpoint.integrate = state_.guidance.airborne;
   } else {
     setpoint.control_mode = ControlMode::kFly;
-    setpoint.integrate = state_.guidance.airborne && state_.guidance.phase == Phase::kPath;
+    setpoint.integrate = (state_.guidance.airborne || lifted_off) && state_.guidance.phase != Phase::kSink;
   }
   return setpoint;
 }

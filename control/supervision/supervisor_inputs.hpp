@@ -19,6 +19,8 @@ struct SupervisorInputs {
   bool brings_odometry = false;      // the vehicle, in place of IMU samples
   bool estimate_of_vehicle = false;  // it is flown by its own estimate
   bool pose_jumped = false;  // the estimate was reset to poses that disagreed for long, since the last step
+  // Stamp at which the vehicle lifted off, as the accelerometer shows it; 0: not observed; or kNoLiftOffYet.
+  std::int64_t lift_off_ns = 0;
   bool takeoff_inconsistent =
       false;  // after lift-off the poses do not follow the motion (estimation/takeoff_consistency.hpp)
   bool has_battery = false;  // the supply voltage was measured

@@ -177,6 +177,9 @@ std::vector<plant::Violation> validate(const ControlSettings& settings) {
   check.at_least("position.integral_limit_m_s2", settings.position.integral_limit, 0.0);
   check.at_least("disturbance.bandwidth_rad_s", settings.disturbance.bandwidth, 0.0);
   check.at_least("disturbance.limit_m_s2", settings.disturbance.limit, 0.0);
+  check.between("rough_air.thrust_lead", settings.rough_air.thrust_lead, 0.0, 5.0);
+  check.between("rough_air.rotor_radius_m", settings.rough_air.rotor_radius_m, 0.0, 1.0);
+  check.between("rough_air.rotor_height_m", settings.rough_air.rotor_height_m, 0.0, 1.0);
   check_limits(settings.limits, check);
   check_estimator(settings.estimator, check);
   check_detectors(settings.estimator.detectors, check);

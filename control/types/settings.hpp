@@ -54,6 +54,24 @@ struct DisturbanceSettings {
   double limit = 3.0;       // m/s^2, limit of the estimate's length
 };
 
+// How the estimated disturbance is compensated (docs/rough-air.md).
+enum class DisturbanceLaw {
+  kObserved,     // as the observer estimates it
+  kLead,         // horizontally ahead of it by the lag of the attitude loop
+  kIncremental,  // incremental inversion of force and moment (estimation/moment_observer.hpp)
+};
+
+struct RoughAirSettings {
+  DisturbanceLaw law = DisturbanceLaw::kLead;
+  bool learn_lift = true;  // from lift-off on (estimation/lift_observer.hpp)
+  // Factor on the difference of commanded and observed thrust, which is added to the command: the thrust follows with the
+  // rotors' lag over 1 + thrust_lead. Only where control commands the rotors.
+  double thrust_lead = 1.0;
+  // Ground effect (plant/model/rotor.hpp); radius 0: not modelled.
+  double rotor_radius_m = 0.0;
+  double rotor_height_m = 0.02;  // above the ground, of a standing vehicle
+};
+
 // Limits of flight. A request beyond them is refused, a feedback command beyond them is clipped.
 struct Limits {
   double max_tilt_rad = 0.6;
@@ -220,6 +238,7 @@ struct ControlSettings {
   AttitudeSettings attitude;
   PositionSettings position;
   DisturbanceSettings disturbance;
+  RoughAirSettings rough_air;
   Limits limits;
   EstimatorSettings estimator;
   ArmingSettings arming;

@@ -175,6 +175,7 @@ std::string gains_json(const ControlDesign& design, const MarginStudy& margins,
       {"vehicle", vehicle},
       {"control", control},
       {"rotor_lag_s", design.rotor_lag_s},
+      {"thrust_lead", design.thrust_lead},
       {"attitude",
        {{"roll", json_of(design.roll)}, {"pitch", json_of(design.pitch)}, {"yaw", json_of(design.yaw)}}},
       {"position", {{"x", json_of(design.x)}, {"y", json_of(design.y)}, {"z", json_of(design.z)}}},
@@ -189,8 +190,13 @@ std::string gains_json(const ControlDesign& design, const MarginStudy& margins,
 std::string gains_table(const ControlDesign& design, const MarginStudy& margins,
                         const FlownDelays& flown_delay_s, const std::string& vehicle,
                         const std::string& control) {
-  return fmt::format("{} with {}; all margins and poles (rad/s) include the rotor lag of {:.4g} s\n",
-                     vehicle.c_str(), control.c_str(), design.rotor_lag_s) +
+  const std::string lead =
+      design.thrust_lead > 0.0
+          ? fmt::format(", in z {:.4g} s by the thrust lead of {:g}",
+                        design.rotor_lag_s / (1.0 + design.thrust_lead), design.thrust_lead)
+          : "";
+  return fmt::format("{} with {}; all margins and poles (rad/s) include the rotor lag of {:.4g} s{}\n",
+                     vehicle.c_str(), control.c_str(), design.rotor_lag_s, lead) +
          attitude_heading(design.roll.model) + row("roll", design.roll) + row("pitch", design.pitch) +
          row("yaw", design.yaw) +
          "position: RPT around the closed attitude loop; gains give m/s^2\n"

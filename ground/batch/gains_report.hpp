@@ -14,6 +14,7 @@ using FlownDelays = std::array<double, 6>;  // as control::flown_delay_margins()
 // Returns the design as JSON, indented by two spaces, without a newline at the end:
 //   vehicle, control: names
 //   rotor_lag_s: tau_m of Eq. (18)
+//   thrust_lead: of the control settings; the thrust follows with rotor_lag_s / (1 + thrust_lead)
 //   attitude.{roll,pitch,yaw}
 //     model: "double_integrator", Eq. (38)-(40), or "motor_lag"
 //     q, r, k: diagonal weights and gains on (angle, rate) or (angle, rate, moment / inertia)

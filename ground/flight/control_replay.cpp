@@ -378,10 +378,11 @@ std::string difference_of(const ControlReplay& replay, double tolerance) {
   const TopicDifference& commands = replay.commands;
   if (commands.compared == 0 || commands.signals.empty())
     return "none of the recorded commands has a counterpart";
-  const std::uint64_t missing = commands.messages_a - commands.compared;
-  // At the ends of a recording some have none.
-  if (static_cast<double>(missing) > kMissingShare * static_cast<double>(commands.messages_a))
-    return fmt::format("{} of {} recorded commands have no counterpart", missing, commands.messages_a);
+  // A command is repeated with its IMU sample. At the ends of a recording some have no counterpart.
+  const std::uint64_t expected = std::min<std::uint64_t>(commands.messages_a, replay.imu_samples);
+  if (static_cast<double>(commands.compared) < (1.0 - kMissingShare) * static_cast<double>(expected))
+    return fmt::format("{} of {} recorded commands have no counterpart", expected - commands.compared,
+                       expected);
   if (replay.other_answers > 0)
     return fmt::format("{} requests are answered otherwise", replay.other_answers);
   const auto worst =

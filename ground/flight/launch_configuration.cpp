@@ -269,8 +269,8 @@ LaunchConfiguration plan_flight(const FlyOptions& options, const FlightInputs& g
                                  outcome.reason));
   require_takeoff_and_land(plan.mission, plan.mission_file);
   if (plan.launch_mode != LaunchMode::kAttached) {
-    plan.planned_duration_s = given.mission ? require_flyable_mission(plan)
-                                            : require_flyable(plan, plan.vehicle, options.reading);
+    plan.planned_duration_s =
+        given.mission ? require_flyable_mission(plan) : require_flyable(plan, plan.vehicle, options.reading);
   }
 
   if (plan.launch_mode == LaunchMode::kStarted) {

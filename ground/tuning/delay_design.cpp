@@ -30,7 +30,7 @@ control::LoopsAtDelay loops_of(const plant::Vehicle& vehicle, const control::Con
                                const CommandLevel& commanded) {
   const control::ControlDesign design = control::design(vehicle, settings);
   const control::ControlGains gains = control::control_gains(design, settings);
-  const control::ObservedRotors rotors{design.rotor_lag_s, settings.estimator.rotor_speed_bandwidth};
+  const control::ObservedRotors rotors = control::observed_rotors(design.rotor_lag_s, settings);
   return [gains, rotors, commanded](double delay_s) {
     if (commanded.level == plant::ControlLevel::kActuators)
       return control::flown_loops(gains, rotors, delay_s);

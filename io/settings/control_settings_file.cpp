@@ -58,6 +58,19 @@ control::DisturbanceSettings read_disturbance(const ConfigNode& node) {
   return disturbance;
 }
 
+control::RoughAirSettings read_rough_air(const ConfigNode& node) {
+  control::RoughAirSettings rough_air;
+  rough_air.law = node.at("law").choice<control::DisturbanceLaw>(
+      {{"observed", control::DisturbanceLaw::kObserved},
+       {"lead", control::DisturbanceLaw::kLead},
+       {"incremental", control::DisturbanceLaw::kIncremental}});
+  rough_air.learn_lift = node.at("learn_lift").boolean();
+  rough_air.thrust_lead = node.at("thrust_lead").number();
+  rough_air.rotor_radius_m = node.at("rotor_radius_m").number();
+  rough_air.rotor_height_m = node.at("rotor_height_m").number();
+  return rough_air;
+}
+
 control::Limits read_limits(const ConfigNode& node) {
   control::Limits limits;
   limits.max_tilt_rad = node.at("max_tilt_rad").number();
@@ -201,6 +214,7 @@ control::ControlSettings parse_control_settings(std::string_view text, const std
     settings.attitude = read_attitude(root.at("attitude"));
     settings.position = read_position(root.at("position"));
     settings.disturbance = read_disturbance(root.at("disturbance"));
+    if (const auto air = root.find("rough_air")) settings.rough_air = read_rough_air(*air);
     settings.limits = read_limits(root.at("limits"));
     settings.estimator = read_estimator(root.at("estimator"));
     settings.arming = read_arming(root.at("arming"));

@@ -69,6 +69,11 @@ plant::AirSettings read_air(const ConfigNode& node) {
   air.wind_ned = node.at("wind_ned_m_s").vector3();
   air.gust_sigma_ned = node.at("gust_sigma_ned_m_s").vector3();
   air.gust_time_constant_s = node.at("gust_time_constant_s").number();
+  if (const auto dryden = node.find("dryden")) {
+    air.dryden.height_m = dryden->at("height_m").number(above(0.0));
+    air.dryden.airspeed_m_s = dryden->at("airspeed_m_s").number();
+  }
+  if (const auto drag = node.find("rotor_drag_n_s2_per_m")) air.rotor_drag = drag->number();
   return air;
 }
 
@@ -77,6 +82,7 @@ plant::GroundSettings read_ground(const ConfigNode& node) {
   ground.present = node.at("present").boolean();
   ground.leg_height_m = node.at("leg_height_m").number();
   ground.friction = node.at("friction").number();
+  if (const auto radius = node.find("effect_rotor_radius_m")) ground.effect_rotor_radius_m = radius->number();
   return ground;
 }
 

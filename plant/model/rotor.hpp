@@ -24,6 +24,13 @@ inline double speed_from_thrust(const RotorCoefficients& rotor, double thrust_n)
   return std::sqrt(std::max(thrust_n, 0.0) / rotor.thrust);
 }
 
+// Factor of the thrust in ground effect, 1 / (1 - (r / 4z)^2) at height z above the ground (Cheeseman and Bennett 1955),
+// at most what it is at z = r / 2, the least height of their measurements. radius_m: above 0, of the rotor.
+inline double ground_effect(double radius_m, double height_m) {
+  const double ratio = radius_m / (4.0 * std::max(height_m, 0.5 * radius_m));
+  return 1.0 / (1.0 - ratio * ratio);
+}
+
 // Torque over thrust, m.
 inline double torque_per_thrust(const RotorCoefficients& rotor) { return rotor.torque / rotor.thrust; }
 

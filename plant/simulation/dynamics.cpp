@@ -48,12 +48,13 @@ BatteryParameters ideal_battery(BatteryParameters battery, double voltage_v) {
 
 }  // namespace
 
-Dynamics::Dynamics(const Vehicle& vehicle, const Supply& supply)
+Dynamics::Dynamics(const Vehicle& vehicle, const Supply& supply, const RotorAir& rotor_air)
     : rotor_count_(vehicle.rotor_count()),
       inverse_mass_(1.0 / vehicle.mass_kg),
       inertia_(vehicle.inertia),
       inverse_inertia_(vehicle.inertia.inverse()),
       linear_drag_(vehicle.linear_drag),
+      rotor_air_(rotor_air),
       effectiveness_(effectiveness(vehicle)),
       rotor_(vehicle.rotor),
       esc_(vehicle.esc),
@@ -86,8 +87,16 @@ inline Vector4d Dynamics::rotor_wrench(int rotor, double speed) const {
   return factor * thrust_from_speed(rotor_, speed) * effectiveness_.col(rotor);
 }
 
-inline Vector3d Dynamics::air_force_ned(const Vector3d& velocity_ned, const Vector3d& wind_ned) const {
-  return disturbance_.force_ned - linear_drag_ * (velocity_ned - wind_ned);
+inline double Dynamics::ground_effect_at(double z_ned) const {
+  return rotor_air_.radius_m > 0.0 ? ground_effect(rotor_air_.radius_m, rotor_air_.floor_z_ned - z_ned) : 1.0;
+}
+
+inline Vector3d Dynamics::air_force_ned(const Vector3d& velocity_ned, const Vector3d& wind_ned,
+                                        const Vector3d& body_z_ned, double speed_sum) const {
+  const Vector3d relative = velocity_ned - wind_ned;
+  const Vector3d force = disturbance_.force_ned - linear_drag_ * relative;
+  if (rotor_air_.drag == 0.0) return force;
+  return force - rotor_air_.drag * speed_sum * (relative - relative.dot(body_z_ned) * body_z_ned);
 }
 
 Dynamics::State Dynamics::derivative(const State& x, const MotorCommand& drive, const Vector3d& wind_ned,
@@ -97,6 +106,7 @@ Dynamics::State Dynamics::derivative(const State& x, const MotorCommand& drive, 
   // Battery, ESCs, motors, rotors
   const double v_s = std::max(open_circuit.voltage(x[kCharge]) - x[kSag], 0.0);
   double power_w = 0.0;
+  double speed_sum = 0.0;
   Vector4d wrench = Vector4d::Zero();
   for (int i = 0; i < rotor_count_; ++i) {
     const double omega = x[kRotorSpeeds + i];
@@ -111,7 +121,9 @@ Dynamics::State Dynamics::derivative(const State& x, const MotorCommand& drive, 
     }
     power_w += std::max(v_a * i_a, 0.0);
     wrench += rotor_wrench(i, omega);  // Eq. (25)-(28)
+    speed_sum += omega;
   }
+  if (rotor_air_.radius_m > 0.0) wrench.head<3>() *= ground_effect_at(x[kPosition + 2]);
   const double i_s = supply_current(v_s, power_w);
   dx[kCharge] = state_of_charge_rate(battery_, i_s);
   dx[kSag] = sag_rate(battery_, i_s, x[kSag]);
@@ -120,8 +132,10 @@ Dynamics::State Dynamics::derivative(const State& x, const MotorCommand& drive, 
   const Vector3d v = x.segment<3>(kVelocity);
   const Quaterniond q(x.segment<4>(kAttitude));
   const Vector3d w = x.segment<3>(kBodyRates);
-  const Vector3d f_ned = air_force_ned(v, wind_ned) - wrench[0] * body_z_ned(q);  // R F of Eq. (27), drag
-  const Vector3d m = wrench.tail<3>() + disturbance_.moment_frd;                  // M of Eq. (28)
+  const Vector3d body_z = body_z_ned(q);
+  const Vector3d f_ned =
+      air_force_ned(v, wind_ned, body_z, speed_sum) - wrench[0] * body_z;  // R F of Eq. (27), drag
+  const Vector3d m = wrench.tail<3>() + disturbance_.moment_frd;           // M of Eq. (28)
   const Vector3d g(0.0, 0.0, kGravity);
   dx.segment<3>(kPosition) = v;                                                           // Eq. (1)
   dx.segment<3>(kVelocity) = inverse_mass_ * f_ned + g;                                   // Eq. (5)
@@ -183,10 +197,17 @@ PerRotor Dynamics::settled_currents(const VehicleState& state, const MotorComman
 
 Vector3d Dynamics::specific_force_frd(const VehicleState& state, const Vector3d& wind_ned) const {
   double thrust_n = 0.0;
-  for (int i = 0; i < rotor_count_; ++i)
-    thrust_n += rotor_wrench(i, state.rotor_speeds[static_cast<std::size_t>(i)])[0];
+  double speed_sum = 0.0;
+  for (int i = 0; i < rotor_count_; ++i) {
+    const double omega = state.rotor_speeds[static_cast<std::size_t>(i)];
+    thrust_n += rotor_wrench(i, omega)[0];
+    speed_sum += omega;
+  }
+  thrust_n *= ground_effect_at(state.position_ned.z());
   const Vector3d f = -thrust_n * Vector3d::UnitZ();
-  return inverse_mass_ * (f + state.q_ned_from_frd.conjugate() * air_force_ned(state.velocity_ned, wind_ned));
+  const Vector3d air_ned =
+      air_force_ned(state.velocity_ned, wind_ned, body_z_ned(state.q_ned_from_frd), speed_sum);
+  return inverse_mass_ * (f + state.q_ned_from_frd.conjugate() * air_ned);
 }
 
 Dynamics::State Dynamics::pack(const VehicleState& state) {

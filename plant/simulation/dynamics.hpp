@@ -4,6 +4,7 @@
 //
 //   dp/dt = v                                        Eq. (1)
 //   m dv/dt = R F + m g z - c (v - wind)             Eq. (5), in NED; c is the vehicle's linear drag
+//             - c_r sum(Omega) P (v - wind)          rotor drag: P projects on the plane of the rotors
 //   dq/dt = q (0, w) / 2                             Eq. (2)-(4) without the Euler angles' singularity
 //   J dw/dt = M - w x J w                            Eq. (6)
 //   rotors                                           Eq. (9), (18) or (10)-(16), (25)-(28)
@@ -36,10 +37,18 @@ struct Disturbance {
   PerRotor rotor_factors = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};  // factors of thrust and torque
 };
 
+// Effects of the air on the rotors that the paper leaves out.
+struct RotorAir {
+  double drag =
+      0.0;  // c_r, N s^2/m (Martin and Salaun, "The true role of accelerometer feedback in quadrotor control", 2010)
+  double radius_m = 0.0;     // of the rotors in ground effect (rotor.hpp); 0: none
+  double floor_z_ned = 0.0;  // m
+};
+
 class Dynamics {
  public:
   // Precondition: validate(vehicle) is empty.
-  Dynamics(const Vehicle& vehicle, const Supply& supply);
+  Dynamics(const Vehicle& vehicle, const Supply& supply, const RotorAir& rotor_air = {});
 
   // Sets the disturbance that acts until the next call.
   void disturb(const Disturbance& disturbance) { disturbance_ = disturbance; }
@@ -92,16 +101,20 @@ class Dynamics {
 
   double armature_voltage(double supply_voltage_v, const MotorCommand& drive, int rotor) const;
   double supply_current(double supply_voltage_v, double power_w) const;
-  // Thrust along -z of FRD, N, and roll, pitch and yaw moment, N m, of one rotor.
+  // Thrust along -z of FRD, N, and roll, pitch and yaw moment, N m, of one rotor, free of the ground.
   Eigen::Vector4d rotor_wrench(int rotor, double speed) const;
-  // Drag and disturbance force, N.
-  Eigen::Vector3d air_force_ned(const Eigen::Vector3d& velocity_ned, const Eigen::Vector3d& wind_ned) const;
+  // Factor of thrust, roll and pitch moment near the ground; z_ned: of the vehicle's origin.
+  double ground_effect_at(double z_ned) const;
+  // Drag and disturbance force, N. speed_sum: of all rotors, rad/s.
+  Eigen::Vector3d air_force_ned(const Eigen::Vector3d& velocity_ned, const Eigen::Vector3d& wind_ned,
+                                const Eigen::Vector3d& body_z_ned, double speed_sum) const;
 
   int rotor_count_;
   double inverse_mass_;
   Eigen::Matrix3d inertia_;
   Eigen::Matrix3d inverse_inertia_;
   double linear_drag_;  // N s/m
+  RotorAir rotor_air_;
   Effectiveness effectiveness_;
   RotorCoefficients rotor_;
   Esc esc_;

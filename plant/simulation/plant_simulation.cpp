@@ -13,6 +13,11 @@ Vehicle with_drag(Vehicle vehicle, const SimulationSettings& settings) {
   return vehicle;
 }
 
+RotorAir rotor_air_of(const SimulationSettings& settings) {
+  return {settings.air.rotor_drag, settings.ground.present ? settings.ground.effect_rotor_radius_m : 0.0,
+          settings.ground.leg_height_m};
+}
+
 Supply supply_of(const Vehicle& vehicle, const SupplySettings& settings) {
   return settings.ideal
              ? Supply::constant(open_circuit_voltage(vehicle.battery, settings.initial_state_of_charge))
@@ -27,7 +32,7 @@ double seconds(std::int64_t nanoseconds) {
 
 PlantSimulation::PlantSimulation(const Vehicle& vehicle, const SimulationSettings& settings,
                                  std::uint64_t seed, const VehicleState& initial)
-    : dynamics_(with_drag(vehicle, settings), supply_of(vehicle, settings.supply)),
+    : dynamics_(with_drag(vehicle, settings), supply_of(vehicle, settings.supply), rotor_air_of(settings)),
       ground_(vehicle, settings.ground),
       air_(settings.air, seconds(settings.step_ns), seed),
       imu_(settings.imu, seed),

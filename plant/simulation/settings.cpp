@@ -100,9 +100,13 @@ std::vector<Violation> validate(const SimulationSettings& settings) {
   check_axes("air.wind_ned_m_s", settings.air.wind_ned, -30.0, 30.0, check);
   check_axes("air.gust_sigma_ned_m_s", settings.air.gust_sigma_ned, 0.0, 10.0, check);
   check.between("air.gust_time_constant_s", settings.air.gust_time_constant_s, 0.01, 1000.0);
+  check.between("air.dryden.height_m", settings.air.dryden.height_m, 0.0, 300.0);
+  check.between("air.dryden.airspeed_m_s", settings.air.dryden.airspeed_m_s, 0.1, 50.0);
+  check.between("air.rotor_drag_n_s2_per_m", settings.air.rotor_drag, 0.0, 1.0e-3);
 
   check.between("ground.leg_height_m", settings.ground.leg_height_m, 0.0, 1.0);
   check.between("ground.friction", settings.ground.friction, 0.0, 10.0);
+  check.between("ground.effect_rotor_radius_m", settings.ground.effect_rotor_radius_m, 0.0, 1.0);
 
   check_navigation_sensors(settings, check);
   check_faults(settings.faults, step_s(settings), check);

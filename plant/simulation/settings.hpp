@@ -70,20 +70,33 @@ struct SupplySettings {
   double rate_hz = 10.0;  // of battery samples; 1 s / rate must be a whole number of integration steps
 };
 
+// Gusts by the Dryden model at low altitude (MIL-F-8785C, section 3.7.3.4; MIL-HDBK-1797). Turbulence of the
+// lengths L_w = h vertically and L_u = L_v = h / (0.177 + 0.000823 h)^1.2 along and across the wind, h in feet,
+// passes at the airspeed.
+struct DrydenSettings {
+  double height_m = 0.0;      // h; 0: gusts of the first order with gust_time_constant_s
+  double airspeed_m_s = 1.0;  // > 0
+};
+
 struct AirSettings {
   bool drag = true;                                    // applies the vehicle's linear drag
   Eigen::Vector3d wind_ned = Eigen::Vector3d::Zero();  // m/s, steady
   Eigen::Vector3d gust_sigma_ned =
       Eigen::Vector3d::Zero();        // m/s, gusts: an Ornstein-Uhlenbeck process for each axis
   double gust_time_constant_s = 1.0;  // correlation time of the gusts
+  DrydenSettings dryden;              // in place of these processes
+  // N s^2/m: drag in the plane of the rotors for each rad/s of each of them, times the velocity relative to the
+  // air (blade flapping and induced drag).
+  double rotor_drag = 0.0;
 };
 
 // The floor is level, leg_height_m below z = 0 NED. A vehicle that stands level on it has its
 // origin at z = 0.
 struct GroundSettings {
   bool present = true;
-  double leg_height_m = 0.02;  // from the body origin down to the feet, one under each rotor
-  double friction = 0.6;       // Coulomb coefficient
+  double leg_height_m = 0.02;          // from the body origin down to the feet, one under each rotor
+  double friction = 0.6;               // Coulomb coefficient
+  double effect_rotor_radius_m = 0.0;  // of the rotors in ground effect (dynamics.hpp); 0: none
 };
 
 // The place of the origin of NED on Earth, and its magnetic field, which is uniform. The default is in Zurich:

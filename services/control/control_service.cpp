@@ -49,7 +49,7 @@ ControlService::ControlService(const plant::Vehicle& vehicle, const control::Con
       loop_(vehicle, settings),
       command_server_(loop_, vehicle, settings, GainDesigner(vehicle, settings, std::move(fixed)), wake_),
       telemetry_(loop_, command_server_, settings.failsafe, node, controller_,
-                 {vehicle.motor.time_constant_s, settings.estimator.rotor_speed_bandwidth}),
+                 control::observed_rotors(vehicle.motor.time_constant_s, settings)),
       failover_(controller_, failover_priority),
       reports_(node.publish(topics::kControllerState)),
       commands_(node, failover_.next_term(), vehicle.rotor_count()),

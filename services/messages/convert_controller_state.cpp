@@ -47,6 +47,7 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
       .finite("setpoint_body_rates", in.setpoint_body_rates())
       .finite("setpoint_specific_thrust", in.setpoint_specific_thrust())
       .finite("position_integral_ned", in.position_integral_ned())
+      .at_least("lift_ratio", in.lift_ratio(), 0.0)
       .at_least("gains_duration_s", in.gains_duration_s(), 0.0)
       .at_most("rotor_state", in.rotor_state(), ActuatorCommand_Constants::ROTORS_RUNNING)
       .per_rotor("throttle", in.rotor_count(), in.throttle(), 0.0, 1.0);
@@ -113,6 +114,7 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
                          in.request_progress()[i]};
   }
   out.flight.position_integral = vector(in.position_integral_ned());
+  out.flight.lift_ratio = in.lift_ratio();
   out.flight.gains.from = from_message(in.gains_from());
   out.flight.gains.to = from_message(in.gains_to());
   std::copy_n(in.settings_name().begin(), control::kMaxSettingsName, out.flight.gains.name.begin());
@@ -192,6 +194,7 @@ msg::ControllerState to_message(const ControllerReport& in) {
     out.ground_link_heard_ns()[i] = state.ground_links[i].heard_ns;
   }
   out.position_integral_ned(array(in.flight.position_integral));
+  out.lift_ratio(in.flight.lift_ratio);
   out.gains_from(to_message(in.flight.gains.from));
   out.gains_to(to_message(in.flight.gains.to));
   std::copy(in.flight.gains.name.begin(), in.flight.gains.name.end(), out.settings_name().begin());

@@ -31,6 +31,7 @@
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 #include "swiftlet/simulation/closed_loop.hpp"
+#include "tests/bench/rough_air.hpp"
 
 namespace swiftlet {
 namespace {
@@ -49,6 +50,8 @@ struct Options {
   std::uint64_t seed = 1;
   std::vector<std::string> logs;
   bool json = false;
+  bool rough = false;
+  int flights = 200;
 };
 
 // A path: desired positions, and the trajectory commanded for it.
@@ -490,6 +493,12 @@ void add_options(runtime::CommandLine app, Options& options) {
       .type_name("LOG...");
   app.add_option("--figure-of-eight", options.figure_of_eight, "Crazyswarm trajectory file").show_default();
   app.add_option("--seed", options.seed, "seed of the sensor errors").show_default();
+  const runtime::Option rough =
+      app.add_flag("--rough", options.rough, "fly the square in rough air instead, by several control laws");
+  app.add_option("--flights", options.flights, "with --rough: flights in gusts by each law")
+      .range(1, 10'000)
+      .needs(rough)
+      .show_default();
   app.add_flag("--json", options.json, "print JSON instead of the table");
 }
 
@@ -502,5 +511,8 @@ int main(int argc, char** argv) {
   return runtime::run_process(
       {"tracking_bench", "Tracking errors of five paths, beside those of other projects.", "--json"}, argc,
       argv, [&](runtime::CommandLine app) { add_options(app, options); },
-      [&] { options.logs.empty() ? run(options) : score_logs(options); });
+      [&] {
+        if (options.rough) return bench::fly_rough_air({options.flights, options.json});
+        options.logs.empty() ? run(options) : score_logs(options);
+      });
 }

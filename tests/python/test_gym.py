@@ -106,6 +106,10 @@ class Vector(unittest.TestCase):
             envs.step([[0, 0, 0, 0], [0, np.nan, 0, 0]])
         with self.assertRaisesRegex(swiftlet.InputError, "^action_period_s is 0.0205"):
             HoverVectorEnv(1, action_period_s=0.0205)
+        vehicle = swiftlet.load_vehicle("kaylion")
+        vehicle.battery.open_circuit_voltage_v = []
+        with self.assertRaisesRegex(swiftlet.InputError, "battery"):
+            HoverVectorEnv(1, vehicle=vehicle)
         with self.assertRaisesRegex(swiftlet.InputError, "^level is"):
             HoverVectorEnv(1, level="wings")
         with self.assertRaisesRegex(swiftlet.InputError, "at least 0"):

@@ -57,7 +57,7 @@ class Records(unittest.TestCase):
     def test_reads_flight_csv(self):
         columns = swiftlet.read_flight_csv(self.record)
         truth = self.flight.truth()
-        self.assertLessEqual({"armed", "mission"}, set(columns["mode"]))
+        self.assertLessEqual({"mission", "disarmed"}, set(columns["mode"]))
         self.assertTrue(np.isfinite(columns["x_ned [m]"]).all())
         self.assertAlmostEqual(columns["x_ned [m]"].max(), truth["position_ned"][:, 0].max(), places=4)
         with self.assertRaisesRegex(swiftlet.InputError, "mode"):

@@ -139,11 +139,14 @@ TEST_F(InFlight, ControllerContinuesWithAdoptedState) {
 // The state between two steps is that of the controller that hands it over.
 TEST_F(InFlight, AdoptedStateIsPassedOnUnchanged) {
   FlightState adopted = loop_.controller.state();
+  EXPECT_NEAR(adopted.lift_ratio, 1.0, 0.02) << "learnt";
   adopted.position_integral = {0.3, -0.2, 0.1};
+  adopted.lift_ratio = 0.93;
   FlightController follower(kaylion(), settings("motor_lag"));
   follower.adopt(adopted, nullptr, nullptr);
   const FlightState passed_on = follower.state();
   EXPECT_EQ(passed_on.position_integral, adopted.position_integral);
+  EXPECT_EQ(passed_on.lift_ratio, adopted.lift_ratio);
   EXPECT_EQ(passed_on.rotor_state, plant::RotorState::kRunning);
   EXPECT_EQ(passed_on.throttle, loop_.command.throttle);
   EXPECT_EQ(passed_on.supervisor.mode, Mode::kHolding);

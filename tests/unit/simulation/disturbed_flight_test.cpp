@@ -1,5 +1,7 @@
 // Tracking error of the default controller on the square, in the default world and with disturbances.
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -10,6 +12,7 @@
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/simulation/simulated_flight.hpp"
+#include "tests/support/campaign.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -31,6 +34,8 @@ control::Mission square(const std::string& speed, const control::Limits& limits)
 }
 
 struct Flight {
+  double takeoff_peak_m = 0.0;
+  double peak_m = 0.0;
   double rms_m = 0.0;             // from take-off to the start of the landing
   double lowest_voltage_v = 1e9;  // of the battery, over the whole flight
 };
@@ -54,7 +59,10 @@ struct FlightSetup {
       flight.lowest_voltage_v = std::min(flight.lowest_voltage_v, loop.plant.truth().supply_voltage_v);
       const bool landing = status.mission.item_index + 1 == status.mission.item_count;
       if (status.mission.state != control::MissionState::kRunning || landing) return false;
-      sum += loop.tracking_error().squaredNorm();
+      const double error_m = loop.tracking_error().norm();
+      flight.peak_m = std::max(flight.peak_m, error_m);
+      if (status.mission.item_index == 0) flight.takeoff_peak_m = flight.peak_m;
+      sum += error_m * error_m;
       ++count;
       return false;
     };
@@ -92,6 +100,47 @@ TEST(DisturbedFlight, TracksTheSquareHeavyInWindOnADrainingBattery) {
   }
   setup.control.disturbance.bandwidth = 0.0;
   EXPECT_GT(setup.fly("0.5", 1).rms_m, 1.5 * 20e-3) << "without the disturbance observer";
+}
+
+// GIVEN a mass that the controller does not know WHEN the vehicle takes off THEN it learns the lift as it leaves the ground.
+TEST(DisturbedFlight, LearnsTheMassAtTakeOff) {
+  for (const double factor : {0.9, 1.0, 1.1, 1.2}) {
+    FlightSetup setup;
+    setup.flown.mass_kg *= factor;
+    const Flight flight = setup.fly("0.5", 1);
+    EXPECT_LT(flight.takeoff_peak_m, 6e-3) << factor;
+    EXPECT_LT(flight.rms_m, 1.05e-3) << factor;
+    setup.control.rough_air.learn_lift = false;
+    if (factor == 1.0) continue;
+    EXPECT_GT(setup.fly("0.5", 1).takeoff_peak_m, 40e-3) << factor << " without learning";
+  }
+}
+
+// GIVEN 10 % more mass and Dryden gusts of 0.5 m/s in a wind of 2.2 m/s THEN the error stays within 8 mm RMS, 30 mm peak.
+TEST(DisturbedFlight, TracksTheSquareHeavyInDrydenGusts) {
+  const int flights = tests::draws(4, 200);
+  for (int seed = 1; seed <= flights; ++seed) {
+    FlightSetup setup;
+    setup.flown.mass_kg *= 1.1;
+    setup.flown.linear_drag = 0.01;
+    setup.world.air.wind_ned = {2.2 * std::cos(seed), 2.2 * std::sin(seed), 0.0};
+    setup.world.air.gust_sigma_ned = {0.5, 0.5, 0.5};
+    setup.world.air.dryden = {1.0, 2.2};
+    const Flight flight = setup.fly("0.5", static_cast<std::uint64_t>(seed));
+    EXPECT_LT(flight.rms_m, 8e-3) << seed;
+    EXPECT_LT(flight.peak_m, 30e-3) << seed;
+  }
+}
+
+// GIVEN rotors in ground effect THEN modelling it takes most of its error away.
+TEST(DisturbedFlight, KnowsTheGroundEffect) {
+  FlightSetup setup;
+  setup.world.ground.effect_rotor_radius_m = 0.03;
+  const double unknown_m = setup.fly("0.5", 1).takeoff_peak_m;
+  setup.control.rough_air.rotor_radius_m = 0.03;
+  const double known_m = setup.fly("0.5", 1).takeoff_peak_m;
+  EXPECT_LT(unknown_m, 10e-3);
+  EXPECT_LT(known_m, unknown_m);
 }
 
 }  // namespace

@@ -156,6 +156,12 @@ TEST(HoverEnvironment, RefusesATaskThatBreaksARule) {
     EXPECT_THROW(HoverEnvironment(nominal(), task, {}), std::invalid_argument);
 }
 
+TEST(HoverEnvironment, RefusesAVehicleThatBreaksARule) {
+  World broken = nominal();
+  broken.vehicle.battery.open_circuit_voltage_v.clear();
+  EXPECT_THROW(VectorEnvironment(broken, {}, {}, 1, 1), std::invalid_argument);
+}
+
 TEST(HoverEnvironment, DrawsAnotherVehicleForEachEpisode) {
   const Dispersion dispersion =
       load_dispersion_file(SWIFTLET_SOURCE_DIR "/config/dispersion/kaylion.yaml", nominal());

@@ -120,5 +120,26 @@ TEST(FlownLoops, OfTheHeightIncludeTheDisturbanceObserver) {
   EXPECT_GT(std::abs(margin(20.0, 0.02) - margin(0.0, 0.02)), 0.1);
 }
 
+// Without a delay the observer is right, and the lead divides the lag of the thrust.
+TEST(FlownLoops, OfTheHeightHaveTheLagThatTheThrustLeadLeaves) {
+  ControlSettings of = settings("motor_lag");
+  of.rough_air.thrust_lead = 1.5;
+  const ControlDesign made = design(kaylion(), of);
+  EXPECT_NEAR(phase_margin_deg(flown_loops(made, of, 0.0)[5].loop),
+              phase_margin_deg(vertical_position_loop(made.z.gains, {kaylion().motor.time_constant_s / 2.5})),
+              1e-6);
+}
+
+// Likewise the moment observer of the incremental law.
+TEST(FlownLoops, OfTheAttitudeIncludeTheMomentObserverOfTheIncrementalLaw) {
+  ControlSettings of = settings("motor_lag");
+  const auto margin = [&](DisturbanceLaw law, double delay_s) {
+    of.rough_air.law = law;
+    return phase_margin_deg(flown_loops(design(kaylion(), of), of, delay_s)[0].loop);
+  };
+  EXPECT_NEAR(margin(DisturbanceLaw::kIncremental, 0.0), margin(DisturbanceLaw::kLead, 0.0), 1e-6);
+  EXPECT_GT(std::abs(margin(DisturbanceLaw::kIncremental, 0.02) - margin(DisturbanceLaw::kLead, 0.02)), 0.1);
+}
+
 }  // namespace
 }  // namespace swiftlet::control

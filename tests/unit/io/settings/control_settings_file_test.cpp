@@ -41,6 +41,12 @@ TEST(ControlSettingsFile, ReadsEveryKeyIntoItsMember) {
       "disturbance:\n"
       "  bandwidth_rad_s: 47\n"
       "  limit_m_s2: 48\n"
+      "rough_air:\n"
+      "  law: observed\n"
+      "  learn_lift: false\n"
+      "  thrust_lead: 2.5\n"
+      "  rotor_radius_m: 0.041\n"
+      "  rotor_height_m: 0.042\n"
       "limits:\n"
       "  max_tilt_rad: 0.26\n"
       "  max_acceleration_m_s2: 27\n"
@@ -128,6 +134,11 @@ TEST(ControlSettingsFile, ReadsEveryKeyIntoItsMember) {
   EXPECT_EQ(s.position.integral_limit, 25);
   EXPECT_EQ(s.disturbance.bandwidth, 47);
   EXPECT_EQ(s.disturbance.limit, 48);
+  EXPECT_EQ(s.rough_air.law, control::DisturbanceLaw::kObserved);
+  EXPECT_FALSE(s.rough_air.learn_lift);
+  EXPECT_EQ(s.rough_air.thrust_lead, 2.5);
+  EXPECT_EQ(s.rough_air.rotor_radius_m, 0.041);
+  EXPECT_EQ(s.rough_air.rotor_height_m, 0.042);
   EXPECT_EQ(s.limits.max_tilt_rad, 0.26);
   EXPECT_EQ(s.limits.max_acceleration, 27);
   EXPECT_EQ(s.limits.max_speed, 28);

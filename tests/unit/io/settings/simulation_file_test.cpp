@@ -112,6 +112,27 @@ TEST(SimulationFile, IdealHasNoErrors) {
   EXPECT_TRUE(s.air.gust_sigma_ned.isZero(0.0));
 }
 
+TEST(SimulationFile, RoughAirIsOptional) {
+  std::string text = file("default");
+  const SimulationSettings without = parse_simulation_settings(text, "s.yaml");
+  EXPECT_EQ(without.air.dryden.height_m, 0.0);
+  EXPECT_EQ(without.air.rotor_drag, 0.0);
+  EXPECT_EQ(without.ground.effect_rotor_radius_m, 0.0);
+  const std::string air = "  gust_time_constant_s: 1\n";
+  text.replace(text.find(air), air.size(),
+               air + "  dryden: {height_m: 1.5, airspeed_m_s: 2.2}\n  rotor_drag_n_s2_per_m: 9.18e-7\n");
+  const std::string ground = "  friction: 0.6\n";
+  text.replace(text.find(ground), ground.size(), ground + "  effect_rotor_radius_m: 0.03\n");
+  const SimulationSettings with = parse_simulation_settings(text, "s.yaml");
+  EXPECT_EQ(with.air.dryden.height_m, 1.5);
+  EXPECT_EQ(with.air.dryden.airspeed_m_s, 2.2);
+  EXPECT_EQ(with.air.rotor_drag, 9.18e-7);
+  EXPECT_EQ(with.ground.effect_rotor_radius_m, 0.03);
+  text.replace(text.find("airspeed_m_s: 2.2"), 17, "airspeed_m_s: 0.0");
+  EXPECT_NE(refusal([&] { parse_simulation_settings(text, "s.yaml"); }).find("air.dryden.airspeed_m_s"),
+            std::string::npos);
+}
+
 TEST(SimulationFile, RefusesValuesOutOfRange) {
   EXPECT_EQ(refused("  friction: 0.6", "  friction: -1"),
             "s.yaml:51: ground.friction: is -1, must be at least 0 and at most 10");

@@ -315,5 +315,36 @@ TEST(Dynamics, FallReachesTheTerminalVelocity) {
   EXPECT_LT((dynamics.specific_force_frd(state, wind) - Vector3d(0.0, 0.0, -plant::kGravity)).norm(), 1.0e-8);
 }
 
+// GIVEN a level vehicle in wind THEN each rad/s of its rotors drags it along the wind, and not along its thrust.
+TEST(Dynamics, RotorDragActsInThePlaneOfTheRotors) {
+  constexpr double kRotorDrag = 9.18e-7;  // Foerster 2015
+  const Dynamics dynamics(kaylion(), Supply::constant(3.7), {kRotorDrag, 0.0, 0.0});
+  const Dynamics without(kaylion(), Supply::constant(3.7));
+  VehicleState state = hovering(kaylion());
+  const double sum = 4.0 * state.rotor_speeds[0];
+  const Vector3d wind(2.0, -1.0, 0.5);
+  const Vector3d drag = dynamics.specific_force_frd(state, wind) - without.specific_force_frd(state, wind);
+  EXPECT_LT((0.04 * drag - kRotorDrag * sum * Vector3d(2.0, -1.0, 0.0)).norm(), 1.0e-15);
+  fly(dynamics, state, running(0.0), 1.0e-3, 1, wind);
+  EXPECT_NEAR(state.velocity_ned.x(), 1.0e-3 * drag.x(), 1.0e-3 * 1.0e-3 * drag.x() * 20.0);
+}
+
+// Cheeseman and Bennett: a third more thrust at half a radius above the ground, a sixteenth more at one radius.
+TEST(Dynamics, GroundEffectRaisesTheThrust) {
+  constexpr double kRadius_m = 0.03;
+  constexpr double kFloor_m = 0.02;
+  const Dynamics dynamics(kaylion(), Supply::constant(3.7), {0.0, kRadius_m, kFloor_m});
+  VehicleState state = hovering(kaylion());
+  const double free = Dynamics(kaylion(), Supply::constant(3.7)).specific_force_frd(state, kStillAir).z();
+  const auto factor_at = [&](double height_m) {
+    state.position_ned.z() = kFloor_m - height_m;
+    return dynamics.specific_force_frd(state, kStillAir).z() / free;
+  };
+  EXPECT_NEAR(factor_at(0.5 * kRadius_m), 4.0 / 3.0, 1.0e-12);
+  EXPECT_NEAR(factor_at(kRadius_m), 16.0 / 15.0, 1.0e-12);
+  EXPECT_NEAR(factor_at(1.0), 1.0, 1.0e-4);
+  EXPECT_EQ(factor_at(0.1 * kRadius_m), factor_at(0.5 * kRadius_m)) << "no nearer";
+}
+
 }  // namespace
 }  // namespace swiftlet::tests

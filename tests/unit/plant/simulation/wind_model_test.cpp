@@ -66,5 +66,57 @@ TEST(WindModel, GustsHaveTheirVarianceFromTheStart) {
   EXPECT_NEAR(squares / 9000.0, 1.0, 0.06);
 }
 
+// MIL-F-8785C, section 3.7.3.4: at 10 ft and an airspeed of 10 ft/s the lengths are 10 ft vertically and
+// 10 / (0.177 + 0.00823)^1.2 = 75.6 ft.
+TEST(WindModel, DrydenLengthsAreThoseOfTheStandard) {
+  const Vector3d times_s = plant::dryden_times_s({10 * 0.3048, 10 * 0.3048});
+  EXPECT_NEAR(times_s.z(), 1.0, 1e-12);
+  EXPECT_NEAR(times_s.x(), std::pow(0.177 + 0.00823, -1.2), 1e-12);
+  EXPECT_EQ(times_s.y(), times_s.x());
+}
+
+// GIVEN a wind towards the south east WHEN Dryden gusts blow THEN they correlate along it as exp(-t / T), and across it and
+// vertically as exp(-t / T) (1 - t / 2T), with the variance of the settings.
+TEST(WindModel, DrydenGustsHaveTheirCorrelations) {
+  AirSettings settings;
+  settings.wind_ned = {-3.0, 3.0, 0.0};
+  settings.gust_sigma_ned = {1.0, 1.0, 0.5};
+  settings.dryden = {0.3048, 5.0};  // times of 0.48 s horizontally, 0.061 s vertically
+  const Vector3d times_s = plant::dryden_times_s(settings.dryden);
+  constexpr double kStep = 0.002;
+  constexpr std::size_t kCount = 4'000'000;
+  WindModel air(settings, kStep, 5);
+  Eigen::Matrix3d to_wind;
+  to_wind << -std::sqrt(0.5), std::sqrt(0.5), 0.0, -std::sqrt(0.5), -std::sqrt(0.5), 0.0, 0.0, 0.0, 1.0;
+  const Vector3d sigma(1.0, 1.0, 0.5);
+  std::vector<Vector3d> gusts(kCount);
+  Vector3d squares = Vector3d::Zero();
+  for (Vector3d& gust : gusts) {
+    air.advance();
+    gust = (to_wind * (air.wind_ned() - settings.wind_ned)).cwiseQuotient(sigma);
+    squares += gust.cwiseAbs2() / kCount;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(squares[axis], 1.0, 0.05) << axis;
+    for (const double lag : {0.5, 1.0, 2.0}) {
+      const auto steps = static_cast<std::size_t>(std::lround(lag * times_s[axis] / kStep));
+      double product = 0.0;
+      for (std::size_t i = steps; i < kCount; ++i) product += gusts[i][axis] * gusts[i - steps][axis];
+      const double expected = std::exp(-lag) * (axis == 0 ? 1.0 : 1.0 - 0.5 * lag);
+      EXPECT_NEAR(product / static_cast<double>(kCount - steps), expected, 0.05) << axis << " at " << lag;
+    }
+  }
+}
+
+TEST(WindModel, DrydenGustsHaveTheirVarianceFromTheStart) {
+  AirSettings settings;
+  settings.gust_sigma_ned = {1.0, 1.0, 1.0};
+  settings.dryden = {1.0, 2.0};
+  double squares = 0.0;
+  for (std::uint64_t seed = 0; seed < 3000; ++seed)
+    squares += WindModel(settings, 0.001, seed).wind_ned().squaredNorm();
+  EXPECT_NEAR(squares / 9000.0, 1.0, 0.06);
+}
+
 }  // namespace
 }  // namespace swiftlet::tests

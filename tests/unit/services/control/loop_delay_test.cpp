@@ -71,7 +71,7 @@ class DelayMargin : public testing::Test {
   const plant::Vehicle vehicle_ = runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
   const control::ControlDesign design_ = control::design(vehicle_, settings_);
   const control::ControlGains gains_ = control::control_gains(design_, settings_);
-  const control::ObservedRotors rotors_{design_.rotor_lag_s, settings_.estimator.rotor_speed_bandwidth};
+  const control::ObservedRotors rotors_ = control::observed_rotors(design_.rotor_lag_s, settings_);
 };
 
 TEST_F(DelayMargin, IsTheLeastOfTheLoops) {

@@ -106,6 +106,7 @@ TEST(Convert, FlightStateIsTransferredCompletely) {
     EXPECT_EQ(result_of(got.requests[i]), result_of(sent.requests[i]));
   }
   EXPECT_EQ(report.flight.position_integral, controller_report().flight.position_integral);
+  EXPECT_EQ(report.flight.lift_ratio, controller_report().flight.lift_ratio);
   EXPECT_EQ(report.flight.throttle, controller_report().flight.throttle);
 }
 

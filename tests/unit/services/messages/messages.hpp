@@ -177,6 +177,7 @@ inline ControllerReport controller_report() {
        {{42, 43}, RequestKind::kGoTo, RequestState::kCanceled, Event::kHold, Reason::kRequested, 0.3},
        {{44, 45}, RequestKind::kLand, RequestState::kAborted, Event::kTippedOver, Reason::kTippedOver, 0.2}}};
   report.flight.position_integral = {0.1, -0.2, 0.3};
+  report.flight.lift_ratio = 0.91;
   report.flight.gains = {control_gains(1.0), control_gains(2.0), control::settings_name("soft"), 60, 2.5};
   report.flight.rotor_state = plant::RotorState::kRunning;
   report.rotor_count = 4;
