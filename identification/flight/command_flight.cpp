@@ -25,7 +25,8 @@ constexpr double kRareCommands = 0.01;  // fraction of commands outside the figu
 constexpr double kNotable = 0.03;       // standard error over the value, of a difference that it warns of
 constexpr std::size_t kParts = 3;       // of a single log, that are compared
 constexpr double kAtOdds = 1.5;         // Birge's ratio of the lags above which it warns
-constexpr double kBatteryKnown = 0.25;  // standard error of the sag over the sag
+// Standard error of the sag over the sag: the internal resistance of a lithium polymer battery doubles with age or cold.
+constexpr double kBatteryKnown = 0.5;
 constexpr double kOneRate = 0.1;        // relative difference of the sample periods of logs
 constexpr double kOfLittleUse = 0.1;    // weight of the commands in a forecast that is reported
 

@@ -19,6 +19,8 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 constexpr double kWellStampedS = 0.002;  // s, smaller delays of the poses are not reported
+// s, standard error of tau_m by the model alone: stamps wait for interrupts, and the supply sags between two of its samples.
+constexpr double kTimingErrorS = 1e-5;
 
 struct Fitted {
   std::unique_ptr<FlightModel> model;
@@ -87,6 +89,8 @@ Fitted fit(std::vector<FlightSeries> flights, const plant::Vehicle& base, const 
   out.fit = fit_series(out.model->problem([&] {
     if (options.progress) options.progress("fitting");
   }));
+  const int lag = out.model->layout().lag;
+  out.fit.covariance(lag, lag) += kTimingErrorS * kTimingErrorS;
   return out;
 }
 

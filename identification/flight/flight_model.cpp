@@ -70,6 +70,7 @@ void FlightModel::assign_parameter_indices() {
     l.trim[axis] = add({"offset of the centre of thrust, " + name, "m", 0.0, 1e-3, -0.1, 0.1});
   }
   l.drag = add({"drag over mass", "1/s", 0.1, 0.1, -10.0, 50.0});
+  l.axial_drag = add({"drag over mass along the rotors' axis", "1/s", 0.1, 0.1, -10.0, 50.0});
   for (const FlightSeries& flight : flights_) {
     l.offset.push_back(static_cast<int>(l.parameters.size()));
     for (int axis = 0; axis < 3; ++axis) {
@@ -142,7 +143,7 @@ FlightModel::Drive FlightModel::drive_by(const VectorXd& x, std::size_t flight, 
                                          const Wrenches& for_force, const Wrenches& for_rates) const {
   const FlightSeries& series = flights_[flight];
   const double thrust_over_mass = x[layout_.thrust] / base_.mass_kg;
-  const double drag = value(x, layout_.drag);
+  const Vector3d drag(x[layout_.drag], x[layout_.drag], x[layout_.axial_drag]);
   const Vector3d gain = Vector3d(x[layout_.gain[0]], x[layout_.gain[1]], x[layout_.gain[2]])
                             .cwiseQuotient(base_.inertia.diagonal());
   // A thrust T through (x, y) gives the moment (-y T, x T).
@@ -153,7 +154,7 @@ FlightModel::Drive FlightModel::drive_by(const VectorXd& x, std::size_t flight, 
   for (std::size_t i = 0; i < rows.size(); ++i) {
     Vector3d force(0.0, 0.0, -thrust_over_mass * for_force[i][0]);
     const std::size_t row = rows.first + i;
-    force -= drag * (series.attitude[row].conjugate() * series.velocity_ned[row]);
+    force -= drag.cwiseProduct(series.attitude[row].conjugate() * series.velocity_ned[row]);
     out.specific_force.push_back(force);
     const Eigen::Vector4d& moments = for_rates[i];
     out.acceleration.push_back(gain.cwiseProduct(moments.tail<3>() + moments[0] * trim));

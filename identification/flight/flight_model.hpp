@@ -1,10 +1,11 @@
 // The model that is fitted to a flight's log, and its identifiable parameters.
 //
-//   specific force   f = (0, 0, -s T / m) - (c / m) V_b + b                                Eq. (5), (27)
+//   specific force   f = (0, 0, -s T / m) - diag(c, c, c_z) / m V_b + b                    Eq. (5), (27)
 //   rates            J_b dw/dt = g o (M - r x T) - coupling of Eq. (6)                     Eq. (6), (28)
 //   rotors           T, M from the measured speeds, or from steady speeds with lag and delay, Eq. (18)
 //
-// T and M are the thrust and moments of the base vehicle; s and g scale them. A log holds no force, so that
+// T and M are the thrust and moments of the base vehicle; s and g scale them. The paper's c is isotropic. Along the
+// rotors' axis c_z stands apart: the inflow of a climb changes the thrust, and the drag of the rotors acts in their plane only. A log holds no force, so that
 // only thrust over mass and moment over inertia are identifiable. The residuals of the rates are an output
 // error: the rates are integrated over 50 ms from a free initial value. Over longer times, the fit would
 // attribute disturbances to the commands with which the controller rejects them. The poses separate the
@@ -41,6 +42,7 @@ struct FlightLayout {
   int gain[3] = {kAbsent, kAbsent, kAbsent};  // g about roll, pitch, yaw
   int trim[3] = {kAbsent, kAbsent, kAbsent};  // r, m: centre of thrust y, x; torque over thrust about z
   int drag = kAbsent;                         // c / m, 1/s
+  int axial_drag = kAbsent;                   // c_z / m, 1/s
   std::vector<int> offset;                    // b along x of each log; y and z follow
 };
 

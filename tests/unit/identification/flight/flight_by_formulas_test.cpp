@@ -239,7 +239,7 @@ TEST(FlightModel, PredictsTheFlightFromRotorSpeeds) {
   Eigen::VectorXd x = model.problem({}).start;
   const double s = truth.thrust / base.rotor.thrust;
   x[l.thrust] = s * base.mass_kg / truth.mass;
-  x[l.drag] = truth.drag / truth.mass;
+  x[l.drag] = x[l.axial_drag] = truth.drag / truth.mass;
   for (int axis = 0; axis < 3; ++axis)
     x[l.gain[axis]] = (axis < 2 ? s : 1.0) * base.inertia(axis, axis) / truth.inertia[axis];
   const Rows rows = model.flights().front().estimation_set;
