@@ -22,6 +22,8 @@ constexpr double kLeastSpread = 1e-9;
 constexpr double kUnseen = 1e-14;         // eigenvalue of the normal matrix over the largest one
 constexpr double kUnseenDeviation = 1e4;  // standard deviation in unobservable directions, in scales
 
+constexpr Index kLastingSegments = 8;     // neighbouring segments whose scores may be correlated
+
 // The problem with residuals divided by the spreads of their channels and parameters divided by their scales.
 class WeightedProblem final : public ceres::CostFunction {
  public:
@@ -123,6 +125,27 @@ Information inverted(const MatrixXd& normal) {
   return out;
 }
 
+// Sum of the products of scores up to kLastingSegments apart, one score a row (Newey, West 1987).
+MatrixXd lasting_products(const MatrixXd& scores) {
+  MatrixXd out = scores.transpose() * scores;
+  for (Index lag = 1; lag <= std::min(kLastingSegments, scores.rows() - 1); ++lag) {
+    const Index pairs = scores.rows() - lag;
+    const MatrixXd products = scores.topRows(pairs).transpose() * scores.bottomRows(pairs);
+    const double weight = 1.0 - static_cast<double>(lag) / static_cast<double>(kLastingSegments + 1);
+    out += weight * (products + products.transpose());
+  }
+  return out;
+}
+
+// How much wider the standard errors are by the second covariance than by the first, at least 1.
+VectorXd widening(const MatrixXd& first, const MatrixXd& second) {
+  VectorXd out = VectorXd::Ones(first.rows());
+  for (Index i = 0; i < out.size(); ++i) {
+    if (second(i, i) > first(i, i)) out[i] = std::sqrt(second(i, i) / first(i, i));
+  }
+  return out;
+}
+
 Minimisation minimisation_of(const SeriesProblem& problem) {
   Minimisation settings;
   settings.linear_solver = ceres::DENSE_NORMAL_CHOLESKY;
@@ -161,8 +184,12 @@ SeriesFit fit_series(const SeriesProblem& problem) {
   const auto segments = static_cast<double>(problem.segment_count);
   out.degrees_of_freedom = std::max(1, static_cast<int>(problem.segment_count) - static_cast<int>(x.size()));
   const double correction = segments / static_cast<double>(out.degrees_of_freedom);
+  const MatrixXd by_segments = inverse * (scores.transpose() * scores) * inverse;
+  VectorXd wider = VectorXd::Ones(x.size());
+  if (problem.disturbances_last)
+    wider = widening(by_segments, inverse * lasting_products(scores) * inverse);
   const MatrixXd covariance =
-      correction * inverse * (scores.transpose() * scores) * inverse + information.unseen;
+      correction * wider.asDiagonal() * by_segments * wider.asDiagonal() + information.unseen;
   out.parameters = x.cwiseProduct(problem.scale);
   out.covariance = problem.scale.asDiagonal() * covariance * problem.scale.asDiagonal();
   out.channel_spread.assign(cost.spread().data(), cost.spread().data() + cost.spread().size());

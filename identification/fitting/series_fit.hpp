@@ -25,6 +25,9 @@ struct SeriesProblem {
   std::vector<Channel> channels;      // the channels that make up the residuals, in their order
   std::vector<std::size_t> segments;  // of each residual: index of its segment of time
   std::size_t segment_count = 0;      // number of segments
+  // The model has no noise model for disturbances that outlast a segment, such as gusts: standard errors are also
+  // computed with correlation over eight segments (Newey, West 1987), and the larger ones are taken.
+  bool disturbances_last = false;
   // Computes the residuals into a vector of the right size. All residuals of a channel have the same unit;
   // the fit weights the channels by their spread.
   std::function<void(const Eigen::VectorXd& parameters, Eigen::VectorXd& residuals)> residuals;

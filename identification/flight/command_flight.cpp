@@ -27,8 +27,8 @@ constexpr std::size_t kParts = 3;       // of a single log, that are compared
 constexpr double kAtOdds = 1.5;         // Birge's ratio of the lags above which it warns
 // Standard error of the sag over the sag: the internal resistance of a lithium polymer battery doubles with age or cold.
 constexpr double kBatteryKnown = 0.5;
-constexpr double kOneRate = 0.1;        // relative difference of the sample periods of logs
-constexpr double kOfLittleUse = 0.1;    // weight of the commands in a forecast that is reported
+constexpr double kOneRate = 0.1;      // relative difference of the sample periods of logs
+constexpr double kOfLittleUse = 0.1;  // weight of the commands in a forecast that is reported
 
 struct CommandFit {
   std::unique_ptr<CommandModel> model;

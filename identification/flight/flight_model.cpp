@@ -171,6 +171,7 @@ Vector3d FlightModel::rate_derivative(const Vector3d& inertia, const Vector3d& a
 // rotor less the mean of all rotors, and that mean over each segment; vertical motion.
 SeriesProblem FlightModel::problem(const std::function<void()>& on_iteration) const {
   SeriesProblem out = problem_of(layout_.parameters);
+  out.disturbances_last = true;
   std::vector<std::size_t> per_row;  // segment of each block, all flights
   std::vector<std::size_t> per_segment;
   for (std::size_t f = 0; f < flights_.size(); ++f) {
