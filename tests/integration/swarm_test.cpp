@@ -117,13 +117,13 @@ class SwarmFlight : public testing::Test {
     EXPECT_EQ(written.exit_code, 0) << written.errors;
     return read_table(csv);
   }
-  // They climb alike by their own clocks, from their estimates of the ground, which differ by less than 0.3 mm.
+  // They climb alike by their own clocks, each from the height to which its lift-off has carried it at the end of the spool-up: a few millimetres.
   void expect_same_climb(const Start& a, const Start& b) const {
     const Table of_a = recorded("/a/reference"), of_b = recorded("/b/reference");
     double highest_m = 0.0;
     for (double after_ns = 1e9; after_ns < 3e9; after_ns += 1e7) {
       const double z_a = z_after(of_a, a.stamp_ns, after_ns), z_b = z_after(of_b, b.stamp_ns, after_ns);
-      EXPECT_NEAR(z_a, z_b, 3e-4) << 1e-9 * after_ns << " s after the start";
+      EXPECT_NEAR(z_a, z_b, 5e-3) << 1e-9 * after_ns << " s after the start";
       highest_m = std::max(highest_m, -z_a);
     }
     EXPECT_GT(highest_m, 0.5);

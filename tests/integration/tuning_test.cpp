@@ -26,7 +26,9 @@ std::string replaced(const std::string& file, const Replacements& replacements) 
   return text;
 }
 
-std::string settings(const Replacements& replacements) {
+// That do not learn the weight at lift-off.
+std::string settings(Replacements replacements) {
+  replacements.push_back({"learn_lift: true", "learn_lift: false"});
   return replaced("config/control/motor_lag.yaml", replacements);
 }
 
@@ -66,7 +68,8 @@ class Tuning : public Online {
       replaced("config/vehicles/kaylion.yaml", {{"mass: {value: 0.040", "mass: {value: 0.042"}}));
   const Program plant_{"swiftlet-plant", lockstep({"--speed", "4", "--vehicle", heavy_}), folder_.path()};
   const Program mocap_{"swiftlet-mocap", lockstep(), folder_.path()};
-  const Program control_{"swiftlet-control", lockstep(), folder_.path()};
+  const std::string usual_ = folder_.write("usual.yaml", settings({}));
+  const Program control_{"swiftlet-control", lockstep({"--control", usual_}), folder_.path()};
 };
 
 TEST_F(Tuning, ChangesTheGainsInHover) {
@@ -89,7 +92,7 @@ TEST_F(Tuning, ChangesTheGainsInHover) {
   EXPECT_NEAR(after.at("settings").at("gains").at("position_p_per_s2")[2].get<double>(), kSaggingP, 1e-9);
   EXPECT_TRUE(hovers_at(kHeight_m - kSag_m)) << "the vehicle sags by weight over gain";
 
-  ASSERT_NO_FATAL_FAILURE(done({"set", "control", "motor_lag", "--ramp", "1"}));
+  ASSERT_NO_FATAL_FAILURE(done({"set", "control", usual_, "--ramp", "1"}));
   EXPECT_EQ(status().at("settings").at("gains"), before.at("gains"));
   EXPECT_TRUE(hovers_at(kHeight_m));
 }
@@ -109,7 +112,7 @@ TEST_F(Tuning, RefusesChangesWithTheirReasons) {
   EXPECT_EQ(status().at("settings").at("name"), "motor_lag");
   const ProgramResult landing = swiftlet({"land", "--speed", "0.05", "--no-wait"});
   ASSERT_EQ(landing.exit_code, 0) << landing.errors;
-  expect_refused("motor_lag", "cannot change the gains while landing");
+  expect_refused(usual_, "cannot change the gains while landing");
 }
 
 TEST(TunePlot, DrawsSettingsOverEachOther) {
