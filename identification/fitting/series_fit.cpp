@@ -22,7 +22,7 @@ constexpr double kLeastSpread = 1e-9;
 constexpr double kUnseen = 1e-14;         // eigenvalue of the normal matrix over the largest one
 constexpr double kUnseenDeviation = 1e4;  // standard deviation in unobservable directions, in scales
 
-constexpr Index kLastingSegments = 8;     // neighbouring segments whose scores may be correlated
+constexpr Index kLastingSegments = 8;  // neighbouring segments whose scores may be correlated
 
 // The problem with residuals divided by the spreads of their channels and parameters divided by their scales.
 class WeightedProblem final : public ceres::CostFunction {
@@ -186,8 +186,7 @@ SeriesFit fit_series(const SeriesProblem& problem) {
   const double correction = segments / static_cast<double>(out.degrees_of_freedom);
   const MatrixXd by_segments = inverse * (scores.transpose() * scores) * inverse;
   VectorXd wider = VectorXd::Ones(x.size());
-  if (problem.disturbances_last)
-    wider = widening(by_segments, inverse * lasting_products(scores) * inverse);
+  if (problem.disturbances_last) wider = widening(by_segments, inverse * lasting_products(scores) * inverse);
   const MatrixXd covariance =
       correction * wider.asDiagonal() * by_segments * wider.asDiagonal() + information.unseen;
   out.parameters = x.cwiseProduct(problem.scale);

@@ -24,7 +24,6 @@ using identification::FlightLog;
 using identification::ParameterEstimate;
 
 constexpr double kFlappingNS2PerM = 9.18e-7;  // of a Crazyflie's rotors (Foerster 2015)
-constexpr double kMostMissed = 0.1;           // share of the intervals of one parameter, in a soak
 // Largest error in half widths in the ordinary run: exceeded by 1 error in 10,000 if the intervals hold.
 constexpr double kWorst = 2.0;
 constexpr double kWidest = 0.25;     // median half width over the value
@@ -124,9 +123,10 @@ void study(const char* what, const Unmodelled& unmodelled) {
                   tally.covered, tally.errors.size(), 100.0 * median(tally.errors),
                   100.0 * median(tally.widths), tally.worst);
       EXPECT_EQ(static_cast<int>(tally.errors.size()), seeds);
-      EXPECT_LT(median(tally.widths), parameter == "linear_drag" ? kWidestDrag : kWidest) << what << ", " << name << ": " << parameter;
+      EXPECT_LT(median(tally.widths), parameter == "linear_drag" ? kWidestDrag : kWidest)
+          << what << ", " << name << ": " << parameter;
       if (tests::is_soak()) {
-        EXPECT_GE(tally.covered, (1.0 - kMostMissed) * seeds) << what << ", " << name << ": " << parameter;
+        EXPECT_GE(tally.covered, tests::least_covered(seeds)) << what << ", " << name << ": " << parameter;
       } else {
         EXPECT_LT(tally.worst, kWorst) << what << ", " << name << ": " << parameter;
       }
