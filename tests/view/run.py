@@ -74,7 +74,7 @@ def main(programs, work):
     with contextlib.ExitStack() as stack:
         vehicles = Vehicles(programs, work, VEHICLES, stack)
         vehicles.take_off()
-        run(vehicles.swiftlet, "goto", "1.5", "0", "--height", "1", "--speed", "0.05", "--no-wait", *vehicles.network,
+        run(vehicles.swiftlet, "goto", "1.5", "0", "--height", "1", "--speed", "0.02", "--no-wait", *vehicles.network,
             "--vehicle-name", "kl1", cwd=work)
         decoded = json.loads(run("node", work / "decode.mjs", vehicles.url, cwd=work))
         print(f"view: {decoded['messages']} messages of {len(decoded['topics'])} topics decoded by @foxglove/ws-protocol and "
