@@ -412,7 +412,7 @@ void add_simulation(py::module_& module) {
   py::class_<Flight>(module, "Flight", "A simulated flight: its result, and what was recorded of it.")
       .def_property_readonly(
           "completed", [](const Flight& self) { return self.report.completed; },
-          "True if the mission came to its end within its tolerance.")
+          "True if the mission was completed within its tolerance.")
       .def_property_readonly(
           "reason", [](const Flight& self) { return self.report.reason; },
           "Why it was not completed; else empty.")
