@@ -9,6 +9,7 @@
 #include "swiftlet/control/flight_controller_impl.hpp"
 #include "swiftlet/control/position/thrust_attitude_map.hpp"
 #include "swiftlet/math/euler.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
 #include "swiftlet/plant/model/rotor.hpp"
 
 namespace swiftlet::control {
@@ -27,6 +28,12 @@ constexpr double kLeadShare = 2.0 / 3.0;
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
+// N m about each axis: of rotors in hover, those on one side at no thrust and the others at twice theirs.
+Vector3d differential_moment(const plant::Vehicle& vehicle) {
+  return plant::effectiveness(vehicle).bottomRows<3>().cwiseAbs().rowwise().sum() *
+         plant::hover_thrust(vehicle);
+}
+
 }  // namespace
 
 FlightController::Impl::Impl(const plant::Vehicle& vehicle_in, const ControlSettings& settings_in,
@@ -40,7 +47,7 @@ FlightController::Impl::Impl(const plant::Vehicle& vehicle_in, const ControlSett
       poses_ahead(settings_in.estimator.detectors.recovery.longest_wait_s),
       rotors(vehicle_in, settings_in.estimator.rotor_speed_bandwidth),
       disturbance(settings_in.disturbance, settings_in.rough_air.law == DisturbanceLaw::kIncremental),
-      moment(vehicle_in.inertia),
+      moment(vehicle_in.inertia, differential_moment(vehicle_in)),
       takeoff_monitor(settings_in.estimator.detectors.takeoff_consistency),
       position(settings_in.position, settings_in.limits, design_in),
       attitude(vehicle_in, settings_in.attitude, design_in),
