@@ -208,6 +208,8 @@ void FlightController::Impl::observe(const ControlSetpoint& setpoint, double dt_
       observe_sliding(dt_s);
       return;
     case ControlMode::kLevelDescent:
+      // That of the ground is no disturbance.
+      if (supervisor.state().contact_since_ns == 0) observe_moment(dt_s);
       return;
     case ControlMode::kFly:
     case ControlMode::kAttitude:
@@ -216,12 +218,17 @@ void FlightController::Impl::observe(const ControlSetpoint& setpoint, double dt_
       if (!setpoint.integrate || !controls_position()) return;
       if (settings.rough_air.learn_lift)
         lift.step_in_flight(dt_s, specific_force_frd - estimate.accelerometer_bias, modelled_lift());
-      if (settings.rough_air.law == DisturbanceLaw::kIncremental)
-        moment.step(dt_s, gains.disturbance_bandwidth, estimate.body_rates_frd, rotors.moment_frd());
+      observe_moment(dt_s);
       disturbance.step(dt_s, specific_force_frd - estimate.accelerometer_bias, estimate.q_ned_from_frd,
                        lift_now());
       return;
   }
+}
+
+// Needs no position.
+void FlightController::Impl::observe_moment(double dt_s) {
+  if (settings.rough_air.law == DisturbanceLaw::kIncremental)
+    moment.step(dt_s, gains.disturbance_bandwidth, estimate().body_rates_frd, rotors.moment_frd());
 }
 
 // On the ground the contact hides the vertical disturbance. The horizontal one shows once the vehicle slides.
