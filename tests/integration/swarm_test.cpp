@@ -338,6 +338,23 @@ TEST_F(RunningSwarm, LandsNobodyOnAnother) {
   EXPECT_EQ(mode("b"), "disarmed");
 }
 
+// GIVEN a vehicle that is powered, but has no control WHEN all are to land THEN it is named, and the others land.
+TEST_F(RunningSwarm, LandsTheOthersBesideAnUnknownOne) {
+  hover("a,b");
+  const Program powered("swiftlet-plant", on_this_domain({"--vehicle-name", "d", "--clock", "lockstep"}),
+                        folder_.path());
+  ASSERT_TRUE(eventually([&] { return swiftlet({"list"}).output.find("d ") != std::string::npos; }, kStuck));
+  const ProgramResult moved = swiftlet({"fleet", "goto", "0.5", "1.2", "-1.4"});
+  EXPECT_EQ(moved.exit_code, 1);
+  EXPECT_NE(moved.errors.find("d: mode and position are not known: nothing was sent"), std::string::npos)
+      << moved.errors;
+  const ProgramResult landed = swiftlet({"fleet", "land"});
+  EXPECT_EQ(landed.exit_code, 1);
+  EXPECT_NE(landed.errors.find("d: was not landed: mode and position are not known"), std::string::npos)
+      << landed.errors;
+  for (const char* const name : {"a", "b"}) EXPECT_EQ(mode(name), "disarmed") << name;
+}
+
 TEST_F(RunningSwarm, IsStoppedAtOnce) {
   arm("a,b");
   EXPECT_EQ(swiftlet({"fleet", "stop"}).exit_code, 2) << "without --yes";

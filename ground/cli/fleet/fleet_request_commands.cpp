@@ -60,7 +60,7 @@ struct Seen {
   bool flies() const { return !control::rotors_off(state.mode) && state.mode != Mode::kArmed; }
 };
 
-// Names of the vehicles in the domain, and of the wanted ones that were not seen. Sorted.
+// Names of the vehicles in the domain, sorted, then of the wanted ones that were not seen.
 std::vector<std::string> names_in(const Context& context, const Options& options) {
   std::this_thread::sleep_for(std::chrono::duration<double>(options.look_s));
   std::vector<std::string> names = context.discovered_vehicles();
@@ -82,13 +82,17 @@ bool is_wanted(const std::string& name, const Options& options) {
   return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
 
-// Throws std::runtime_error if the place of one is not known: it may be in the way.
-std::vector<Seen> look(const Context& context, const Options& options) {
+struct Sight {
+  std::vector<Seen> seen;
+  std::vector<std::string> unknown;  // names of those whose mode and position are not known
+};
+
+Sight look(const Context& context, const Options& options) {
   std::vector<std::unique_ptr<Vehicle>> vehicles;
   for (const std::string& name : names_in(context, options))
     vehicles.push_back(std::make_unique<Vehicle>(context, name));
   const auto deadline = std::chrono::steady_clock::now() + options.timeout();
-  std::vector<Seen> seen;
+  Sight sight;
   for (const std::unique_ptr<Vehicle>& vehicle : vehicles) {
     const auto is_known = [](const VehicleState& state) {
       return state.age_s < 1.0 && state.reference_position_ned_m.allFinite() &&
@@ -96,11 +100,22 @@ std::vector<Seen> look(const Context& context, const Options& options) {
     };
     const auto rest =
         std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
-    if (!vehicle->wait_until(is_known, std::max(rest, std::chrono::milliseconds(0))))
-      throw std::runtime_error(vehicle->name() + ": mode and position are not known: nothing was sent");
-    seen.push_back({vehicle->name(), vehicle->state(), is_wanted(vehicle->name(), options)});
+    if (vehicle->wait_until(is_known, std::max(rest, std::chrono::milliseconds(0)))) {
+      sight.seen.push_back({vehicle->name(), vehicle->state(), is_wanted(vehicle->name(), options)});
+    } else {
+      sight.unknown.push_back(vehicle->name());
+    }
   }
-  return seen;
+  return sight;
+}
+
+// Throws std::runtime_error if the place of one is not known: it may be in the way.
+std::vector<Seen> look_at_all(const Context& context, const Options& options) {
+  Sight sight = look(context, options);
+  if (!sight.unknown.empty())
+    throw std::runtime_error(
+        fmt::format("{}: mode and position are not known: nothing was sent", fmt::join(sight.unknown, ",")));
+  return std::move(sight.seen);
 }
 
 FormationVehicle formation_vehicle(const Seen& vehicle) {
@@ -133,7 +148,7 @@ int go_to(const GotoOptions& options) {
   std::vector<Seen> seen;
   {
     const Context context(options.network);
-    seen = look(context, options);
+    seen = look_at_all(context, options);
   }
   require_holding(seen, options);
   std::vector<FormationVehicle> vehicles;
@@ -168,13 +183,17 @@ int go_to(const GotoOptions& options) {
 }
 
 int land(const LandOptions& options) {
-  std::vector<Seen> seen;
+  Sight sight;
   {
     const Context context(options.network);
-    seen = look(context, options);
+    sight = look(context, options);
   }
+  const bool all_known = sight.unknown.empty();
+  for (const std::string& name : sight.unknown)
+    std::fprintf(stderr, "swiftlet: land: %s: was not landed: mode and position are not known\n",
+                 name.c_str());
   std::vector<FormationVehicle> vehicles;
-  for (const Seen& vehicle : seen) vehicles.push_back(formation_vehicle(vehicle));
+  for (const Seen& vehicle : sight.seen) vehicles.push_back(formation_vehicle(vehicle));
   const auto obstacles = landing_obstacles(vehicles, options.safety);
   std::vector<std::string> landing;
   int kept = 0;
@@ -189,12 +208,12 @@ int land(const LandOptions& options) {
                  "swiftlet: land: %s: was not landed: it would come down on %s; move it aside first\n",
                  vehicles[i].name.c_str(), vehicles[*obstacles[i]].name.c_str());
   }
-  if (landing.empty() && kept == 0) throw InputError("no vehicle flies: nothing was sent");
+  if (landing.empty() && kept == 0 && all_known) throw InputError("no vehicle flies: nothing was sent");
   if (landing.empty()) return kFailed;
   const int code =
       run_request(request_to(landing, options),
                   {"land", [&](Vehicle& vehicle) { return vehicle.land(options.speed, options.timeout()); }});
-  return kept == 0 ? code : kFailed;
+  return kept == 0 && all_known ? code : kFailed;
 }
 
 int stop(const StopOptions& options) {
