@@ -21,6 +21,8 @@
 #include "swiftlet/ground/client/context.hpp"
 #include "swiftlet/ground/client/vehicle.hpp"
 #include "swiftlet/ground/fleet/formation.hpp"
+#include "swiftlet/io/configuration.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/services/dds/search_text.hpp"
 #include "swiftlet/services/dds/vehicle_list.hpp"
 
@@ -41,6 +43,8 @@ struct GotoOptions : Options {
   std::optional<double> z_ned_m;
   std::optional<double> height_m;  // instead of z
   double speed = 0.5;
+  double skew_s = FormationMove().skew_s;
+  std::string control = "motor_lag";
 };
 
 struct LandOptions : Options {
@@ -145,6 +149,9 @@ RequestOptions request_to(const std::vector<std::string>& names, const Options& 
 int go_to(const GotoOptions& options) {
   if (options.z_ned_m.has_value() == options.height_m.has_value())
     throw InputError("goto: needs either z (down: negative is up) or --height (up, above the ground)");
+  const control::Limits limits =
+      runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control))
+          .limits;
   std::vector<Seen> seen;
   {
     const Context context(options.network);
@@ -168,7 +175,8 @@ int go_to(const GotoOptions& options) {
     if (!above.accepted) throw InputError(std::string(above.reason) + ": nothing was sent");
     target_of[vehicles[i].name] = targets[i];
   }
-  const std::string refusal = formation_refusal(vehicles, targets, options.speed, options.safety);
+  const std::string refusal =
+      formation_refusal(vehicles, targets, {options.speed, limits, options.skew_s}, options.safety);
   if (!refusal.empty()) throw InputError(refusal + ": nothing was sent");
   VehicleRequest request{
       "goto", [&](Vehicle& vehicle) {
@@ -179,6 +187,7 @@ int go_to(const GotoOptions& options) {
   request.undone = "holds";
   request.not_undone = "does NOT hold";
   request.cause = "did not accept it";
+  request.skew_s = options.skew_s;
   return run_request(request_to(members, options), request);
 }
 
@@ -280,6 +289,15 @@ Command add_fleet_goto_command(runtime::CommandLine fleet) {
       .positive()
       .excludes(z);
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
+  app.add_option("--skew", options->skew_s,
+                 "by which one may begin later than another, s; if the last one answers later, all hold")
+      .range(0.0, 60.0)
+      .show_default();
+  app.add_option("--control", options->control,
+                 "control settings of the vehicles, or the name of a file in config/control: its limits "
+                 "say how long they take")
+      .type_name(runtime::kinds::kControl.value)
+      .show_default();
   add_safety_options(app, options->safety);
   return {app, [options] { return go_to(*options); }};
 }
