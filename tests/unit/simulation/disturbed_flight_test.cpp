@@ -178,15 +178,18 @@ TEST(DisturbedFlight, FollowsAMomentInTheDescentWithoutPosition) {
   EXPECT_EQ(loop.controller.status().mode, control::Mode::kDescent) << "not on the ground yet";
 }
 
-// GIVEN rotors in ground effect THEN modelling it takes most of its error away.
+// GIVEN rotors in ground effect THEN the peak error of the take-off is lower with a model of it: for seeds 1 to 8 by 13 to 22 %.
+// Without ground effect it is lower by 28 to 56 %.
 TEST(DisturbedFlight, KnowsTheGroundEffect) {
-  FlightSetup setup;
-  setup.world.ground.effect_rotor_radius_m = 0.03;
-  const double unknown_m = setup.fly("0.5", 1).takeoff_peak_m;
-  setup.control.rough_air.rotor_radius_m = 0.03;
-  const double known_m = setup.fly("0.5", 1).takeoff_peak_m;
-  EXPECT_LT(unknown_m, 10e-3);
-  EXPECT_LT(known_m, unknown_m);
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    FlightSetup setup;
+    setup.world.ground.effect_rotor_radius_m = 0.03;
+    const double unknown_m = setup.fly("0.5", seed).takeoff_peak_m;
+    setup.control.rough_air.rotor_radius_m = 0.03;
+    const double known_m = setup.fly("0.5", seed).takeoff_peak_m;
+    EXPECT_LT(unknown_m, 10e-3) << seed;
+    EXPECT_LT(known_m, 0.9 * unknown_m) << seed;
+  }
 }
 
 }  // namespace
