@@ -15,6 +15,7 @@
 #include <variant>
 #include <vector>
 
+#include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/ground/flight/flight_inputs.hpp"
 #include "swiftlet/io/mcap/message_decoder.hpp"
@@ -48,6 +49,8 @@ struct FileUncertainty {
 };
 FileUncertainty uncertainty_of(const VehicleArgument& argument);
 [[noreturn]] void refuse_uncertainty_of_model();
+
+const char* text_of(control::MissionState state);
 
 // Throws InputError of the module.
 [[noreturn]] void refuse(const std::string& sentence);

@@ -1,6 +1,4 @@
 // Running vehicles: requests, setpoints, states and streams. Everything that waits releases the GIL.
-#include "swiftlet/ground/client/client.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -158,10 +156,7 @@ void add_state(py::module_& module) {
       .def_readonly("battery_voltage_v", &VehicleState::battery_voltage_v)
       .def_readonly("battery_charge", &VehicleState::battery_charge, "0 empty .. 1 full.")
       .def_property_readonly(
-          "mission_state",
-          [](const VehicleState& self) {
-            return ground::mission_state_name(static_cast<std::uint8_t>(self.mission.state));
-          },
+          "mission_state", [](const VehicleState& self) { return text_of(self.mission.state); },
           "'none', 'uploaded', 'running', 'paused', 'completed' or 'aborted'.")
       .def_property_readonly(
           "mission_item", [](const VehicleState& self) { return self.mission.item; },

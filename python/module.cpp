@@ -5,6 +5,7 @@
 
 #include "bindings.hpp"
 
+#include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/program_directory.hpp"
@@ -45,6 +46,10 @@ void raise(const char* exception, const std::string& reason, const char* kind) {
 
 void check_signals() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+const char* text_of(control::MissionState state) {
+  return ground::mission_state_name(static_cast<std::uint8_t>(state));
 }
 
 std::chrono::milliseconds limit_of(double timeout_s) {
