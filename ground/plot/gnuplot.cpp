@@ -29,8 +29,8 @@ constexpr std::chrono::seconds kLongest{30};
 constexpr double kMargin = 0.04;     // of the span of the data, on both sides
 constexpr double kLogMargin = 1.25;  // the same as a factor
 constexpr std::size_t kManyDots = 200;
-constexpr double kOfManyDots = 0.7;  // size of each
-constexpr std::size_t kLongLabel = 50;      // characters
+constexpr double kOfManyDots = 0.7;       // size of each
+constexpr std::size_t kLongLabel = 50;    // characters
 constexpr std::string_view kUnit = " (";  // where it begins in a label
 constexpr const char* kNotInstalled = "no picture was drawn: gnuplot is not installed";
 

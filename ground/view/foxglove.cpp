@@ -16,7 +16,7 @@ constexpr std::uint8_t kServiceCallRequest = 2;
 constexpr std::uint8_t kServiceCallResponse = 3;
 constexpr const char* kEncoding = "cdr";
 constexpr const char* kSchemaEncoding = "ros2msg";
-constexpr int kMostDepth = 4;             // of JSON: a message has a list of objects
+constexpr int kMostDepth = 4;           // of JSON: a message has a list of objects
 constexpr std::size_t kMostShown = 40;  // characters of what is refused
 
 template <class Number, class Out>

@@ -46,8 +46,8 @@ using boost::system::error_code;
 constexpr auto kRound = 20ms;  // 50 Hz
 constexpr auto kLookPeriod = 500ms;
 constexpr auto kAcceptPause = 100ms;  // after a connection that could not be accepted
-constexpr auto kRequestTime = 10s;  // for a request, and for its answer
-constexpr auto kIdleTime = 30s;     // without an answer to a ping
+constexpr auto kRequestTime = 10s;    // for a request, and for its answer
+constexpr auto kIdleTime = 30s;       // without an answer to a ping
 constexpr int kSendBuffer = 256 * 1024;
 constexpr double kConnectionBurst = 100.0;
 constexpr double kMessageBurst = 1000.0;
@@ -189,9 +189,8 @@ class ViewServer::Impl::Session : public std::enable_shared_from_this<Session> {
     if (lost == 0) return;
     server_.dropped_ += lost;
     dropped_ = viewer_->dropped();
-    viewer_->reply(foxglove::status(
-        foxglove::Level::kWarning,
-        fmt::format("this viewer is slow: it has lost {} messages", dropped_)));
+    viewer_->reply(foxglove::status(foxglove::Level::kWarning,
+                                    fmt::format("this viewer is slow: it has lost {} messages", dropped_)));
     pump();
   }
 

@@ -15,9 +15,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/ground/view/vehicle_requests.hpp"
 #include "swiftlet/ground/view/viewer.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/payload.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/foxglove_client.hpp"
@@ -229,7 +229,8 @@ TEST_F(Server, TellsTheFirstFaultsOfAMessage) {
   viewer->send(json({{"op", "unsubscribe"}, {"subscriptionIds", ids}}).dump());
   viewer->send("{}");
   for (std::size_t i = 0; i < Viewer::kMostRefusals; ++i)
-    EXPECT_EQ(viewer->read_text()->at("message"), "unsubscribe: there is no subscription " + std::to_string(i));
+    EXPECT_EQ(viewer->read_text()->at("message"),
+              "unsubscribe: there is no subscription " + std::to_string(i));
   EXPECT_EQ(viewer->read_text()->at("message"), "op null is not served: only subscribe and unsubscribe are");
 }
 
