@@ -257,10 +257,9 @@ py::dict open_loop(const plant::Vehicle& vehicle, const Array<double>& time_s, c
                   "q_ned_from_frd"_a = attitude, "body_rates_frd"_a = rates, "rotor_speeds"_a = speeds);
 }
 
-py::dict state_of(const ground::ClosedLoop& loop) {
-  const plant::TruthSample truth = loop.plant.truth();
+py::dict state_of(const plant::TruthSample& truth, double time_s) {
   const Eigen::Quaterniond& q = truth.q_ned_from_frd;
-  return py::dict("time_s"_a = loop.time_s(), "position_ned"_a = truth.position_ned,
+  return py::dict("time_s"_a = time_s, "position_ned"_a = truth.position_ned,
                   "velocity_ned"_a = truth.velocity_ned,
                   "q_ned_from_frd"_a = Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()),
                   "body_rates_frd"_a = truth.body_rates_frd,
@@ -268,8 +267,7 @@ py::dict state_of(const ground::ClosedLoop& loop) {
                   "supply_voltage_v"_a = truth.supply_voltage_v, "on_ground"_a = truth.on_ground);
 }
 
-py::dict estimate_of(const ground::ClosedLoop& loop) {
-  const control::Estimate& estimate = loop.controller.estimate();
+py::dict estimate_of(const control::Estimate& estimate) {
   const Eigen::Quaterniond& q = estimate.q_ned_from_frd;
   return py::dict("stamp_ns"_a = estimate.stamp_ns, "position_ned"_a = estimate.position_ned,
                   "velocity_ned"_a = estimate.velocity_ned,
@@ -284,6 +282,7 @@ struct Simulation {
   mutable std::mutex in_use;  // another thread may call it while a step has released the GIL
 };
 
+// Objects of Python are made after it: to make them may let another thread go on.
 template <class Read>
 auto read(const Simulation& simulation, const Read& of) {
   const InUse use(simulation.in_use);
@@ -308,8 +307,8 @@ void step(Simulation& simulation, double duration_s) {
 }
 
 void request(Simulation& simulation, const control::Request& request) {
-  const InUse use(simulation.in_use);
-  const control::Outcome outcome = simulation.loop->controller.request(request);
+  const control::Outcome outcome =
+      read(simulation, [&](ground::ClosedLoop& loop) { return loop.controller.request(request); });
   if (!outcome.accepted) raise("RequestError", outcome.reason, "refused");
 }
 
@@ -320,11 +319,12 @@ void request(Simulation& simulation, control::RequestKind kind) {
 }
 
 void set(Simulation& simulation, const control::Setpoint& setpoint) {
-  const InUse use(simulation.in_use);
-  control::Setpoint stamped = setpoint;
-  stamped.stamp_ns = simulation.loop->plant.stamp_ns();
-  stamped.sequence = ++simulation.setpoints;
-  const control::Outcome outcome = simulation.loop->controller.on_setpoint(stamped);
+  const control::Outcome outcome = read(simulation, [&](ground::ClosedLoop& loop) {
+    control::Setpoint stamped = setpoint;
+    stamped.stamp_ns = loop.plant.stamp_ns();
+    stamped.sequence = ++simulation.setpoints;
+    return loop.controller.on_setpoint(stamped);
+  });
   if (!outcome.accepted) raise("RequestError", outcome.reason, "refused");
 }
 
@@ -416,12 +416,20 @@ void add_stepped(py::module_& module) {
           },
           "Flight mode: 'disarmed', 'holding' ...")
       .def(
-          "state", [](const Simulation& self) { return read(self, &state_of); },
+          "state",
+          [](const Simulation& self) {
+            return state_of(read(self, [](const ClosedLoop& loop) { return loop.plant.truth(); }),
+                            read(self, [](const ClosedLoop& loop) { return loop.time_s(); }));
+          },
           "The ground truth: time_s; position_ned (3,) m, velocity_ned (3,) m/s, q_ned_from_frd (4,) w, x, "
           "y, z, "
           "body_rates_frd (3,) rad/s, rotor_speeds (rotors,) rad/s, supply_voltage_v, on_ground.")
       .def(
-          "estimate", [](const Simulation& self) { return read(self, &estimate_of); },
+          "estimate",
+          [](const Simulation& self) {
+            return estimate_of(read(
+                self, [](const ClosedLoop& loop) { return control::Estimate(loop.controller.estimate()); }));
+          },
           "Of the controller: stamp_ns; position_ned (3,) m, velocity_ned (3,) m/s, q_ned_from_frd (4,).");
   add_stepped_requests(type);
 }

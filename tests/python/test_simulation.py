@@ -184,7 +184,7 @@ class Steps(unittest.TestCase):
                     refusals.append(str(error))
             os.kill(os.getpid(), signal.SIGALRM)
 
-        thread = threading.Thread(target=look)
+        thread = threading.Thread(target=look, daemon=True)
         with alarm_after(0), self.assertRaises(TimeoutError):
             thread.start()
             simulation.step(1e6)
