@@ -78,8 +78,11 @@ TEST(Foxglove, SaysWhatIsWrongWithAText) {
         R"({"op":"subscribe","subscriptions":[{"id":1}]})",
         R"({"op":"unsubscribe","subscriptionIds":[null]})", R"({"op":"unsubscribe"})"})
     EXPECT_NE(fault_of(parse_text(text)), "") << text;
-  const std::string deep(100'000, '[');
-  EXPECT_NE(fault_of(parse_text(deep)), "");
+  const std::string open(100'000, '[');
+  const std::string deep = open + std::string(open.size(), ']');
+  EXPECT_NE(fault_of(parse_text(open)), "");
+  EXPECT_NE(fault_of(parse_text(R"({"op":)" + deep + "}")), "");
+  EXPECT_NE(fault_of(parse_text(R"({"op":"subscribe","subscriptions":[{"id":)" + deep + "}]}")), "");
 }
 
 TEST(Foxglove, ReadsServiceCalls) {
