@@ -54,6 +54,7 @@ void InnerLoop::end_step(const plant::VehicleCommand& command, const Clients& cl
   return_outcomes(clients, stamp_ns);
   rotors_running_ = plant::header_of(command).rotor_state == plant::RotorState::kRunning;
   stamp_ns_ = stamp_ns;
+  if (!controller_.status().has_pose) unposed_ns_ = stamp_ns;
   last_imu_sequence_ = imu_sequence_;
   imu_sequence_ = sequence;
   timing_.arrived(sequence, stamp_ns, now_ns, rotors_running_);
@@ -157,8 +158,9 @@ void InnerLoop::answer_requests() {
 
 void InnerLoop::report(comms::ControllerReport& report) const {
   report.active = role_ == Role::kActive;
-  report.ready = (report.active && !detecting_airborne()) ||
-                 (knows_plan_ && controller_.status().has_pose && level_choice_.accepted.has(level()));
+  report.ready =
+      (report.active && !detecting_airborne()) ||
+      (knows_plan_ && stamp_ns_ - unposed_ns_ >= kSettlingNs && level_choice_.accepted.has(level()));
   if (!report.active) return;
   report.flight = controller_.state();
 }

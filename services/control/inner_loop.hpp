@@ -102,6 +102,8 @@ class InnerLoop {
   bool detecting_airborne() const { return detecting_since_ns_ != kNotDetecting; }
   static constexpr std::int64_t kAirborneDetectionNs = 300'000'000;
 
+  // A standby is ready when its estimate has settled: it has had a pose without interruption for this long.
+  static constexpr std::int64_t kSettlingNs = 500'000'000;
   // report_due(): this step must publish a controller_state. report() fills in its flight fields.
   bool report_due() const { return report_due_; }
   void report(comms::ControllerReport& report) const;
@@ -152,6 +154,7 @@ class InnerLoop {
   control::Status last_snapshot_;  // of the last snapshot
   control::RequestStatuses snapshot_requests_{};
   std::int64_t stamp_ns_ = 0;
+  std::int64_t unposed_ns_ = 0;  // stamp of the last sample at which there was no pose
   std::uint64_t imu_sequence_ = 0;
   std::uint64_t last_imu_sequence_ = 0;  // of the sample before
   std::atomic<std::int64_t> last_arrival_ns_{0};

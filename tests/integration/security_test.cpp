@@ -1,4 +1,5 @@
 // DDS Security: the roles fly together, and others neither hear nor change anything.
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdint>
@@ -22,7 +23,9 @@ namespace fs = std::filesystem;
 namespace msg = comms::msg;
 using namespace std::chrono_literals;
 
-constexpr double kLongestGap_ms = 120.0;         // as without security, on a busy machine
+constexpr double kLongestGap_ms = 60.0;       // as without security
+constexpr double kLongestGapBusy_ms = 120.0;  // of one kill of several, on a busy machine
+constexpr double kLargestDeviation_m = 0.05;
 constexpr std::int64_t kSecond = 1'000'000'000;  // ns
 constexpr std::int64_t kDays_s = 24 * 3600;
 
@@ -76,11 +79,21 @@ TEST_F(Security, StandbyTakesOverAndNeitherStrangersNorGroundFlyTheVehicle) {
   comms::Node ground(flight.node_settings("ground"));
   EXPECT_THROW(ground.publish(comms::topics::kActuatorCommand), std::runtime_error);
 
-  const std::int64_t at_ns = flight.stamp_ns();
-  flight.kill(flight.active());
-  const FlightMetrics metrics = flight.metrics(at_ns, at_ns + kSecond);
-  EXPECT_LT(metrics.longest_gap_ms, kLongestGap_ms);
-  EXPECT_EQ(metrics.changes_of_controller, 1);
+  std::vector<double> gaps_ms;
+  for (int kill = 0; kill < 3; ++kill) {
+    const std::int64_t at_ns = flight.stamp_ns();
+    flight.kill(flight.active());
+    const FlightMetrics metrics = flight.metrics(at_ns, at_ns + kSecond);
+    gaps_ms.push_back(metrics.longest_gap_ms);
+    EXPECT_LT(metrics.longest_gap_ms, kLongestGapBusy_ms);
+    EXPECT_GT(metrics.longest_gap_ms, 10.0) << "the gap must show the kill";
+    EXPECT_LT(metrics.largest_deviation_m, kLargestDeviation_m);
+    EXPECT_EQ(metrics.changes_of_controller, 1);
+    flight.start_controller(kill);
+    flight.wait_for_roles(1, 1);
+  }
+  std::sort(gaps_ms.begin(), gaps_ms.end());
+  EXPECT_LT(gaps_ms[1], kLongestGap_ms) << "the median";
 }
 
 TEST_F(Security, StrangersAreRefusedByName) {

@@ -16,9 +16,9 @@ constexpr auto kFlightTimeout = 240s;
 NetworkFlight::NetworkFlight(std::filesystem::path folder)
     : folder_(std::move(folder)), network_(tests::HostNetwork::Layout::kSwitch, kHosts) {}
 
-void NetworkFlight::run(Host host, const char* program, const std::vector<std::string>& options) {
+tests::Program& NetworkFlight::run(Host host, const char* program, const std::vector<std::string>& options) {
   const tests::HostNetwork::Inside inside(network_, host);
-  programs_.emplace_back(program, options, folder_);
+  return programs_.emplace_back(program, options, folder_);
 }
 
 void NetworkFlight::start(std::uint64_t seed, const std::vector<std::string>& control_options, Host mocap) {
@@ -27,7 +27,13 @@ void NetworkFlight::start(std::uint64_t seed, const std::vector<std::string>& co
   run(kControl, "swiftlet-control", control_options);
 }
 
-void NetworkFlight::start_standby() { run(kVehicle, "swiftlet-control", {}); }
+tests::Program& NetworkFlight::start_standby() { return run(kVehicle, "swiftlet-control", {}); }
+
+std::string NetworkFlight::log() const {
+  std::string all;
+  for (const tests::Program& program : programs_) all += program.errors();
+  return all;
+}
 
 tests::ProgramResult NetworkFlight::ground(const std::vector<std::string>& words,
                                            std::chrono::seconds timeout) const {

@@ -34,15 +34,17 @@ class NetworkFlight {
 
   // Plant, motion capture and control. seed: of the simulation. mocap: the host of motion capture.
   void start(std::uint64_t seed, const std::vector<std::string>& control_options = {}, Host mocap = kVehicle);
-  // One more controller, on the host of the vehicle.
-  void start_standby();
+  // One more controller, on the host of the vehicle. Stays valid.
+  tests::Program& start_standby();
+  // What all programs have logged.
+  std::string log() const;
   // Runs a command of `swiftlet` on the ground.
   tests::ProgramResult ground(const std::vector<std::string>& words, std::chrono::seconds timeout) const;
   // With `swiftlet fly --attach`, to its end. mission: file, or name in config/missions.
   Result fly(const std::string& mission) const;
 
  private:
-  void run(Host host, const char* program, const std::vector<std::string>& options);
+  tests::Program& run(Host host, const char* program, const std::vector<std::string>& options);
 
   const std::filesystem::path folder_;
   const tests::HostNetwork network_;

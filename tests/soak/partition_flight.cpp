@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
-#include <functional>
+#include <csignal>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -15,7 +15,6 @@
 #include "swiftlet/ground/client/controllers.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/network_relay.hpp"
-#include "tests/support/redundant_flight.hpp"
 
 namespace swiftlet::soak {
 namespace {
@@ -27,42 +26,63 @@ using ControlMode = control::Mode;
 namespace msg = comms::msg;
 
 constexpr double kSpeed = 1.0;  // m/s, of the mission
-constexpr int kLaps = 5;
-constexpr auto kFliesOn = 4s;  // after the cut: long enough for every failsafe
+constexpr int kLaps = 20;
+constexpr auto kFailsafes = 2500ms;  // after the cut: longer than each of them waits
 constexpr auto kComesDown = 20s;
 constexpr auto kHeals = 20s;
+constexpr auto kStall = 60ms;
+constexpr double kObeys_ms = 200.0;  // the vehicle, its last command
+constexpr double kTakeover_ms =
+    280.0;  // a standby waits for at most 250 ms, if commands need long, and takes its turn
+constexpr int kAttempts = 4;
 constexpr double kFall_m_s = 1.0;  // faster than any descent
 
 using Host = NetworkFlight::Host;
 constexpr std::array<const char*, 4> kHostNames{"vehicle", "control", "ground", "mocap"};
 
-constexpr std::array<int, 4> kCuts_ms{50, 300, 1000, 5000};
-
 std::vector<Partition> all_partitions() {
-  using Outcomes = std::array<Outcome, kCuts_ms.size()>;
   constexpr Outcome kOn = Outcome::kFliesOn;
   constexpr Outcome kHolds = Outcome::kHolds;
   constexpr Outcome kLands = Outcome::kLands;
   constexpr Outcome kFalls = Outcome::kFalls;
-  struct Row {
-    Host from, to;
-    bool standby;
-    Outcomes outcomes;
+  constexpr Host kVehicle = NetworkFlight::kVehicle;
+  constexpr Host kControl = NetworkFlight::kControl;
+  constexpr Host kGround = NetworkFlight::kGround;
+  constexpr Host kMocap = NetworkFlight::kMocap;
+  constexpr double kOffPath_m = 0.05;
+  constexpr double kPath_m = 1.5;  // stops, lands or falls from 1 m/s
+  const std::vector<Cut> ground_cuts{{50, kOn, "", kOffPath_m},
+                                     {300, kOn, "", kOffPath_m},
+                                     {1000, kLands, "ground link lost, landed", kPath_m},
+                                     {5000, kLands, "ground link lost, landed", kPath_m}};
+  const std::vector<Cut> mocap_cuts{{50, kOn, "", kOffPath_m},
+                                    {300, kOn, "", kOffPath_m},
+                                    {1000, kHolds, "no mocap pose, pose regained", kPath_m},
+                                    {5000, kLands, "no mocap pose, landed without position", kPath_m}};
+  return {
+      {kVehicle,
+       kControl,
+       false,
+       false,
+       kObeys_ms,
+       {{50, kOn, "", kOffPath_m},
+        {300, kFalls, "IMU samples were missing", kPath_m},
+        {1000, kFalls, "IMU samples were missing", kPath_m},
+        {5000, kFalls, "IMU samples were missing", kPath_m}}},
+      {kVehicle,
+       kControl,
+       true,
+       true,
+       kTakeover_ms,
+       {{50, kOn, "", kOffPath_m},
+        {300, kOn, "", kOffPath_m},
+        {1000, kOn, "", kOffPath_m},
+        {5000, kOn, "", kOffPath_m}}},
+      {kControl, kGround, false, false, kObeys_ms, ground_cuts},
+      {kControl, kGround, true, false, kObeys_ms, ground_cuts},
+      {kVehicle, kMocap, false, false, kObeys_ms, mocap_cuts},
+      {kVehicle, kMocap, true, false, kObeys_ms, mocap_cuts},
   };
-  const std::vector<Row> rows{
-      {NetworkFlight::kVehicle, NetworkFlight::kControl, false, {kOn, kFalls, kFalls, kFalls}},
-      {NetworkFlight::kVehicle, NetworkFlight::kControl, true, {kOn, kOn, kOn, kOn}},
-      {NetworkFlight::kControl, NetworkFlight::kGround, false, {kOn, kOn, kLands, kLands}},
-      {NetworkFlight::kControl, NetworkFlight::kGround, true, {kOn, kOn, kLands, kLands}},
-      {NetworkFlight::kVehicle, NetworkFlight::kMocap, false, {kOn, kOn, kHolds, kLands}},
-      {NetworkFlight::kVehicle, NetworkFlight::kMocap, true, {kOn, kOn, kHolds, kLands}},
-  };
-  std::vector<Partition> all;
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i < kCuts_ms.size(); ++i)
-      all.push_back({row.from, row.to, kCuts_ms[i], row.standby, row.outcomes[i]});
-  }
-  return all;
 }
 
 std::unique_ptr<ground::Client> client_on(const tests::HostNetwork& network, Host host, const char* name) {
@@ -82,63 +102,61 @@ class PartitionFlight {
     hosts_.start(1, {}, NetworkFlight::kMocap);
     observer_ = client_on(hosts_.network(), NetworkFlight::kVehicle, "observer");
     observer_->hear_controllers();
-    require(eventually([this] { return ready_controllers() == 1 && control().controller() != 0; },
-                       tests::kStuck, 20ms),
-            "control is ready");
-    controller_ = control().controller();
-    if (partition.standby) hosts_.start_standby();
+    samples_ = std::make_unique<tests::FlightSamples>(observer_->node());
+    wait("control is ready", [this] { return ready_controllers() == 1 && status().controller() != 0; });
+    controller_ = status().controller();
+    if (partition.standby) standby_ = &hosts_.start_standby();
     pilot_ = client_on(hosts_.network(), NetworkFlight::kGround, "pilot");
+    wait("all controllers are ready", [this] {
+      return ready_controllers() == controllers() && pilot_->view().control.message.has_pose();
+    });
+    pilot_->enable_link_loss_failsafe();
   }
 
-  PartitionResult fly() {
-    take_off();
-    PartitionResult result;
-    result.had_priority = control().realtime_scheduling();
-    cut(result);
-    result.outcome = outcome(result);
-    result.reason = control().reason().c_str();
-    result.standby_took_over = result.standby_took_over || standby_flies();
-    result.healed = eventually([this] { return healed(); }, kHeals, 20ms);
-    result.priority_kept = control().realtime_scheduling() == result.had_priority;
+  // Makes it again if the machine stalled, or the first controller for longer than the standby waits, whatever is cut.
+  CutResult make(const Cut& cut) {
+    CutResult result;
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      result = make_once(cut);
+      const bool valid = !result.stalled && result.standby_took_over == partition_.takes_over;
+      if (valid || fault_of(partition_, cut, result).empty()) break;
+    }
     return result;
   }
 
  private:
-  void require(bool holds, const char* what) {
-    if (!holds) throw std::runtime_error(std::string(what) + ": no");
-  }
-  msg::ControlStatus control() const { return observer_->view().control.message; }
-  bool standby_flies() const { return control().controller() != controller_; }
-  ControlMode mode() const { return static_cast<ControlMode>(control().mode()); }
-
-  void take_off() {
-    const std::size_t controllers = partition_.standby ? 2 : 1;
-    require(
-        eventually(
-            [&] { return ready_controllers() == controllers && pilot_->view().control.message.has_pose(); },
-            tests::kStuck, 20ms),
-        "all controllers are ready");
-    pilot_->enable_link_loss_failsafe();
-    require(eventually([this] { return begins_mission(); }, tests::kStuck, 200ms), "it begins the mission");
-    require(eventually(
-                [this] {
-                  const auto& truth = observer_->view().truth.message;
-                  const auto& v = truth.velocity_ned();
-                  return truth.position_ned()[2] < -0.98 && std::hypot(v[0], v[1]) > 0.5;
-                },
-                tests::kStuck, 5ms),
-            "it flies the mission");
+  CutResult make_once(const Cut& cut) {
+    const auto flies = [this] { return mode() == ControlMode::kMission && !standby_flies(); };
+    const auto flies_side = [this] { return samples_->z_ned() < -0.98 && samples_->speed() > 0.5; };
+    do {
+      if (standby_flies()) give_back();
+      if (mode() != ControlMode::kMission) begin_mission();
+      wait("it flies a side", [&] { return !flies() || flies_side(); });
+    } while (!flies() || !flies_side());
+    from_.take_longest_stall();
+    const auto begin = Clock::now();
+    CutResult result;
+    result.had_priority = status().realtime_scheduling();
+    const std::int64_t from_ns = samples_->stamp_ns();
+    result.outcome = outcome_of(cut, result.reasons);
+    const std::chrono::nanoseconds flown(samples_->stamp_ns() - from_ns);
+    result.stalled = from_.take_longest_stall() > kStall || Clock::now() - begin - flown > kStall;
+    result.metrics = samples_->metrics(from_ns, samples_->stamp_ns());
+    result.standby_took_over = standby_flies();
+    result.healed = eventually([this] { return healed(); }, kHeals, 20ms);
+    result.priority_kept = status().realtime_scheduling() == result.had_priority;
+    result.log = hosts_.log();
+    return result;
   }
 
-  // Each request may be refused while the standby takes over on a busy machine.
-  bool begins_mission() {
-    msg::Command arm;
-    arm.kind(msg::Command_Constants::ARM);
-    return pilot_->command(arm, 5s).accepted() &&
-           pilot_->upload(tests::square_laps(kSpeed, kLaps), 10s).accepted() &&
-           pilot_->mission_command(msg::Command_Constants::MISSION_START, pilot_->mission_id(), 10s)
-               .accepted();
+  void wait(const char* what, const std::function<bool()>& predicate) const {
+    if (!eventually(predicate, tests::kStuck, 5ms))
+      throw std::runtime_error(std::string("timed out: ") + what);
   }
+  msg::ControlStatus status() const { return observer_->view().control.message; }
+  std::size_t controllers() const { return partition_.standby ? 2 : 1; }
+  bool standby_flies() const { return status().controller() != controller_; }
+  ControlMode mode() const { return static_cast<ControlMode>(status().mode()); }
 
   // Ready ones that report within 0.5 s.
   std::size_t ready_controllers() const {
@@ -146,53 +164,83 @@ class PartitionFlight {
     const auto now = ground::Clock::now();
     return static_cast<std::size_t>(
         std::count_if(view.controllers.begin(), view.controllers.end(), [&](const auto& controller) {
-          return controller.second.message.ready() && controller.second.age_s(now) < 0.5;
+          return controller.first != dead_ && controller.second.message.ready() &&
+                 controller.second.age_s(now) < 0.5;
         }));
   }
 
-  void note(PartitionResult& result) {
-    const ground::View view = observer_->view();
-    const auto& truth = view.truth.message;
-    fastest_fall_m_s_ = std::max(fastest_fall_m_s_, truth.velocity_ned()[2]);
-    if (mode() != ControlMode::kMission) return;
-    const auto& reference = view.reference.message;
-    const double off_m = std::hypot(truth.position_ned()[0] - reference.position_ned()[0],
-                                    truth.position_ned()[1] - reference.position_ned()[1],
-                                    truth.position_ned()[2] - reference.position_ned()[2]);
-    result.deviation_m = std::max(result.deviation_m, off_m);
+  // Restarts the standby that has taken over, so that the first controller flies again.
+  void give_back() {
+    dead_ = status().controller();
+    standby_->signal(SIGKILL);
+    wait("the first controller takes over", [this] { return !standby_flies(); });
+    standby_ = &hosts_.start_standby();
+    wait("the standby is ready", [this] { return ready_controllers() == controllers(); });
   }
 
-  void cut(PartitionResult& result) {
-    const auto end = Clock::now() + std::chrono::milliseconds(partition_.cut_ms);
-    from_.block(hosts_.network().address(partition_.to));
-    to_.block(hosts_.network().address(partition_.from));
-    eventually(
-        [&] {
-          note(result);
-          return Clock::now() >= end;
-        },
-        10s, 2ms);
-    result.standby_took_over = standby_flies();  // on a busy machine the controller may take over again
-    from_.unblock();
-    to_.unblock();
+  // Each request may be refused while the standby takes over on a busy machine.
+  void begin_mission() {
+    ground::Result answer;
+    const auto accepted = [&](ground::Result result) {
+      answer = std::move(result);
+      return answer.accepted();
+    };
+    const auto does = [&](std::uint8_t kind) {
+      msg::Command command;
+      command.kind(kind);
+      return accepted(pilot_->command(command, 5s));
+    };
+    const auto begins = [&] {
+      if (mode() == ControlMode::kStopped) does(msg::Command_Constants::DISARM);
+      return (status().airborne() || does(msg::Command_Constants::ARM)) &&
+             accepted(pilot_->upload(tests::square_laps(kSpeed, kLaps), 10s)) &&
+             accepted(
+                 pilot_->mission_command(msg::Command_Constants::MISSION_START, pilot_->mission_id(), 10s));
+    };
+    if (!eventually(begins, 20s, 100ms))
+      throw std::runtime_error("it does not begin the mission: " + answer.reason);
+    wait("it flies the mission", [this] { return mode() == ControlMode::kMission; });
   }
 
-  std::optional<Outcome> outcome(PartitionResult& result) {
-    const auto healed = Clock::now();
+  // Cuts the network, and watches until it is clear what comes of it. reasons: of the modes that are entered.
+  // What shall be flown through lasts as long by the wall clock, of which a cable keeps time, and what shall not be at least
+  // as long by that of the vehicle, which a busy machine delays.
+  std::optional<Outcome> outcome_of(const Cut& cut, std::string& reasons) {
+    const std::chrono::milliseconds least(cut.ms);
+    const auto duration = cut.outcome == Outcome::kFliesOn ? least : least + kComesDown;
+    const std::int64_t from_ns = samples_->stamp_ns();
+    const std::uint32_t item = observer_->view().mission.message.item_index();
+    std::string last = status().reason().c_str();
+    from_.block(hosts_.network().address(partition_.to), duration);
+    to_.block(hosts_.network().address(partition_.from), duration);
+    std::optional<Clock::time_point> healed;
     std::optional<Outcome> outcome;
     eventually(
         [&] {
-          note(result);
-          const auto& truth = observer_->view().truth.message;
-          if (truth.on_ground()) {
-            outcome = fastest_fall_m_s_ > kFall_m_s ? Outcome::kFalls : Outcome::kLands;
-          } else if (Clock::now() - healed > kFliesOn) {
-            if (mode() == ControlMode::kMission) outcome = Outcome::kFliesOn;
-            if (mode() == ControlMode::kHolding) outcome = Outcome::kHolds;
+          const ground::View view = observer_->view();
+          const msg::ControlStatus& now = view.control.message;
+          const auto mode = static_cast<ControlMode>(now.mode());
+          if (now.reason().c_str() != std::exchange(last, now.reason().c_str()))
+            reasons += (reasons.empty() ? "" : ", ") + last;
+          if (duration > least &&
+              samples_->stamp_ns() - from_ns > std::chrono::nanoseconds(least + 10ms).count()) {
+            from_.unblock();
+            to_.unblock();
+          }
+          if (from_.blocked() || to_.blocked()) return false;
+          if (!healed) healed = Clock::now();
+          if (view.truth.message.on_ground()) {
+            const double fall_m_s = samples_->metrics(from_ns, samples_->stamp_ns()).fastest_fall_m_s;
+            if (fall_m_s > kFall_m_s && mode == ControlMode::kStopped) outcome = Outcome::kFalls;
+            if (fall_m_s <= kFall_m_s && mode == ControlMode::kDisarmed) outcome = Outcome::kLands;
+          } else if (Clock::now() - *healed > kFailsafes) {
+            if (mode == ControlMode::kMission && view.mission.message.item_index() > item)
+              outcome = Outcome::kFliesOn;
+            if (mode == ControlMode::kHolding) outcome = Outcome::kHolds;
           }
           return outcome.has_value();
         },
-        kComesDown, 5ms);
+        duration + kComesDown, 5ms);
     return outcome;
   }
 
@@ -202,18 +250,20 @@ class PartitionFlight {
     const auto is_fresh = [&](const ground::View& view) {
       return view.control.seen() && view.control.age_s(now) < 0.5 && view.truth.age_s(now) < 0.5;
     };
-    const std::size_t controllers = partition_.standby ? 2 : 1;
     return is_fresh(observer_->view()) && is_fresh(pilot_->view()) &&
-           ground::controllers_of(observer_->view(), now).count() >= static_cast<int>(controllers) &&
-           control().mocap_age_s() >= 0.0 && control().mocap_age_s() < 0.5;
+           ground::controllers_of(observer_->view(), now).count() >= static_cast<int>(controllers()) &&
+           status().mocap_age_s() >= 0.0 && status().mocap_age_s() < 0.5;
   }
 
-  const Partition partition_;
+  const Partition& partition_;
   NetworkFlight hosts_;
   tests::NetworkRelay from_, to_;
-  std::unique_ptr<ground::Client> observer_, pilot_;
-  std::uint64_t controller_ = 0;  // not the standby
-  double fastest_fall_m_s_ = 0.0;
+  std::unique_ptr<ground::Client> observer_;
+  std::unique_ptr<tests::FlightSamples> samples_;  // of the observer
+  std::unique_ptr<ground::Client> pilot_;
+  tests::Program* standby_ = nullptr;  // the last one that was started
+  std::uint64_t controller_ = 0;       // on a host of its own
+  std::uint64_t dead_ = 0;             // the standby that was ended last
 };
 
 }  // namespace
@@ -233,8 +283,7 @@ const char* to_string(Outcome outcome) {
 }
 
 std::string Partition::name() const {
-  return fmt::format("{} - {}, {} ms, {} standby", kHostNames.at(from), kHostNames.at(to), cut_ms,
-                     standby ? "with" : "no");
+  return fmt::format("{} - {}, {} standby", kHostNames.at(from), kHostNames.at(to), standby ? "with" : "no");
 }
 
 const std::vector<Partition>& partitions() {
@@ -242,8 +291,29 @@ const std::vector<Partition>& partitions() {
   return all;
 }
 
-PartitionResult fly_through(const Partition& partition, const std::filesystem::path& folder) {
-  return PartitionFlight(partition, folder).fly();
+std::string fault_of(const Partition& partition, const Cut& cut, const CutResult& result) {
+  if (result.outcome != cut.outcome) return std::string("expected: ") + to_string(cut.outcome);
+  if (result.reasons.find(cut.reasons) == std::string::npos)
+    return std::string("expected as reasons: ") + cut.reasons;
+  if (result.standby_took_over != partition.takes_over)
+    return partition.takes_over ? "the standby did not take over" : "the standby took over";
+  if (result.metrics.changes_of_controller != (partition.takes_over ? 1 : 0))
+    return fmt::format("{} changes of the controller", result.metrics.changes_of_controller);
+  if (cut.outcome != Outcome::kFalls && result.metrics.longest_gap_ms > partition.longest_gap_ms)
+    return fmt::format("expected: at most {} ms without a new command", partition.longest_gap_ms);
+  if ((cut.outcome == Outcome::kFliesOn ? result.metrics.largest_deviation_m
+                                        : result.metrics.final_distance_m) > cut.within_m)
+    return fmt::format("expected: within {} m", cut.within_m);
+  if (!result.healed) return "some do not hear each other again";
+  if (!result.had_priority) return "the real-time priority was not granted";
+  if (!result.priority_kept) return "the real-time priority was lost";
+  return "";
+}
+
+void fly_through(const Partition& partition, const std::filesystem::path& folder,
+                 const std::function<void(const Cut&, const CutResult&)>& report) {
+  PartitionFlight flight(partition, folder);
+  for (const Cut& cut : partition.cuts) report(cut, flight.make(cut));
 }
 
 }  // namespace swiftlet::soak

@@ -1,48 +1,67 @@
-// A flight in which the network between two hosts is cut for a time. Needs root.
+// A flight in which the network between two hosts is cut for a time, several times. Needs root.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "tests/soak/network_flight.hpp"
+#include "tests/support/flight_samples.hpp"
 
 namespace swiftlet::soak {
 
 enum class Outcome {
-  kFliesOn,  // the mission goes on
+  kFliesOn,  // the mission goes on to its next item
   kHolds,    // the mission is aborted, and it hovers
-  kLands,    // with a failsafe
+  kLands,    // with a failsafe, and disarms
   kFalls,    // the rotors stop in flight
 };
 const char* to_string(Outcome outcome);
 
-// A row of the table in docs/lossy-networks.md.
+// A cell of the table in docs/lossy-networks.md: a cut, and what has to come of it.
+struct Cut {
+  int ms;
+  Outcome outcome;
+  const char* reasons;  // part of CutResult::reasons
+  // At most, m: while the mission is flown, of the true position from the reference of the same time; otherwise
+  // horizontally, from the place of the cut to the last one.
+  double within_m;
+};
+
+// A row of that table: one flight.
 struct Partition {
   NetworkFlight::Host from;
   NetworkFlight::Host to;
-  int cut_ms;
-  bool standby;  // on the host of the vehicle
-  Outcome expected;
+  bool standby;     // on the host of the vehicle
+  bool takes_over;  // the standby has to, at each cut
+  double
+      longest_gap_ms;  // without a newer command, at most, within half a second of the cut, unless it falls
+  std::vector<Cut> cuts;
 
-  std::string name() const;  // "vehicle - control, 300 ms, with standby"
+  std::string name() const;  // "vehicle - control, with standby"
 };
 const std::vector<Partition>& partitions();
 
-struct PartitionResult {
+struct CutResult {
   std::optional<Outcome> outcome;  // nullopt: neither flew on nor came down
-  std::string reason;              // of the last mode
-  double deviation_m = 0.0;        // largest distance from the reference, as long as it flies the mission
+  std::string reasons;             // of the modes entered since the cut, such as "ground link lost, landed"
+  tests::FlightMetrics metrics;    // from the cut until the outcome was clear
   bool standby_took_over = false;
+  bool stalled = false;        // the machine: the cable, or the clock of the vehicle, stood still
   bool healed = false;         // after the cut, all processes hear each other again
   bool had_priority = false;   // the flight threads of the controller that flies, before the cut
   bool priority_kept = false;  // they have the same scheduling as before
+  std::string log;             // of all programs so far
 };
 
-// Starts all processes on hosts of their own, flies laps, and cuts the network in flight. Programs write their output into
-// the folder. Throws std::runtime_error if it cannot be started.
-PartitionResult fly_through(const Partition& partition, const std::filesystem::path& folder);
+// What is not as it has to be, a sentence; empty: all is.
+std::string fault_of(const Partition& partition, const Cut& cut, const CutResult& result);
+
+// Starts all processes on hosts of their own, flies laps, and makes the cuts one after the other; takes off again after a
+// landing. Programs write their output into the folder. Throws std::runtime_error if it cannot be flown.
+void fly_through(const Partition& partition, const std::filesystem::path& folder,
+                 const std::function<void(const Cut&, const CutResult&)>& report);
 
 }  // namespace swiftlet::soak

@@ -145,28 +145,40 @@ NetworkRelay::~NetworkRelay() {
   ::close(switch_end_);
 }
 
-void NetworkRelay::block(const std::string& address) { blocked_ = ::inet_addr(address.c_str()); }
-
-void NetworkRelay::unblock() { blocked_ = 0; }
+void NetworkRelay::block(const std::string& address, std::chrono::milliseconds duration) {
+  blocked_for_ = duration;
+  blocked_ = ::inet_addr(address.c_str());
+}
 
 void NetworkRelay::run(int host_end, int switch_end) {
   Cable cable(conditions_);
   const std::array<int, 2> ends{host_end, switch_end};
   std::array<std::uint64_t, 2> newest{};  // number of the newest frame sent on, for each direction
   Bytes buffer(kLongestFrame);
-  while (!stop_) {
+  bool is_blocked = false;
+  Clock::time_point unblocked;  // when the block ends
+  for (auto last_turn = Clock::now(); !stop_;) {
     auto wait = std::chrono::duration_cast<std::chrono::nanoseconds>(kPoll);
     if (!cable.empty())
       wait = std::clamp<std::chrono::nanoseconds>(cable.next().due - Clock::now(), wait * 0, wait);
     const timespec timeout{0, wait.count()};
     std::array<pollfd, 2> polled{pollfd{host_end, POLLIN, 0}, pollfd{switch_end, POLLIN, 0}};
     ::ppoll(polled.data(), polled.size(), &timeout, nullptr);
+    const auto turn = Clock::now();
+    longest_turn_ns_ = std::max(longest_turn_ns_.load(), std::chrono::nanoseconds(turn - last_turn).count());
+    last_turn = turn;
     for (std::size_t from = 0; from < ends.size(); ++from) {
       for (ssize_t size; (size = ::recv(ends[from], buffer.data(), buffer.size(), 0)) > 0;) {
         Bytes frame(buffer.begin(), buffer.begin() + size);
-        const std::uint32_t blocked = blocked_;
-        if (blocked != 0 && concerns(frame, blocked)) continue;
-        if (cable.enter(1 - from, std::move(frame), Clock::now())) ++duplicated_;
+        const auto now = Clock::now();
+        if (!is_blocked && blocked_ != 0) unblocked = now + blocked_for_.load();
+        is_blocked = blocked_ != 0;
+        if (is_blocked && now >= unblocked) {
+          blocked_ = 0;
+          is_blocked = false;
+        }
+        if (is_blocked && concerns(frame, blocked_)) continue;
+        if (cable.enter(1 - from, std::move(frame), now)) ++duplicated_;
       }
     }
     for (const auto now = Clock::now(); !cable.empty() && cable.next().due <= now; cable.pop()) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <thread>
@@ -27,9 +28,16 @@ class NetworkRelay {
   NetworkRelay(const NetworkRelay&) = delete;
   NetworkRelay& operator=(const NetworkRelay&) = delete;
 
-  // From now on no frame of IPv4 from or to that host passes; unblock() lets all pass again.
-  void block(const std::string& address);
-  void unblock();
+  // From the next frame on, no frame of IPv4 from or to that host passes for this time, or until unblock().
+  void block(const std::string& address, std::chrono::milliseconds duration);
+  void unblock() { blocked_ = 0; }
+  bool blocked() const { return blocked_ != 0; }
+
+  // The longest time in which the thread, of the highest priority, got no core, up to its poll of 20 ms more; since the last
+  // call. On a machine that stalls, no network can be tried.
+  std::chrono::nanoseconds take_longest_stall() {
+    return std::chrono::nanoseconds(longest_turn_ns_.exchange(0));
+  }
 
   std::uint64_t overtaken() const { return overtaken_; }    // frames that arrived before an earlier one
   std::uint64_t duplicated() const { return duplicated_; }  // frames
@@ -40,8 +48,10 @@ class NetworkRelay {
 
   const CableConditions conditions_;
   std::atomic<std::uint32_t> blocked_{0};  // IPv4 address as on the wire; 0: none
+  std::atomic<std::chrono::milliseconds> blocked_for_{};
   std::atomic<std::uint64_t> overtaken_{0};
   std::atomic<std::uint64_t> duplicated_{0};
+  std::atomic<std::int64_t> longest_turn_ns_{0};
   std::atomic<bool> stop_{false};
   int host_end_ = -1;
   int switch_end_ = -1;

@@ -2,14 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <csignal>
-#include <iterator>
 #include <stdexcept>
-#include <utility>
 
-#include "swiftlet/control/types/polynomial.hpp"
-#include "swiftlet/control/types/settings.hpp"
 #include "tests/support/eventually.hpp"
 
 namespace swiftlet::tests {
@@ -18,16 +13,6 @@ namespace {
 using namespace std::chrono_literals;
 namespace msg = comms::msg;
 namespace topics = comms::topics;
-
-double norm(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
-
-std::array<double, 3> difference(const std::array<double, 3>& a, const std::array<double, 3>& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-constexpr double kSide_m = 2.0;
-
-double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 }  // namespace
 
@@ -46,26 +31,13 @@ RedundantFlight::RedundantFlight(const std::filesystem::path& folder, std::vecto
           folder),
       mocap_("swiftlet-mocap", network(), folder),
       client_(node_settings("ground")),
-      node_(node_settings("observer")) {
-  const auto keep = [this](auto& samples, std::int64_t stamp_ns, const auto& sample) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    samples[stamp_ns] = sample;
-  };
-  subscriptions_.push_back(node_.subscribe<msg::Imu>(
-      topics::kImu, [this, keep](const msg::Imu& message) { keep(imu_, message.stamp_ns(), message); }));
-  subscriptions_.push_back(
-      node_.subscribe<msg::GroundTruth>(topics::kGroundTruth, [this, keep](const msg::GroundTruth& message) {
-        keep(truth_, message.stamp_ns(), Truth{message.position_ned(), norm(message.velocity_ned())});
-      }));
-  subscriptions_.push_back(node_.subscribe<msg::Reference>(
-      topics::kReference,
-      [this, keep](const msg::Reference& message) { keep(reference_, message.stamp_ns(), message); }));
-  subscriptions_.push_back(node_.subscribe<msg::ControllerState>(
-      topics::kControllerState, [this](const msg::ControllerState& message) {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        states_[message.controller()] = {message, ground::Clock::now()};
-      }));
-}
+      node_(node_settings("observer")),
+      samples_(node_),
+      controller_states_(node_.subscribe<msg::ControllerState>(
+          topics::kControllerState, [this](const msg::ControllerState& message) {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            states_[message.controller()] = {message, ground::Clock::now()};
+          })) {}
 
 std::vector<std::string> RedundantFlight::network() const {
   const char* const transport = transport_ == comms::Transport::kSharedMemory ? "shm" : "udp";
@@ -188,82 +160,11 @@ void RedundantFlight::fly(const control::Mission& mission) {
   ask(msg::Command_Constants::MISSION_START);
 }
 
-std::int64_t RedundantFlight::stamp_ns() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return imu_.empty() ? 0 : imu_.rbegin()->first;
-}
-
-double RedundantFlight::speed() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return truth_.empty() ? 0.0 : truth_.rbegin()->second.speed;
-}
-
-double RedundantFlight::z_ned() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return truth_.empty() ? 0.0 : truth_.rbegin()->second.position_ned[2];
-}
-
-std::optional<double> RedundantFlight::deviation_m(std::int64_t stamp_ns) const {
-  const auto truth = truth_.find(stamp_ns);
-  const auto reference = reference_.find(stamp_ns);
-  if (truth == truth_.end() || reference == reference_.end()) return std::nullopt;
-  return norm(difference(truth->second.position_ned, reference->second.position_ned()));
-}
-
 FlightMetrics RedundantFlight::metrics(std::int64_t from_ns, std::int64_t to_ns,
                                        std::int64_t period_ns) const {
   constexpr std::int64_t kMargin_ns = 50'000'000;  // for telemetry that arrives late
   wait("the vehicle's time passes", [&] { return stamp_ns() > to_ns + kMargin_ns; });
-  const std::lock_guard<std::mutex> lock(mutex_);
-  FlightMetrics metrics;
-  std::uint32_t term = 0;
-  for (auto imu = imu_.lower_bound(from_ns); imu != imu_.upper_bound(to_ns); ++imu) {
-    ++metrics.samples;
-    const auto gap_ns = imu->first - imu->second.command_stamp_ns();
-    metrics.longest_gap_ms = std::max(metrics.longest_gap_ms, seconds(gap_ns) * 1e3);
-    if (term != 0 && imu->second.command_term() != term) ++metrics.changes_of_controller;
-    term = imu->second.command_term();
-  }
-  const msg::Reference* last = nullptr;
-  for (auto reference = reference_.lower_bound(from_ns); reference != reference_.upper_bound(to_ns);
-       ++reference) {
-    const msg::Reference& now = reference->second;
-    const std::optional<double> deviation = deviation_m(reference->first);
-    const std::optional<double> usual = deviation_m(reference->first - period_ns);
-    if (deviation) metrics.largest_deviation_m = std::max(metrics.largest_deviation_m, *deviation);
-    if (deviation && usual)
-      metrics.extra_deviation_m = std::max(metrics.extra_deviation_m, *deviation - *usual);
-    if (last != nullptr) {
-      const double passed_s = seconds(now.stamp_ns() - last->stamp_ns());
-      std::array<double, 3> step = difference(now.position_ned(), last->position_ned());
-      for (std::size_t i = 0; i < 3; ++i) step[i] -= last->velocity_ned()[i] * passed_s;
-      metrics.largest_step_m = std::max(metrics.largest_step_m, norm(step));
-    }
-    last = &now;
-  }
-  metrics.lowest_z_ned = -1e9;
-  for (auto truth = truth_.lower_bound(from_ns); truth != truth_.upper_bound(to_ns); ++truth)
-    metrics.lowest_z_ned = std::max(metrics.lowest_z_ned, truth->second.position_ned[2]);
-  return metrics;
-}
-
-control::Mission square_laps(double speed, int laps) {
-  using control::MissionItemKind;
-  const double z = -1.0;
-  control::Mission mission;
-  mission.items.push_back({MissionItemKind::kTakeoff, {0.0, 0.0, z}, 0.0, true, 0.5, 0.0});
-  for (int lap = 0; lap < laps; ++lap) {
-    for (const auto& [x, y] : {std::pair{kSide_m, 0.0}, {kSide_m, kSide_m}, {0.0, kSide_m}, {0.0, 0.0}})
-      mission.items.push_back({MissionItemKind::kWaypoint, {x, y, z}, 0.0, true, speed, 0.0});
-  }
-  mission.items.push_back({MissionItemKind::kLand, {0.0, 0.0, 0.0}, 0.0, true, 0.5, 0.0});
-  return mission;
-}
-
-std::int64_t side_ns(double speed) {
-  return std::llround(1e9 * control::minimum_jerk_duration(kSide_m, speed,
-                                                           control::Limits().max_reference_acceleration,
-                                                           control::Limits().max_reference_jerk));
+  return samples_.metrics(from_ns, to_ns, period_ns);
 }
 
 }  // namespace swiftlet::tests

@@ -14,6 +14,7 @@
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
+#include "tests/support/flight_samples.hpp"
 #include "tests/support/program.hpp"
 
 namespace swiftlet::tests {
@@ -23,17 +24,6 @@ struct Controller {
   std::unique_ptr<Program> process;
   std::uint64_t id = 0;  // as in controller_state
   int failover_priority = 0;
-};
-
-// Metrics of a time interval of the flight.
-struct FlightMetrics {
-  double longest_gap_ms = 0.0;       // without a newer command, on the vehicle's clock
-  double largest_deviation_m = 0.0;  // of true position from reference
-  double extra_deviation_m = 0.0;    // more than one period earlier, at the same point of the path
-  double largest_step_m = 0.0;       // of the reference, beyond its velocity times the elapsed time
-  int changes_of_controller = 0;
-  double lowest_z_ned = 0.0;  // m; z points down
-  std::size_t samples = 0;
 };
 
 class RedundantFlight {
@@ -73,26 +63,21 @@ class RedundantFlight {
   comms::NodeSettings node_settings(const char* name) const;
 
   // Of the vehicle's newest sample.
-  std::int64_t stamp_ns() const;
-  double speed() const;  // m/s
-  double z_ned() const;  // m
+  std::int64_t stamp_ns() const { return samples_.stamp_ns(); }
+  double speed() const { return samples_.speed(); }  // m/s
+  double z_ned() const { return samples_.z_ned(); }  // m
   // Metrics between two stamps; waits for the second. period_ns: of a repeating path, 0 if none.
   FlightMetrics metrics(std::int64_t from_ns, std::int64_t to_ns, std::int64_t period_ns = 0) const;
 
   const std::filesystem::path& folder() const { return folder_; }
 
  private:
-  struct Truth {
-    std::array<double, 3> position_ned{};
-    double speed = 0.0;
-  };
   struct ReceivedState {
     comms::msg::ControllerState message;
     ground::Clock::time_point at;
   };
 
   int count(std::uint8_t role) const;
-  std::optional<double> deviation_m(std::int64_t stamp_ns) const;  // with the lock held
 
   comms::DomainLock lock_;
   std::filesystem::path folder_;
@@ -102,20 +87,13 @@ class RedundantFlight {
   Program plant_, mocap_;
   std::vector<std::unique_ptr<Controller>> controllers_;
 
-  mutable std::mutex mutex_;                     // guards all up to client_
-  std::map<std::int64_t, comms::msg::Imu> imu_;  // by stamp
-  std::map<std::int64_t, Truth> truth_;
-  std::map<std::int64_t, comms::msg::Reference> reference_;
+  mutable std::mutex mutex_;                       // guards states_
   std::map<std::uint64_t, ReceivedState> states_;  // by controller
 
   ground::Client client_;
   comms::Node node_;
-  std::vector<comms::Subscription> subscriptions_;  // last: the callbacks use the members above
+  FlightSamples samples_;
+  comms::Subscription controller_states_;  // last: its callback uses the members above
 };
-
-// Laps of a square with sides of 2 m at 1 m height, with vertical take-off and landing. Every side takes
-// side_ns(speed).
-control::Mission square_laps(double speed, int laps);
-std::int64_t side_ns(double speed);
 
 }  // namespace swiftlet::tests

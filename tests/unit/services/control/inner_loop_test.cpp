@@ -1,0 +1,74 @@
+// What a controller reports of itself: whether it can take over.
+#include "swiftlet/services/control/inner_loop.hpp"
+
+#include <cstdint>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+
+namespace swiftlet::services {
+namespace {
+
+constexpr std::int64_t kPeriod = 2'000'000;  // ns
+constexpr std::uint64_t kSamplesPerPose = 5;
+constexpr std::uint32_t kTerm = 65'536;
+
+// A standby of a vehicle that stands, and follows an active controller.
+class StandbyLoop : public testing::Test {
+ protected:
+  StandbyLoop() {
+    imu_.specific_force_frd = {0.0, 0.0, -plant::kGravity};
+    pose_.tracked = true;
+  }
+  void follow() {
+    FailoverState state;
+    state.number = 1;
+    state.term = kTerm;
+    loop_.failover_state.put(state);
+  }
+  // Returns whether it is ready afterwards.
+  bool run(std::int64_t duration_ns, bool with_poses) {
+    for (const std::int64_t end_ns = imu_.stamp_ns + duration_ns; imu_.stamp_ns < end_ns;) {
+      imu_.stamp_ns += kPeriod;
+      ++imu_.sequence;
+      if (with_poses && imu_.sequence % kSamplesPerPose == 0) {
+        pose_.stamp_ns = imu_.stamp_ns;
+        ++pose_.sequence;
+        pose_.position_ned.x() = pose_.sequence % 2 == 0 ? 1e-5 : -1e-5;  // noise: equal poses count as stuck
+        loop_.pose.put(pose_);
+      }
+      loop_.step(imu_, imu_.stamp_ns, Role::kStandby, kTerm);
+      loop_.finish(imu_.stamp_ns);
+    }
+    comms::ControllerReport report;
+    loop_.report(report);
+    return report.ready;
+  }
+
+  plant::ImuSample imu_;
+  plant::PoseSample pose_;
+  InnerLoop loop_{runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml"),
+                  runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml")};
+};
+
+TEST_F(StandbyLoop, IsReadyWhenItsEstimateHasSettled) {
+  follow();
+  EXPECT_FALSE(run(1'000'000'000, false));
+  EXPECT_FALSE(run(InnerLoop::kSettlingNs - 20 * kPeriod, true));
+  EXPECT_TRUE(run(100 * kPeriod, true));
+  EXPECT_FALSE(run(1'000'000'000, false)) << "the poses ceased";
+  EXPECT_FALSE(run(InnerLoop::kSettlingNs / 2, true)) << "they came again";
+  EXPECT_TRUE(run(InnerLoop::kSettlingNs, true));
+}
+
+TEST_F(StandbyLoop, IsNotReadyAsLongAsItFollowsNobody) {
+  EXPECT_FALSE(run(2'000'000'000, true));
+  follow();
+  EXPECT_TRUE(run(kPeriod, true));
+}
+
+}  // namespace
+}  // namespace swiftlet::services
