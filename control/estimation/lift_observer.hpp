@@ -16,7 +16,7 @@ namespace swiftlet::control {
 class LiftObserver {
  public:
   static constexpr double kLiftOff = 0.15;   // m/s^2, upward acceleration that shows lift-off
-  static constexpr double kSure = 5.0;       // and so many standard deviations of its noise on the ground
+  static constexpr double kSure = 4.0;       // and so many standard deviations of its noise on the ground
   static constexpr double kNoise_s = 0.3;    // of the mean of that noise
   static constexpr double kLeastLift = 5.0;  // m/s^2, modelled: with less, the vehicle does not lift off
   static constexpr double kOnset_s = 0.02;   // of the filter until lift-off
