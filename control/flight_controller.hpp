@@ -66,6 +66,10 @@ class FlightController {
   // flight is stopped after 0.5 s of one, and none begins.
   void set_vehicle_fault(const VehicleFault& fault);
 
+  // What the vehicle reports of its rotors in vehicle_info, from the next step on. At other levels than actuators a take-off begins
+  // when they run: a vehicle with an arming of its own starts them later than it is told to. Without a call they run when told to.
+  void set_rotors_running(bool running);
+
   void on_pose(const plant::PoseSample& sample);
   void on_battery(const plant::BatterySample& sample);
   void on_rotor_speeds(const plant::RotorSpeedSample& sample);

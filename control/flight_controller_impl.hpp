@@ -121,6 +121,7 @@ struct FlightController::Impl {
   Allocator::Supply supply;  // now
   VehicleFault vehicle_fault{};
   std::int64_t vehicle_fault_since_ns = 0;  // of the first step with it
+  bool rotors_running = true;               // as the vehicle reports
   plant::ControlLevel level = plant::ControlLevel::kActuators;
   plant::ControlLevels accepted_levels = plant::ControlLevel::kActuators;
   plant::ActuatorCommand command;  // at other levels without throttles

@@ -134,6 +134,7 @@ SupervisorInputs FlightController::Impl::inputs() const {
   inputs.imu_gap_s = imu_gap_s;
   inputs.level = level;
   inputs.accepted_levels = accepted_levels;
+  inputs.rotors_running = rotors_running || level == plant::ControlLevel::kActuators;
   if (level != plant::ControlLevel::kActuators && vehicle_fault[0] != '\0') {
     inputs.vehicle_fault = vehicle_fault.data();
     inputs.vehicle_fault_s = seconds(last_stamp_ns - vehicle_fault_since_ns);

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 
 #include "swiftlet/recording/flight_record.hpp"
 
@@ -23,6 +25,14 @@ enum class TruthSource {
   kInterpolated,  // else from rows at most kLongestInterpolationS apart, with position and velocity: a network may lose rows
 };
 constexpr double kLongestInterpolationS = 0.05;  // at a snap of 1000 m/s^4 the error is below 20 um
+
+// The truth of a stamp; nullopt if it is not known. Interpolated are the position by the cubic Hermite polynomial, all else linearly.
+// after: the first row that is not older, or the end.
+std::optional<TruthRow> truth_at(const Track<TruthRow>& truth, const TruthRow* after, std::int64_t stamp_ns,
+                                 TruthSource source);
+
+// The 3-D error of the newest of the last 64 references whose truth is known, m; NaN if there is none.
+double newest_error_m(const Track<TruthRow>& truth, const Track<ReferenceRow>& reference);
 
 // The rows of both tracks must be in ascending order of their stamps.
 TrackingErrors tracking_errors(const Track<TruthRow>& truth, const Track<ReferenceRow>& reference,

@@ -23,8 +23,18 @@ void LiftObserver::step_on_ground(double dt_s, const Eigen::Vector3d& specific_f
   }
   update(dt_s, -specific_force_frd.z(), lift, kOnset_s);
   const double upward = -(q_ned_from_frd * specific_force_frd).z() - plant::kGravity;
-  upward_ += dt_s / (kOnset_s + dt_s) * (upward - upward_);
-  if (upward_ < kLiftOff || modelled_ < kLeastLift) return;
+  // Of white noise the mean keeps the variance part / (2 - part), and the innovation has 2 / (2 - part) of it. Vibration rises with
+  // the lift.
+  const double part = dt_s / (kOnset_s + dt_s);
+  const double of_noise = dt_s / (ground_s_ + dt_s);
+  const double innovation = upward - upward_;
+  innovation_ += of_noise * (innovation * innovation - innovation_);
+  squared_lift_ += of_noise * (lift * lift - squared_lift_);
+  ground_s_ = std::min(ground_s_ + dt_s, kNoise_s);
+  upward_ += part * innovation;
+  if (modelled_ < kLeastLift) return;
+  const double noise = lift * std::sqrt(0.5 * part * innovation_ / squared_lift_);
+  if (upward_ < std::max(kLiftOff, kSure * noise)) return;
   lifted_off_ = true;
   ratio_ = std::clamp(measured_ / modelled_, kLeast, kMost);
 }

@@ -30,21 +30,27 @@ class TakeoffConsistencyMonitor {
   }
 
  private:
-  // A height after the high pass s^2 / (s + 1 / memory_s)^2.
-  struct Climb {
+  // A height after the high pass s^2 / (s + 1 / memory_s)^2, of an acceleration and of a height. Samples may follow each other at
+  // any interval.
+  struct InertialClimb {
     double height_m = 0.0;
     double speed = 0.0;  // m/s
-    void step(double dt_s, double speed_change, double memory_s);
+    void step(double dt_s, double acceleration, double memory_s);
+  };
+  struct PoseClimb {
+    double height_m = 0.0;
+    double slow_m = 0.0;       // of the climb: what the first pass takes away
+    double slow_once_m = 0.0;  // and the second
+    void step(double dt_s, double climb_m, double memory_s);
   };
 
   TakeoffConsistencySettings settings_;
   bool active_ = false;
   double elapsed_s_ = 0.0;
   double start_z_ned_ = 0.0;
-  double z_ned_ = 0.0;
-  double speed_ = 0.0;  // m/s, upward, of the estimate's height
   Eigen::Vector3d bias_frd_ = Eigen::Vector3d::Zero();
-  Climb inertial_, by_pose_;
+  InertialClimb inertial_;
+  PoseClimb by_pose_;
 };
 
 }  // namespace swiftlet::control

@@ -32,6 +32,7 @@ struct GuidanceContext {
   std::int64_t now_ns;
   GuidanceState& state;
   std::int64_t lift_off_ns = 0;  // of the present take-off; 0: not observed; or kNoLiftOffYet
+  bool rotors_running = true;    // false: the vehicle has not yet obeyed the command to start them
 };
 
 inline double elapsed_s(std::int64_t from_ns, std::int64_t to_ns) {

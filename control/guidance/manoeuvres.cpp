@@ -139,6 +139,13 @@ void advance_spool_up(const GuidanceContext& context) {
     climb_from(context, state.path.at(context.now_ns).position_ned, context.now_ns);
 }
 
+// A vehicle with an arming of its own starts its rotors later than it is told to.
+void await_rotors(const GuidanceContext& context) {
+  const bool on_ground = context.lift_off_ns == 0 || context.lift_off_ns > context.now_ns;
+  if (context.rotors_running || context.state.phase != Phase::kSpoolUp || !on_ground) return;
+  context.state.phase_since_ns = std::max(context.state.phase_since_ns, context.now_ns + 1);
+}
+
 // The planned part of a landing is over: sinks until touchdown is detected.
 void sink(const GuidanceContext& context) {
   GuidanceState& state = context.state;
@@ -444,6 +451,7 @@ void advance(const GuidanceContext& context) {
   if (context.estimate.position_ned.z() < state.ground_z_ned - kAirborneHeight_m) state.airborne = true;
   if (context.mode == Mode::kSetpoint && goes_past_position(state.setpoint_kind))
     return follow_estimate(context);
+  await_rotors(context);
   if (state.phase == Phase::kSpoolUp && context.now_ns >= state.phase_since_ns) advance_spool_up(context);
   if (state.phase != Phase::kPath) return;
   if (context.mode == Mode::kMission) return advance_mission(context);

@@ -43,6 +43,7 @@ struct SupervisorInputs {
   // vehicle has loops and modes of its own.
   const char* vehicle_fault = "";
   double vehicle_fault_s = 0.0;
+  bool rotors_running = true;  // as the vehicle reports; true at level actuators, where rotors start at once
   // Time since the rotors' limits cut a command.
   double unsaturated_s = std::numeric_limits<double>::infinity();
 };

@@ -10,6 +10,7 @@
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/client/action.hpp"
 #include "swiftlet/recording/flight_window.hpp"
+#include "swiftlet/recording/tracking.hpp"
 #include "swiftlet/services/dds/clocks/clock_client.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
@@ -67,25 +68,6 @@ std::string missing_peer(const View& view) {
 // Simulated time since `since_ns`. The time limits of a flight are in the vehicle's time.
 double simulated_s(const View& view, std::int64_t since_ns) {
   return static_cast<double>(view.truth.message.stamp_ns() - since_ns) * 1e-9;
-}
-
-// The newest tracking error, from truth and reference of equal stamp; NaN if the last 64 rows have no such
-// pair.
-double newest_error_m(const FlightRecord& record) {
-  constexpr std::size_t kLookBack = 64;
-  const std::size_t truths = record.truth.size();
-  const std::size_t references = record.reference.size();
-  for (std::size_t i = 0; i < std::min(truths, kLookBack); ++i) {
-    const TruthRow& truth = record.truth[truths - 1 - i];
-    for (std::size_t k = 0; k < std::min(references, kLookBack); ++k) {
-      const ReferenceRow& reference = record.reference[references - 1 - k];
-      if (reference.stamp_ns != truth.stamp_ns) continue;
-      return std::hypot(truth.position_ned[0] - reference.position_ned[0],
-                        truth.position_ned[1] - reference.position_ned[1],
-                        truth.position_ned[2] - reference.position_ned[2]);
-    }
-  }
-  return std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace
@@ -277,6 +259,9 @@ void NetworkTransport::advance() {
   }
   if (control_silence_.lasts(view.control.count)) fail_silent("control");
   if (vehicle_silence_.lasts(view.truth.count)) fail_silent("the vehicle");
+  // Another process may publish the truth (swiftlet-plant --truth-only): control repeats its status with the stamp of the last sample.
+  const auto answered_ns = static_cast<std::uint64_t>(view.control.message.stamp_ns());
+  if (sample_silence_.lasts(answered_ns)) fail_silent("the vehicle");
 }
 
 // Ends the flight if another tool's request or setpoints have ended the mission. The processes of an attached
@@ -397,7 +382,7 @@ void NetworkTransport::update_progress(const View& view) {
   const std::string text = fmt::format(
       "{:5.1f} s  {}/{} {:<10}  ({:5.2f}, {:5.2f}, {:5.2f}) m, {:5.1f} mm off, {:.2f} V", time_s, item + 1,
       mission_.mission.items.size(), to_string(mission_.mission.items[item].kind), position[0], position[1],
-      position[2], newest_error_m(record_) * 1e3, view.battery.message.voltage_v());
+      position[2], newest_error_m(record_.truth, record_.reference) * 1e3, view.battery.message.voltage_v());
   std::string line = text;
   if (mode_of(view) != ControlMode::kMission)
     line += std::string(", ") + mode_name(view.control.message.mode());

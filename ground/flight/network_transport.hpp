@@ -86,7 +86,7 @@ class NetworkTransport final : public MissionTransport {
   Result start_;               // the answer to the request that started the mission
   Watch watch_;
   Progress& progress_;
-  Silence control_silence_, vehicle_silence_;
+  Silence control_silence_, vehicle_silence_, sample_silence_;
 };
 
 }  // namespace swiftlet::ground

@@ -16,6 +16,7 @@
 #include "swiftlet/ground/plot/path_figure.hpp"
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/csv_writer.hpp"
+#include "swiftlet/recording/tracking.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -32,12 +33,31 @@ const Row* row_at(const Row*& at, const Row* end, std::int64_t stamp_ns) {
 
 double seconds(std::int64_t duration_ns) { return static_cast<double>(duration_ns) * 1e-9; }
 
+// The truth of a vehicle that another process flies (swiftlet-plant --truth-only) has stamps of its own.
+bool has_equal_stamps(const FlightRecord& record) {
+  const ReferenceRow* next = record.reference.begin();
+  return std::any_of(record.truth.begin(), record.truth.end(), [&](const TruthRow& truth) {
+    return row_at(next, record.reference.end(), truth.stamp_ns) != nullptr;
+  });
+}
+
 // Visits each ground truth sample that has a reference of the same stamp, with the estimate of that stamp or
-// null. Without references, visits one about every 15 ms, with null.
+// null. Without references, visits one about every 15 ms, with null. If no stamps are equal, the truth is interpolated at those of
+// the references.
 template <class Visit>
 void for_each_row(const FlightRecord& record, const Visit& visit) {
   const ReferenceRow* next_reference = record.reference.begin();
   const EstimateRow* next_estimate = record.estimate.begin();
+  if (!record.reference.empty() && !has_equal_stamps(record)) {
+    const TruthRow* after = record.truth.begin();
+    for (const ReferenceRow& reference : record.reference) {
+      while (after != record.truth.end() && after->stamp_ns < reference.stamp_ns) ++after;
+      const auto truth = truth_at(record.truth, after, reference.stamp_ns, TruthSource::kInterpolated);
+      if (!truth) continue;
+      visit(*truth, &reference, row_at(next_estimate, record.estimate.end(), reference.stamp_ns));
+    }
+    return;
+  }
   std::int64_t last_ns = std::numeric_limits<std::int64_t>::min() / 2;
   for (const TruthRow& truth : record.truth) {
     const ReferenceRow* reference = row_at(next_reference, record.reference.end(), truth.stamp_ns);

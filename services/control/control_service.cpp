@@ -308,6 +308,9 @@ void ControlService::on_vehicle_info(const msg::VehicleInfo& message) {
   const std::size_t length = std::min(message.fault().size(), fault.size() - 1);
   std::copy_n(message.fault().c_str(), length, fault.begin());
   loop_.vehicle_fault.put(fault);
+  // In lockstep a simulated vehicle obeys at once, and this message comes at no certain sample.
+  if (clock_ != runtime::Clock::kLockstep)
+    loop_.vehicle_rotors_running.store(message.rotors_running(), std::memory_order_relaxed);
   telemetry_.set_vehicle_fault(fault.data());
 }
 

@@ -8,6 +8,11 @@
 #include "swiftlet/services/px4/words.hpp"
 
 namespace swiftlet::px4 {
+namespace {
+
+constexpr const char* kNoSamples = "the link to PX4 is lost: no samples";
+
+}  // namespace
 
 const char* to_string(Phase phase) {
   switch (phase) {
@@ -58,7 +63,7 @@ std::string OffboardSession::link_fault(const OffboardInputs& inputs) const {
   const auto silence = [&](std::int64_t last_ns) { return inputs.now_ns - last_ns; };
   if (silence(inputs.status_ns) > settings_.status_silence_ns ||
       silence(inputs.sampled_ns) > settings_.samples_silence_ns)
-    return "the link to PX4 is lost: no samples";
+    return kNoSamples;
   return {};
 }
 
@@ -166,7 +171,10 @@ std::optional<msg::VehicleCommand> OffboardSession::fly(const OffboardInputs& in
     return std::nullopt;
   }
   if (is_silent(inputs)) {
-    enter(Phase::kLanding, "no command of the control service: PX4 was told to land");
+    // Control answers samples: without any it falls silent too.
+    const bool unanswered = inputs.now_ns - inputs.sampled_ns < settings_.control_silence_ns / 2;
+    enter(Phase::kLanding,
+          unanswered ? "no command of the control service: PX4 was told to land" : kNoSamples);
     return land_now(inputs);
   }
   if (inputs.rotors_wanted) return std::nullopt;

@@ -157,6 +157,43 @@ TEST_P(Px4Square, IsFlown) {
 INSTANTIATE_TEST_SUITE_P(Levels, Px4Square, testing::Values("rates", "attitude", "trajectory"),
                          [](const auto& level) { return std::string(level.param); });
 
+// GIVEN a take-off that is commanded together with arming, as `swiftlet fly` does THEN no thrust is commanded before PX4 has armed, a
+// second later: it would start its rotors with that thrust.
+class Px4Arming : public Px4Square {};
+
+TEST_P(Px4Arming, IsAwaitedByTheTakeOff) {
+  std::mutex mutex;
+  double before_n = 0.0, after_n = 0.0;  // greatest commanded thrust
+  comms::Node node(network("listener"));
+  const auto note = [&](double thrust_n) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    double& greatest_n = px4_->armed() ? after_n : before_n;
+    greatest_n = std::max(greatest_n, thrust_n);
+  };
+  start_all(GetParam());
+  const comms::Subscription rates = node.subscribe<msg::RatesSetpoint>(
+      comms::topics::kRatesSetpoint, [&](const auto& message) { note(message.thrust_n()); });
+  const comms::Subscription attitudes = node.subscribe<msg::AttitudeSetpoint>(
+      comms::topics::kAttitudeSetpoint, [&](const auto& message) { note(message.thrust_n()); });
+  // Upward acceleration that is asked for, above that of a fall.
+  const comms::Subscription trajectories =
+      node.subscribe<msg::TrajectorySetpoint>(comms::topics::kTrajectorySetpoint, [&](const auto& message) {
+        const bool running = message.rotor_state() == msg::ActuatorCommand_Constants::ROTORS_RUNNING;
+        note(running ? plant::kGravity - message.acceleration_ned()[2] : 0.0);
+      });
+  wait_until_ready();
+  ASSERT_TRUE(ask(msg::Command_Constants::ARM).accepted());
+  ASSERT_TRUE(ask(msg::Command_Constants::TAKEOFF).accepted());
+  ASSERT_TRUE(wait_for(Mode::kHolding)) << reason() << errors();
+  EXPECT_NEAR(px4_->height_m(), kHeight_m, 0.15);
+  const std::lock_guard<std::mutex> lock(mutex);
+  EXPECT_GT(after_n, 0.1);
+  EXPECT_NEAR(before_n, 0.0, 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Levels, Px4Arming, testing::Values("rates", "attitude", "trajectory"),
+                         [](const auto& level) { return std::string(level.param); });
+
 class Px4Failures : public Px4Flight {};
 
 TEST_F(Px4Failures, DeathOfControlEndsTheStreamAndLands) {

@@ -119,6 +119,47 @@ TEST(TrackingErrors, DoNotInterpolateOverLongGaps) {
   EXPECT_EQ(matched(25), 75U) << "52 ms between the rows";
 }
 
+TEST(NewestError, IsThatOfTheLastReferenceWhoseTruthIsKnown) {
+  const auto error = [](int i) { return std::array<double, 3>{0.001 * i, 0.0, 0.0}; };
+  const SyntheticFlight equal(100, error);
+  EXPECT_NEAR(newest_error_m(equal.truth, equal.reference), 0.099, 1e-9);
+  const SyntheticFlight between(
+      100,
+      [](int) {
+        return std::array<double, 3>{0.002, 0.0, 0.0};
+      },
+      [](int i) { return i % 4 == 0; }, [](int i) { return i % 4 == 2; });
+  EXPECT_NEAR(newest_error_m(between.truth, between.reference), 0.002, 1e-6);
+  const SyntheticFlight ended(100, error, [](int i) { return i < 20; });
+  EXPECT_TRUE(std::isnan(newest_error_m(ended.truth, ended.reference))) << "the truth is too old";
+  EXPECT_TRUE(std::isnan(newest_error_m(Track<TruthRow>(1), equal.reference)));
+}
+
+TEST(TruthAt, InterpolatesAllOfARow) {
+  Track<TruthRow> truth(2);
+  TruthRow row;
+  row.q_ned_from_frd = {1.0, 0.0, 0.0, 0.0};
+  row.rotor_speeds = {100.0};
+  row.supply_voltage_v = 4.0;
+  truth.append(row);
+  row.stamp_ns = 10'000'000;
+  row.velocity_ned = {0.0, 0.0, 0.2};
+  row.q_ned_from_frd = {-std::cos(0.1), 0.0, 0.0,
+                        -std::sin(0.1)};  // the turn by 0.2 rad, with the other sign
+  row.rotor_speeds = {200.0};
+  row.supply_voltage_v = 3.8;
+  truth.append(row);
+  const auto at = truth_at(truth, truth.begin() + 1, 5'000'000, TruthSource::kInterpolated);
+  ASSERT_TRUE(at);
+  EXPECT_EQ(at->stamp_ns, 5'000'000);
+  EXPECT_NEAR(at->velocity_ned[2], 0.1, 1e-12);
+  EXPECT_NEAR(at->q_ned_from_frd[0], std::cos(0.05), 1e-12);
+  EXPECT_NEAR(at->q_ned_from_frd[3], std::sin(0.05), 1e-12);
+  EXPECT_NEAR(at->rotor_speeds[0], 150.0, 1e-12);
+  EXPECT_NEAR(at->supply_voltage_v, 3.9, 1e-12);
+  EXPECT_FALSE(truth_at(truth, truth.begin() + 1, 5'000'000, TruthSource::kEqualStamps));
+}
+
 TEST(TrackingErrors, AreNaNWithoutAMatch) {
   const SyntheticFlight flight(
       100, [](int) { return std::array<double, 3>{}; }, [](int i) { return i % 20 == 0; },

@@ -117,6 +117,14 @@ TEST(DisturbedFlight, LearnsTheMassAtTakeOff) {
   }
 }
 
+// GIVEN a vehicle whose accelerometer is shaken by 0.5 m/s^2 RMS WHEN it takes off THEN the shaking is not taken for lift-off: the
+// ratio of the lift would be learnt on the ground.
+TEST(DisturbedFlight, DoesNotTakeVibrationForLiftOff) {
+  FlightSetup setup;
+  setup.world.imu.accelerometer_noise_density = 0.5 / std::sqrt(0.5 * setup.world.imu.rate_hz);
+  for (const std::uint64_t seed : {1, 2, 3}) EXPECT_LT(setup.fly("0.5", seed).takeoff_peak_m, 20e-3) << seed;
+}
+
 // GIVEN 10 % more mass and Dryden gusts of 0.5 m/s in a wind of 2.2 m/s THEN the error stays within 8 mm RMS, 30 mm peak.
 TEST(DisturbedFlight, TracksTheSquareHeavyInDrydenGusts) {
   const int flights = tests::draws(4, 200);

@@ -45,6 +45,27 @@ TEST_P(Levels, FliesWithoutMeasuredRotorsAndWithAWrongMass) {
   EXPECT_TRUE(loop.plant.on_ground());
 }
 
+// GIVEN a vehicle that starts its rotors 3 s later than it is told to THEN control commands no thrust until then, and flies as from
+// there on; at level actuators, whose vehicle does as it is told, it does not wait.
+TEST_P(Levels, TheTakeOffBeginsWhenTheRotorsRun) {
+  ClosedLoop loop(vehicle_, world_, settings_, 1);
+  ASSERT_TRUE(loop.step_until([&] { return loop.time_s() > 1.0; }, 2.0));
+  loop.controller.set_rotors_running(false);
+  control::Request request;
+  request.kind = control::RequestKind::kArm;
+  ASSERT_TRUE(loop.controller.request(request).accepted);
+  request.kind = control::RequestKind::kTakeoff;
+  request.position_ned.z() = -1.0;
+  ASSERT_TRUE(loop.controller.request(request).accepted);
+  run(loop, 3.0);
+  const bool is_free = GetParam() == ControlLevel::kActuators;
+  EXPECT_EQ(loop.plant.on_ground(), !is_free);
+  EXPECT_EQ(loop.controller.attitude_setpoint().thrust_n > 0.0, is_free);
+  loop.controller.set_rotors_running(true);
+  ASSERT_TRUE(loop.step_until([&] { return mode(loop) == control::Mode::kHolding; }, 10.0));
+  EXPECT_LT(loop.tracking_error().norm(), 0.05);
+}
+
 // GIVEN hover in steady wind THEN control integrates at the levels at which it controls the position, and at level
 // trajectory the vehicle does it alone.
 TEST_P(Levels, OnlyWhoClosesTheLoopIntegrates) {

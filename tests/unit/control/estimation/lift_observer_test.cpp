@@ -20,7 +20,9 @@ constexpr double kStep_s = 0.002;
 struct Takeoff {
   double ratio = 1.0;      // of actual and modelled lift
   double noise = 0.0;      // m/s^2, standard deviation of a sample
+  double vibration = 0.0;  // of the actual lift: a standard deviation that is added to it
   double lift_rate = 6.0;  // m/s^3, modelled
+  double step_s = kStep_s;
   LiftObserver observer;
   double t_s = 0.0;
   std::mt19937_64 random{1};
@@ -28,13 +30,14 @@ struct Takeoff {
   double lift() const { return lift_rate * t_s; }
   Vector3d measured(double of_lift) {
     const double up = std::max(ratio * of_lift, plant::kGravity);
-    return {0.0, 0.0, -up + noise * std::normal_distribution<double>()(random)};
+    const double deviation = noise + vibration * ratio * of_lift;
+    return {0.0, 0.0, -up + deviation * std::normal_distribution<double>()(random)};
   }
   // The time at which lift-off is seen, or that limit.
   double until_lift_off(double limit_s) {
     while (t_s < limit_s && !observer.lifted_off()) {
-      t_s += kStep_s;
-      observer.step_on_ground(kStep_s, measured(lift()), Quaterniond::Identity(), lift());
+      t_s += step_s;
+      observer.step_on_ground(step_s, measured(lift()), Quaterniond::Identity(), lift());
     }
     return t_s;
   }
@@ -55,6 +58,25 @@ TEST(LiftObserver, LearnsTheRatioAtLiftOff) {
       takeoff.observer.step_in_flight(kStep_s, takeoff.measured(plant::kGravity / ratio),
                                       plant::kGravity / ratio);
     EXPECT_NEAR(takeoff.observer.ratio() / ratio, 1.0, 0.003);
+  }
+}
+
+// GIVEN vibration that rises with the thrust, at the rates of an IMU and of PX4's client THEN lift-off is not seen before it, and
+// soon after it.
+TEST(LiftObserver, DoesNotTakeVibrationForLiftOff) {
+  for (const double step_s : {0.001, 0.002, 0.01}) {
+    for (unsigned seed = 1; seed <= 200; ++seed) {
+      Takeoff takeoff;
+      takeoff.step_s = step_s;
+      takeoff.vibration = 0.1;
+      takeoff.lift_rate = 20.0;
+      takeoff.random.seed(seed);
+      const double lifts_at_s = plant::kGravity / takeoff.lift_rate;
+      const double seen_s = takeoff.until_lift_off(5.0);
+      EXPECT_GT(seen_s, lifts_at_s) << step_s << ' ' << seed;
+      EXPECT_LT(seen_s, lifts_at_s + 0.35) << step_s << ' ' << seed;
+      EXPECT_NEAR(takeoff.observer.ratio(), 1.0, 0.15) << step_s << ' ' << seed;
+    }
   }
 }
 

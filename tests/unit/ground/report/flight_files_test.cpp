@@ -96,6 +96,29 @@ TEST_F(FlightFilesTest, CsvHasARowForEachReferenceAndForLaterTruth) {
   EXPECT_EQ(rows[5][column("t [s]")], "0.042000");
 }
 
+// GIVEN truth with stamps of its own, as beside PX4 THEN it is interpolated at the stamps of the references.
+TEST_F(FlightFilesTest, CsvHasTheReferencesOfATruthWithOtherStamps) {
+  FlightRecord of_reference(100), record(100);
+  fly(of_reference, 30, 30);
+  for (const TruthRow& row : of_reference.truth) {
+    TruthRow later = row;
+    later.stamp_ns += 1'000'000;
+    later.velocity_ned = {0.5, 0.0, 0.0};
+    later.q_ned_from_frd = {1.0, 0.0, 0.0, 0.0};
+    record.truth.append(later);
+  }
+  for (const ReferenceRow& row : of_reference.reference) record.reference.append(row);
+  write_flight_csv(folder_ / "flight.csv", record, {1'010'000'000, 1'100'000'000});
+  const auto rows = table(folder_ / "flight.csv");
+  ASSERT_EQ(rows.size(), 6U) << "header, references from 10 to 50 ms; before that at 0 there is no truth";
+  const auto column = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::find(rows[0].begin(), rows[0].end(), name) - rows[0].begin());
+  };
+  EXPECT_EQ(rows[2][column("t [s]")], "0.010000");
+  EXPECT_EQ(rows[2][column("ref_x_ned [m]")], "0.511");
+  EXPECT_NEAR(std::stod(rows[2][column("x_ned [m]")]), 0.5095, 1e-9);
+}
+
 TEST_F(FlightFilesTest, CsvHasTheCommandsOfARecordWithSensors) {
   FlightRecord record(100);
   record.sensors = std::make_unique<SensorRecord>(100);

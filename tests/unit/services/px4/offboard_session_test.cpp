@@ -156,6 +156,15 @@ TEST_F(Px4Session, DeathOfControlEndsTheStreamAndLands) {
   EXPECT_EQ(session_.fault(), "");
 }
 
+// Control answers samples: without them it falls silent, and is not to blame.
+TEST_F(Px4Session, SamplesThatEndAreNotTakenForTheDeathOfControl) {
+  fly();
+  px4_sends_ = false;
+  control_lives_ = false;
+  ASSERT_TRUE(until(Phase::kLanding, 0.3));
+  EXPECT_EQ(session_.fault(), "the link to PX4 is lost: no samples");
+}
+
 TEST_F(Px4Session, ThePilotTakesOver) {
   fly();
   rules_.pilot_selects(kPosition, now_ns_ / 1000);
