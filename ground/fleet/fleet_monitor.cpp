@@ -167,7 +167,8 @@ bool FleetMonitor::may_sink(std::size_t i, const Scene& scene) const {
 // Whether a vehicle stays where it is until it is told to go on.
 bool FleetMonitor::stands(std::size_t i, const Scene& scene) const {
   if (scene.status[i] == Status::kLost) return false;
-  return is_on_ground(scene.news[i]) || paused_s_[i] >= vehicles_[i].stop_s;
+  const bool waits = way_[i] == Way::kPath || way_[i] == Way::kAside;
+  return is_on_ground(scene.news[i]) || (waits && paused_s_[i] >= vehicles_[i].stop_s);
 }
 
 // Whether the ellipsoids of a vehicle at this place and of another one, enlarged by `share`, touch.
@@ -404,6 +405,7 @@ std::vector<Order> FleetMonitor::step(double now_s, const std::vector<VehicleNew
       aside_ned_[i] = orders[i].place_ned;
     } else if (way_[i] != Way::kPath && scene.status[i] == Status::kOffPath) {
       send_back(i, scene, orders);
+      scene.places[i] = places_of(i, news[i], scene.status[i]);  // those after it wait for it
     }
   }
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
