@@ -83,13 +83,14 @@ void keep_sample(const Message& message, Track<Sample>& track) {
 }  // namespace
 
 Client::Client(const comms::NodeSettings& settings, FlightRecord* record)
-    : Client(nullptr, settings, record) {}
+    : Client(nullptr, settings, record, Telemetry::kReceived) {}
 
 Client::Client(const comms::Participant& participant, const comms::NodeSettings& settings,
-               FlightRecord* record)
-    : Client(&participant, settings, record) {}
+               FlightRecord* record, Telemetry telemetry)
+    : Client(&participant, settings, record, telemetry) {}
 
-Client::Client(const comms::Participant* shared, const comms::NodeSettings& settings, FlightRecord* record)
+Client::Client(const comms::Participant* shared, const comms::NodeSettings& settings, FlightRecord* record,
+               Telemetry telemetry)
     : settings_(settings),
       record_(record),
       client_id_(random_id()),
@@ -100,7 +101,15 @@ Client::Client(const comms::Participant* shared, const comms::NodeSettings& sett
       trajectories_(node_.publish(comms::topics::kTrajectory)),
       settings_changes_(node_.publish(comms::topics::kControlSettings)),
       setpoints_(node_.publish(comms::topics::kSetpoint)) {
-  subscribe_all();
+  subscribe_statuses();
+  if (telemetry == Telemetry::kReceived) subscribe_telemetry();
+  node_.on_peer([this](const comms::PeerEvent& peer) {
+    {
+      const std::lock_guard lock(mutex_);
+      view_.peers[peer.name] += peer.alive ? 1 : -1;
+    }
+    changed_.notify_all();
+  });
 }
 
 template <class T>
@@ -129,9 +138,9 @@ std::optional<msg::RequestStatus> Client::reported_status(const control::Request
   return reported->second;
 }
 
-void Client::subscribe_all() {
+// Statuses, answers and peer events wake waiting threads.
+void Client::subscribe_statuses() {
   using namespace comms::topics;
-  // Statuses, answers and peer events wake waiting threads. Telemetry does not: its rate is too high.
   subscriptions_.push_back(
       node_.subscribe<msg::ControlStatus>(kControlStatus, [this](const msg::ControlStatus& status) {
         {
@@ -164,6 +173,11 @@ void Client::subscribe_all() {
     }
     changed_.notify_all();
   }));
+}
+
+// Does not wake waiting threads: its rate is too high.
+void Client::subscribe_telemetry() {
+  using namespace comms::topics;
   subscriptions_.push_back(node_.subscribe<msg::Battery>(kBattery, [this](const msg::Battery& battery) {
     if (record_ != nullptr && record_->sensors) keep_sample(battery, record_->sensors->batteries);
     keep(&View::battery, battery);
@@ -193,13 +207,6 @@ void Client::subscribe_all() {
       }));
   subscriptions_.push_back(node_.subscribe<msg::ClockStatus>(
       kClockStatus, [this](const msg::ClockStatus& status) { keep(&View::clock, status); }));
-  node_.on_peer([this](const comms::PeerEvent& peer) {
-    {
-      const std::lock_guard lock(mutex_);
-      view_.peers[peer.name] += peer.alive ? 1 : -1;
-    }
-    changed_.notify_all();
-  });
 }
 
 // Subscribes to the IMU last of the plant's topics: a plant whose IMU samples arrive has discovered the other

@@ -20,6 +20,7 @@
 #include "swiftlet/ground/client/ground_heartbeat.hpp"
 #include "swiftlet/ground/client/result.hpp"
 #include "swiftlet/ground/client/simulation_clock.hpp"
+#include "swiftlet/ground/client/telemetry.hpp"
 #include "swiftlet/recording/flight_record.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
@@ -72,9 +73,10 @@ class Client {
   // `sensors` are set, of the sensors and actuator commands; may be null. Throws std::runtime_error if the
   // network cannot be joined.
   explicit Client(const comms::NodeSettings& settings, FlightRecord* record = nullptr);
-  // Shares the participant with other clients. settings.vehicle names the vehicle.
+  // Shares the participant with other clients. settings.vehicle names the vehicle. Without telemetry, of View only
+  // control, mission, vehicle and peers are filled.
   Client(const comms::Participant& participant, const comms::NodeSettings& settings,
-         FlightRecord* record = nullptr);
+         FlightRecord* record = nullptr, Telemetry telemetry = Telemetry::kReceived);
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
@@ -130,10 +132,12 @@ class Client {
 
  private:
   void note_requests(const msg::ControlStatus& status);
-  Client(const comms::Participant* shared, const comms::NodeSettings& settings, FlightRecord* record);
+  Client(const comms::Participant* shared, const comms::NodeSettings& settings, FlightRecord* record,
+         Telemetry telemetry);
   template <class T>
   void keep(Latest<T> View::*slot, const T& message);
-  void subscribe_all();
+  void subscribe_statuses();
+  void subscribe_telemetry();
   void subscribe_sensors(SensorRecord& sensors);
   void note_heard(bool HeardSamples::*kind);
   void advance_after(std::int64_t stamp_ns);

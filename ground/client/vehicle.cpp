@@ -80,8 +80,9 @@ SetpointTally SetpointTally::since(const SetpointTally& before) const {
 
 Vehicle::Vehicle(const comms::NodeSettings& network) : client_(std::make_shared<Client>(network)) {}
 
-Vehicle::Vehicle(const Context& context, const std::string& name)
-    : client_(std::make_shared<Client>(context.participant(), of_vehicle(context.network(), name))) {}
+Vehicle::Vehicle(const Context& context, const std::string& name, Telemetry telemetry)
+    : client_(std::make_shared<Client>(context.participant(), of_vehicle(context.network(), name), nullptr,
+                                       telemetry)) {}
 
 Vehicle::~Vehicle() = default;
 

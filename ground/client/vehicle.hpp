@@ -33,6 +33,7 @@
 #include "swiftlet/ground/client/connection.hpp"
 #include "swiftlet/ground/client/context.hpp"
 #include "swiftlet/ground/client/result.hpp"
+#include "swiftlet/ground/client/telemetry.hpp"
 #include "swiftlet/ground/client/vehicle_setpoints.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
@@ -100,9 +101,10 @@ class Vehicle {
   // network.vehicle and network.domain select the vehicle; network.name is this program's name in the domain.
   // Throws std::runtime_error if the network cannot be joined.
   explicit Vehicle(const comms::NodeSettings& network = {"ground"});
-  // Shares the context's participant; the Context may be destroyed first. Throws std::runtime_error if `name`
-  // is not a valid vehicle name.
-  Vehicle(const Context& context, const std::string& name);
+  // Shares the context's participant; the Context may be destroyed first. Without telemetry, state() knows only the
+  // mode, the mission and the model, and clock_s() is NaN. Throws std::runtime_error if `name` is not a valid vehicle
+  // name.
+  Vehicle(const Context& context, const std::string& name, Telemetry telemetry = Telemetry::kReceived);
   ~Vehicle();
   Vehicle(const Vehicle&) = delete;
   Vehicle& operator=(const Vehicle&) = delete;

@@ -29,7 +29,9 @@ constexpr std::chrono::seconds kLongest{30};
 constexpr double kMargin = 0.04;     // of the span of the data, on both sides
 constexpr double kLogMargin = 1.25;  // the same as a factor
 constexpr std::size_t kManyDots = 200;
-constexpr double kOfManyDots = 0.7;  // size of each
+constexpr double kOfManyDots = 0.7;       // size of each
+constexpr std::size_t kLongLabel = 50;    // characters
+constexpr std::string_view kUnit = " (";  // where it begins in a label
 constexpr const char* kNotInstalled = "no picture was drawn: gnuplot is not installed";
 
 // In the order of Colour.
@@ -129,16 +131,23 @@ std::string with_power(const std::string& label, int exponent) {
   std::string power = "10";
   for (const char c : std::to_string(exponent))
     power += c == '-' ? "\u207b" : kSuperscripts.at(static_cast<std::size_t>(c - '0'));
-  const std::size_t unit = label.rfind('(');
-  if (unit == std::string::npos) return label + " (" + power + ")";
-  return label.substr(0, unit + 1) + power + " " + label.substr(unit + 1);
+  const std::size_t unit = label.rfind(kUnit);
+  if (unit == std::string::npos) return label + kUnit.data() + power + ")";
+  return label.substr(0, unit + kUnit.size()) + power + " " + label.substr(unit + kUnit.size());
+}
+
+// A long label has its unit in a second line.
+std::string label_command(const std::string& label) {
+  const std::size_t unit = label.size() < kLongLabel ? std::string::npos : label.rfind(kUnit);
+  if (unit == std::string::npos) return quoted(label);
+  return quoted(label.substr(0, unit)) + " . \"\\n\" . " + quoted(label.substr(unit + 1));
 }
 
 std::string axis_commands(char name, const Axis& axis, const Scale& scale) {
   const double from = (axis.reversed ? scale.to : scale.from) / scale.power;
   const double to = (axis.reversed ? scale.from : scale.to) / scale.power;
   std::string out = fmt::format("set {0}range [{1:.9g}:{2:.9g}]\nset {0}label {3}\n", name, from, to,
-                                quoted(with_power(axis.label, scale.exponent)));
+                                label_command(with_power(axis.label, scale.exponent)));
   if (axis.logarithmic) out += fmt::format("set logscale {}\n", name);
   if (!axis.numbered) out += fmt::format("set format {} ''\n", name);
   std::string ticks;

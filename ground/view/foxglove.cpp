@@ -16,6 +16,8 @@ constexpr std::uint8_t kServiceCallRequest = 2;
 constexpr std::uint8_t kServiceCallResponse = 3;
 constexpr const char* kEncoding = "cdr";
 constexpr const char* kSchemaEncoding = "ros2msg";
+constexpr int kMostDepth = 4;           // of JSON: a message has a list of objects
+constexpr std::size_t kMostShown = 40;  // characters of what is refused
 
 template <class Number, class Out>
 void put(Number number, Out out) {
@@ -136,12 +138,14 @@ mcap::Bytes service_response(std::uint32_t service, std::uint32_t call, const mc
 }
 
 ClientMessage parse_text(std::string_view text) {
-  const Json json = Json::parse(text, nullptr, false);
+  // What is nested deeper is left out: to destroy it would take the stack.
+  const auto is_shallow = [](int depth, Json::parse_event_t, const Json&) { return depth <= kMostDepth; };
+  const Json json = Json::parse(text, is_shallow, false);
   if (!json.is_object()) return Fault{"the message is not a JSON object"};
-  const Json op = json.value("op", Json());
-  if (op == "subscribe") return subscribe_of(json);
-  if (op == "unsubscribe") return unsubscribe_of(json);
-  return Fault{"op " + text_of(op) + " is not served: only subscribe and unsubscribe are"};
+  const std::string op = text_of(json.value("op", Json()));
+  if (op == "\"subscribe\"") return subscribe_of(json);
+  if (op == "\"unsubscribe\"") return unsubscribe_of(json);
+  return Fault{"op " + op.substr(0, kMostShown) + " is not served: only subscribe and unsubscribe are"};
 }
 
 ClientMessage parse_binary(const std::uint8_t* data, std::size_t size) {

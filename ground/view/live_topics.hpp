@@ -20,8 +20,8 @@
 
 namespace swiftlet::ground {
 
-// Only what somebody uses is received, and the logs from the start. The threads that receive copy into a bounded queue and do not wait. All functions
-// from one thread.
+// Only what somebody uses is received, and the logs from the start. The threads that receive copy into a bounded queue and
+// do not wait. All functions from one thread.
 class LiveTopics {
  public:
   explicit LiveTopics(const Context& context);

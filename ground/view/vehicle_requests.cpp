@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <system_error>
 #include <utility>
 
 #include <fmt/core.h>
@@ -42,7 +43,7 @@ foxglove::Service service_of(std::size_t id, const std::string& vehicle, const K
 VehicleRequests::~VehicleRequests() { ending_ = true; }
 
 void VehicleRequests::add_vehicle(const std::string& name) {
-  vehicles_.push_back(std::make_unique<Vehicle>(context_, name));
+  vehicles_.push_back(std::make_unique<Vehicle>(context_, name, Telemetry::kNotReceived));
   vehicles_.back()->cancel_when([this] { return ending_.load(); });
   for (const Kind& kind : kKinds) services_.push_back(service_of(services_.size(), name, kind));
 }
@@ -51,18 +52,25 @@ std::string VehicleRequests::call(const foxglove::ServiceCall& call,
                                   std::function<void(const Answer&)> done) {
   if (call.service >= services_.size()) return fmt::format("there is no service {}", call.service);
   if (call.encoding != "cdr") return "the encoding of the request must be cdr";
-  const Kind& kind = kKinds.at(call.service % kKinds.size());
+  const std::size_t number = call.service % kKinds.size();
+  const Kind& kind = kKinds.at(number);
+  std::list<std::future<void>>& under_way = under_way_.at(number);
   if (kind.confirmed && (call.request.size() <= kCdrHead || call.request[kCdrHead] != 1))
     return fmt::format("{} is not confirmed: data must be true", kind.name);
-  under_way_.remove_if(
+  under_way.remove_if(
       [](const std::future<void>& one) { return one.wait_for(0s) == std::future_status::ready; });
-  if (under_way_.size() >= kMostUnderWay)
-    return fmt::format("{} requests wait for their answers, which is the most", under_way_.size());
+  if (under_way.size() >= kMostUnderWay)
+    return fmt::format("{} requests to {} wait for their answers, which is the most", under_way.size(),
+                       kind.name);
   Vehicle& vehicle = *vehicles_[call.service / kKinds.size()];
-  under_way_.push_back(std::async(std::launch::async, [&vehicle, &kind, done = std::move(done)] {
-    const Result answer = kind.send(vehicle).answer();
-    done({answer.accepted(), answer.reason});
-  }));
+  try {
+    under_way.push_back(std::async(std::launch::async, [&vehicle, &kind, done = std::move(done)] {
+      const Result answer = kind.send(vehicle).answer();
+      done({answer.accepted(), answer.reason});
+    }));
+  } catch (const std::system_error& error) {
+    return fmt::format("{} was not sent: {}", kind.name, error.what());
+  }
   return "";
 }
 

@@ -1,6 +1,7 @@
 // The requests that a viewer can send to a vehicle, as services: hold, land and stop.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +21,7 @@ namespace swiftlet::ground {
 // From one thread.
 class VehicleRequests {
  public:
-  static constexpr std::size_t kMostUnderWay = 64;
+  static constexpr std::size_t kMostUnderWay = 64;  // of holds, of landings and of stops
 
   explicit VehicleRequests(const Context& context) : context_(context) {}
   // Waits for those under way, which it cancels.
@@ -47,7 +48,7 @@ class VehicleRequests {
   std::atomic<bool> ending_{false};
   std::vector<foxglove::Service> services_;
   std::vector<std::unique_ptr<Vehicle>> vehicles_;
-  std::list<std::future<void>> under_way_;  // last: they use the vehicles
+  std::array<std::list<std::future<void>>, 3> under_way_;  // by kind; last: they use the vehicles
 };
 
 // The answer as the response of a service: bool success, string message.

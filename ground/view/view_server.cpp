@@ -5,9 +5,12 @@
 #include <atomic>
 #include <chrono>
 #include <exception>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <sys/socket.h>
 #include <thread>
 #include <unistd.h>
 #include <utility>
@@ -42,8 +45,9 @@ using boost::system::error_code;
 
 constexpr auto kRound = 20ms;  // 50 Hz
 constexpr auto kLookPeriod = 500ms;
-constexpr auto kRequestTime = 10s;  // for a request, and for its answer
-constexpr auto kIdleTime = 30s;     // without an answer to a ping
+constexpr auto kAcceptPause = 100ms;  // after a connection that could not be accepted
+constexpr auto kRequestTime = 10s;    // for a request, and for its answer
+constexpr auto kIdleTime = 30s;       // without an answer to a ping
 constexpr int kSendBuffer = 256 * 1024;
 constexpr double kConnectionBurst = 100.0;
 constexpr double kMessageBurst = 1000.0;
@@ -113,6 +117,7 @@ class ViewServer::Impl {
   std::size_t connections_ = 0;
   asio::io_context io_{1};  // its handlers end the connections that are open at the end
   tcp::acceptor acceptor_{io_};
+  asio::steady_timer accept_timer_{io_};
   asio::steady_timer round_timer_{io_};
   asio::steady_timer look_timer_{io_};
   std::atomic<std::size_t> viewers_{0};
@@ -158,11 +163,13 @@ class ViewServer::Impl::Session : public std::enable_shared_from_this<Session> {
 
   Viewer& viewer() { return *viewer_; }
 
-  // Sends what waits.
+  // Sends what waits, in as few packets as hold it.
   void pump() {
-    if (!is_open_ || is_writing_) return;
+    if (!is_open_) return;
     if (viewer_->is_stuck()) return close("the answers to its messages are not read");
+    if (is_writing_) return;
     sending_ = viewer_->next();
+    fill_packets(sending_.has_value());
     if (!sending_) return;
     is_writing_ = true;
     socket_.text(sending_->is_text);
@@ -182,9 +189,8 @@ class ViewServer::Impl::Session : public std::enable_shared_from_this<Session> {
     if (lost == 0) return;
     server_.dropped_ += lost;
     dropped_ = viewer_->dropped();
-    viewer_->reply(foxglove::status(
-        foxglove::Level::kWarning,
-        fmt::format("this viewer is slow: it has lost {} messages, but never the newest", dropped_)));
+    viewer_->reply(foxglove::status(foxglove::Level::kWarning,
+                                    fmt::format("this viewer is slow: it has lost {} messages", dropped_)));
     pump();
   }
 
@@ -232,6 +238,14 @@ class ViewServer::Impl::Session : public std::enable_shared_from_this<Session> {
     if (!refusal.empty()) viewer_->reply(foxglove::service_failure(call.service, call.call, refusal));
   }
 
+  // Whether a packet waits until it is full (TCP_CORK).
+  void fill_packets(bool wanted) {
+    if (std::exchange(fills_packets_, wanted) == wanted) return;
+    const int cork = wanted ? 1 : 0;
+    ::setsockopt(beast::get_lowest_layer(socket_).socket().native_handle(), IPPROTO_TCP, TCP_CORK, &cork,
+                 sizeof(cork));
+  }
+
   void close(const std::string& why) {
     if (!std::exchange(is_open_, false)) return;
     ++server_.refused_;
@@ -255,6 +269,7 @@ class ViewServer::Impl::Session : public std::enable_shared_from_this<Session> {
   std::optional<Outgoing> sending_;
   bool is_open_ = false;
   bool is_writing_ = false;
+  bool fills_packets_ = false;
   std::uint64_t dropped_ = 0;
 };
 
@@ -409,15 +424,17 @@ void ViewServer::Impl::run() {
 
 void ViewServer::Impl::accept() {
   acceptor_.async_accept([this](error_code error, tcp::socket socket) {
-    if (!error) {
-      const bool is_welcome = connections_ < kMostConnections && new_connections_.take(steady_now_ns());
-      if (is_welcome) {
-        error_code ignored;
-        socket.set_option(tcp::no_delay(true), ignored);
-        std::make_shared<Visitor>(*this, std::move(socket))->start();
-      } else {
-        ++refused_;
-      }
+    if (error) {  // such as too many open files
+      accept_timer_.expires_after(kAcceptPause);
+      return accept_timer_.async_wait([this](error_code) { accept(); });
+    }
+    const bool is_welcome = connections_ < kMostConnections && new_connections_.take(steady_now_ns());
+    if (is_welcome) {
+      error_code ignored;
+      socket.set_option(tcp::no_delay(true), ignored);
+      std::make_shared<Visitor>(*this, std::move(socket))->start();
+    } else {
+      ++refused_;
     }
     accept();
   });
@@ -452,8 +469,12 @@ void ViewServer::Impl::add_vehicle(const std::string& name) {
   if (!vehicles_.insert(name).second) return;
   const std::size_t channels = topics_.channels().size();
   const std::size_t services = requests_.services().size();
-  topics_.add_vehicle(name);
-  requests_.add_vehicle(name);
+  try {
+    topics_.add_vehicle(name);
+    requests_.add_vehicle(name);
+  } catch (const std::exception& error) {  // what it has nevertheless is served
+    say_(fmt::format("vehicle {}: {}", name, error.what()));
+  }
   const std::string new_channels = foxglove::advertise(
       std::vector<foxglove::Channel>(topics_.channels().begin() + channels, topics_.channels().end()));
   const std::string new_services = foxglove::advertise(

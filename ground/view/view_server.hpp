@@ -42,8 +42,8 @@ class ViewServer {
   static constexpr double kConnectionsPerSecond = 20.0;    // and a burst of 100
   static constexpr double kMessagesPerSecond = 100.0;      // of a viewer, and a burst of 1000
 
-  // context must outlive it. say: receives sentences about what fails meanwhile, in the thread of the server. Throws std::runtime_error if the
-  // port cannot be used, or the vehicles' topics cannot.
+  // context must outlive it. say: receives sentences about what fails meanwhile, in the thread of the server. Throws
+  // std::runtime_error if the port cannot be used, or the vehicles' topics cannot.
   ViewServer(const Context& context, const ViewSettings& settings,
              std::function<void(const std::string&)> say);
   ~ViewServer();

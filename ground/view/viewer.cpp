@@ -7,18 +7,33 @@
 
 namespace swiftlet::ground {
 
+// What is wrong with one message: at most kMostRefusals of it are told.
+class Viewer::Refusals {
+ public:
+  explicit Refusals(Viewer& viewer) : viewer_(viewer) {}
+
+  void add(const std::string& why) {
+    if (count_++ < kMostRefusals) viewer_.reply(foxglove::status(foxglove::Level::kError, why));
+  }
+
+ private:
+  Viewer& viewer_;
+  std::size_t count_ = 0;
+};
+
 Viewer::~Viewer() {
   for (const auto& [subscription, channel] : channels_) topics_.release(channel);
 }
 
 void Viewer::take(const foxglove::Subscribe& message) {
+  Refusals refusals(*this);
   for (const auto& [id, channel] : message.subscriptions) {
     if (channel >= topics_.channels().size()) {
-      refuse(fmt::format("subscribe: there is no channel {}", channel));
+      refusals.add(fmt::format("subscribe: there is no channel {}", channel));
     } else if (channels_.count(id) > 0) {
-      refuse(fmt::format("subscribe: subscription {} exists", id));
+      refusals.add(fmt::format("subscribe: subscription {} exists", id));
     } else if (subscriptions_.count(channel) > 0) {
-      refuse(
+      refusals.add(
           fmt::format("subscribe: channel {} has subscription {} already", channel, subscriptions_[channel]));
     } else {
       try {
@@ -27,17 +42,18 @@ void Viewer::take(const foxglove::Subscribe& message) {
         subscriptions_[channel] = id;
         for (const LiveTopics::Live& live : first) put(channel, live);
       } catch (const std::exception& error) {
-        refuse(fmt::format("subscribe: channel {}: {}", channel, error.what()));
+        refusals.add(fmt::format("subscribe: channel {}: {}", channel, error.what()));
       }
     }
   }
 }
 
 void Viewer::take(const foxglove::Unsubscribe& message) {
+  Refusals refusals(*this);
   for (const std::uint32_t id : message.subscriptions) {
     const auto known = channels_.find(id);
     if (known == channels_.end()) {
-      refuse(fmt::format("unsubscribe: there is no subscription {}", id));
+      refusals.add(fmt::format("unsubscribe: there is no subscription {}", id));
       continue;
     }
     topics_.release(known->second);

@@ -28,7 +28,8 @@ struct Outgoing {
 class Viewer {
  public:
   static constexpr std::size_t kMostQueuedBytes = std::size_t{1} << 20U;  // of messages of topics
-  static constexpr std::size_t kMostReplies = 2000;                       // that wait
+  static constexpr std::size_t kMostReplies = 500;                        // that wait
+  static constexpr std::size_t kMostRefusals = 10;                        // of one message, that are told
 
   // topics must outlive it.
   Viewer(LiveTopics& topics, Selection selection) : topics_(topics), queue_(kMostQueuedBytes, selection) {}
@@ -54,7 +55,7 @@ class Viewer {
   std::uint64_t dropped() const { return queue_.dropped(); }  // because it is slow
 
  private:
-  void refuse(const std::string& why) { reply(foxglove::status(foxglove::Level::kError, why)); }
+  class Refusals;
 
   LiveTopics& topics_;
   std::map<std::uint32_t, std::uint32_t> channels_;       // by subscription

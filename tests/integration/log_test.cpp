@@ -364,6 +364,8 @@ TEST_F(LogTools, CutAndMergeToTheSameMessages) {
   EXPECT_EQ(imu.exit_code, 0) << imu.errors;
   EXPECT_EQ(heads_of(mcap::Reader(path("imu.mcap"))).size(), 1U);
   EXPECT_EQ(log({"cut", file_, "-o", file_, "--replace"}).exit_code, 2);
+  EXPECT_EQ(log({"cut", file_, "--from", "2", "--to", "1", "-o", path("none.mcap")}).exit_code, 2);
+  EXPECT_FALSE(std::filesystem::exists(path("none.mcap")));
 }
 
 TEST_F(LogTools, PublishTheMessagesAgain) {

@@ -49,9 +49,16 @@ class Vehicles:
         self.stack, self.work = stack, work
         for name in ("plant", "mocap", "control"):
             self.start(programs / f"swiftlet-{name}", *self.named, *(["--per-row", "3"] if name == "plant" else []))
-        self.server = self.start(self.swiftlet, "view", *self.network, "--port", "0", stdout=subprocess.PIPE)
+        self.serve("--port", "0")
+
+    def serve(self, *options):
+        self.server = self.start(self.swiftlet, "view", *self.network, *options, stdout=subprocess.PIPE)
         self.url = self.server.stdout.readline().strip()
         require(self.url.startswith("http://127.0.0.1:"), f"the URL of the page is '{self.url}'")
+
+    def stop_serving(self):
+        self.server.terminate()
+        self.server.wait()
 
     def start(self, *command, stdout=None):
         process = subprocess.Popen([str(word) for word in command], text=True, stdout=stdout or self.log, stderr=self.log)
@@ -67,6 +74,24 @@ class Vehicles:
         while (arm := subprocess.run([self.swiftlet, "arm", *self.named], text=True, capture_output=True, check=False)).returncode != 0:
             require(time.monotonic() < give_up, f"the vehicles cannot be armed: {arm.stderr}")
         self.ask("takeoff", "0.6")
+
+
+def reconnect(vehicles, work):
+    """The page stays open while its server ends, and another one takes its place that serves one vehicle less."""
+    gone, stays = vehicles.names.split(",")
+    with subprocess.Popen(["node", work / "reconnect.mjs", vehicles.url, gone, stays], cwd=work, text=True, stdin=subprocess.PIPE,
+                          stdout=subprocess.PIPE) as page:
+        def expect(word):
+            said = page.stdout.readline().strip()
+            require(said == word, f"reconnect: '{said}' instead of '{word}'")
+
+        expect("shown")
+        vehicles.stop_serving()
+        print("ended", file=page.stdin, flush=True)
+        expect("silent")
+        vehicles.serve("--port", vehicles.url.rsplit(":", 1)[1].strip("/"), "--vehicle-name", stays)
+        print("serves", file=page.stdin, flush=True)
+        expect("back")
 
 
 def main(programs, work):
@@ -85,6 +110,8 @@ def main(programs, work):
         print(f"view: the page showed {seen['charts']} charts of {seen['vehicles']} vehicles at {seen['rate_hz']} Hz; closed, opened again, hold "
               f"and land accepted, a second hold {seen['refusal']}; light and dark, 1280 and 390 px")
         require(vehicles.server.poll() is None, "the server has ended")
+        reconnect(vehicles, work)
+        print("view: a page whose server ended showed its vehicles as silent, and the one that the next server serves again")
 
 
 if __name__ == "__main__":

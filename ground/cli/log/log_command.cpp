@@ -1,5 +1,7 @@
 #include <filesystem>
 
+#include <fmt/core.h>
+
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/log/log_commands.hpp"
 #include "swiftlet/ground/command_line/output_files.hpp"
@@ -13,6 +15,8 @@ void add_time_range_options(runtime::CommandLine app, TimeRange& range) {
 
 mcap::Selection selection_of(const TimeRange& range, const mcap::Reader& file) {
   constexpr double kNsPerS = 1e9;
+  if (range.to_s <= range.from_s)
+    throw InputError(fmt::format("--to {:g}: is not after --from {:g}", range.to_s, range.from_s));
   const std::int64_t start_ns = file.statistics().start_ns;
   mcap::Selection selection;
   selection.from_ns = start_ns + static_cast<std::int64_t>(range.from_s * kNsPerS);

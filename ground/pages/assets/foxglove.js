@@ -7,6 +7,7 @@ swiftlet.Foxglove = class {
     this.url = url;
     this.on = on;
     this.listeners = new Map();  // by topic: callbacks
+    this.types = new Map();      // of the messages that have come, by topic
     this.calls = new Map();      // by call id: {resolve, reject}
     this.lastCall = 0;
     this.connect();
@@ -60,7 +61,8 @@ swiftlet.Foxglove = class {
   }
 
   typeOf(channel) {
-    return (channel.type ??= swiftlet.cdr.parse(channel.schema));
+    if (!channel.type) this.types.set(channel.topic, channel.type = swiftlet.cdr.parse(channel.schema));
+    return channel.type;
   }
 
   subscribe(channel) {

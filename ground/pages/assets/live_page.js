@@ -75,10 +75,12 @@ swiftlet.livePage = (() => {
   }
 
   function addEvent(vehicle, at, text, warning) {
-    const row = swiftlet.element('p', {class: warning ? 'warning' : 'finding'}, 
+    const row = swiftlet.element('p', {class: warning ? 'warning' : 'finding'},
                                 `${new Date(1e3 * at).toLocaleTimeString('en-GB')}  ${vehicle.name}: ${text}`);
     row.dataset.at = at;
     const rows = get('events').children;  // the newest first
+    // A server that is connected again sends its last lines again.
+    if ([...rows].some((other) => other.dataset.at === row.dataset.at && other.textContent === row.textContent)) return;
     get('events').insertBefore(row, [...rows].find((other) => Number(other.dataset.at) <= at) ?? null);
     if (rows.length > mostEvents) get('events').lastChild.remove();
   }
@@ -107,8 +109,8 @@ swiftlet.livePage = (() => {
   }
 
   function addControls() {
-    get('hold-all').addEventListener('click', () => swiftlet.requestOf(vehicles, 'hold'));
-    get('land-all').addEventListener('click', () => swiftlet.requestOf(vehicles, 'land'));
+    get('hold-all').addEventListener('click', () => swiftlet.requestOf([...vehicles], 'hold'));
+    get('land-all').addEventListener('click', () => swiftlet.requestOf([...vehicles], 'land'));
     get('home').addEventListener('click', () => scene.home());
     get('map').addEventListener('click', () => scene.map());
     get('follow').addEventListener('click', () => follow(!following));

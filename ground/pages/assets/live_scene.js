@@ -78,8 +78,7 @@ swiftlet.LiveScene = class extends swiftlet.Scene {
   place() {
     if (this.flights.length !== this.vehicles.length) return;
     this.vehicles.forEach((vehicle, k) => { vehicle.visible = this.flights[k].path.t.length > 0; });
-    if (this.vehicles.every(({visible}) => visible)) super.place();
-    else this.plan();
+    super.place();
   }
 
   // From above, north up.

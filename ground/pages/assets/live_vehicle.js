@@ -115,8 +115,9 @@ swiftlet.LiveVehicle = class {
     if (info) set('command', `${number(info.sense_to_actuate_p50_us, 0)} µs, p99 ${number(info.sense_to_actuate_p99_us, 0)} µs`);
   }
 
+  // Of a message that has come, also when the connection is lost.
   typeOf(topic) {
-    return this.client.typeOf(this.client.channels.get(`/${this.name}/${topic}`));
+    return this.client.types.get(`/${this.name}/${topic}`);
   }
 
   showStatus(status, age) {

@@ -145,6 +145,7 @@ swiftlet.Scene = class {
   // Puts the vehicles where they are at the cursor.
   place() {
     this.flights.forEach(({path}, k) => {
+      if (!path.t.length) return;
       const i = Math.max(0, swiftlet.columns.indexAt(path.t, this.axis.cursor));
       const [w, x, y, z] = path.q.map((column) => column[i]);
       this.vehicles[k].position.copy(swiftlet.Scene.fromNed(path.north[i], path.east[i], path.down[i]));

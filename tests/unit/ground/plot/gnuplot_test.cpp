@@ -84,6 +84,15 @@ class GnuplotTest : public testing::Test {
   const fs::path folder_ = temporary_.path();
 };
 
+TEST_F(GnuplotTest, WritesTheUnitOfALongLabelBelowItAndItsPowerInTheUnit) {
+  Figure figure = parabola(1e-3, 1.0);
+  figure.panels[0].x.label = "simulation.imu.accelerometer_noise_m_s2_per_sqrt_hz (m/s^2/sqrt(Hz))";
+  const std::string drawn = svg(figure);
+  EXPECT_NE(drawn.find("<text>simulation.imu.accelerometer_noise_m_s2_per_sqrt_hz</text>"),
+            std::string::npos);
+  EXPECT_NE(drawn.find("<text>(10\u207b\u00b3 m/s^2/sqrt(Hz))</text>"), std::string::npos);
+}
+
 TEST_F(GnuplotTest, DrawsTextsAsTheyAre) {
   Figure figure = parabola(1.0, 1.0);
   Panel& panel = figure.panels[0];

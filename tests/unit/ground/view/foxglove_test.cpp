@@ -56,6 +56,15 @@ TEST(Foxglove, WritesBinaryMessages) {
   EXPECT_EQ(response, bytes);
 }
 
+TEST(Foxglove, LeavesOutWhatIsNestedDeep) {
+  const std::string deep = std::string(30'000, '[') + std::string(30'000, ']');
+  EXPECT_EQ(fault_of(parse_text(deep)), "the message is not a JSON object");
+  EXPECT_EQ(fault_of(parse_text("{\"op\":" + deep + "}")).substr(0, 3), "op ");
+  EXPECT_EQ(
+      fault_of(parse_text(R"({"op":"subscribe","subscriptions":[{"id":)" + deep + R"(,"channelId":1}]})")),
+      "subscribe: id and channelId must be whole numbers from 0 to 4294967295");
+}
+
 TEST(Foxglove, ReadsSubscriptions) {
   const auto subscribe = std::get<Subscribe>(parse_text(
       R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":7},{"id":4294967295,"channelId":8}]})"));

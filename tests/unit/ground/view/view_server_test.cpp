@@ -15,6 +15,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/ground/view/vehicle_requests.hpp"
+#include "swiftlet/ground/view/viewer.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/payload.hpp"
 #include "tests/support/eventually.hpp"
@@ -205,6 +207,33 @@ TEST_F(Server, DisconnectsWhoSendsTooMuch) {
   EXPECT_EQ(calm->read_text()->at("message"), "op null is not served: only subscribe and unsubscribe are");
 }
 
+// GIVEN a viewer that reads nothing WHEN its messages ask for more answers than are on their way to it at once THEN it is
+// disconnected before they fill the memory.
+TEST_F(Server, DisconnectsWhoDoesNotReadItsAnswers) {
+  const auto viewer = client();
+  constexpr std::uint32_t kUnknown = 4'294'900'000;
+  json ids = json::array();
+  for (std::size_t i = 0; i < Viewer::kMostRefusals; ++i) ids.push_back(kUnknown + i);
+  const std::string message = json({{"op", "unsubscribe"}, {"subscriptionIds", ids}}).dump();
+  for (int i = 0; i < 1000 && viewer->send(message); ++i) {
+  }
+  ASSERT_TRUE(eventually([&] { return server_->totals().viewers == 0; }));
+  EXPECT_EQ(said_.items(),
+            std::vector<std::string>{"a viewer is disconnected: the answers to its messages are not read"});
+}
+
+TEST_F(Server, TellsTheFirstFaultsOfAMessage) {
+  const auto viewer = client();
+  json ids = json::array();
+  for (std::size_t i = 0; i < 2 * Viewer::kMostRefusals; ++i) ids.push_back(i);
+  viewer->send(json({{"op", "unsubscribe"}, {"subscriptionIds", ids}}).dump());
+  viewer->send("{}");
+  for (std::size_t i = 0; i < Viewer::kMostRefusals; ++i)
+    EXPECT_EQ(viewer->read_text()->at("message"),
+              "unsubscribe: there is no subscription " + std::to_string(i));
+  EXPECT_EQ(viewer->read_text()->at("message"), "op null is not served: only subscribe and unsubscribe are");
+}
+
 TEST_F(Server, RefusesSubscriptionsThatCannotBe) {
   const auto viewer = client();
   viewer->subscribe(1, 100'000);
@@ -226,8 +255,9 @@ TEST_F(Server, SendsPayloadsAsTheyCameAndStandardMessages) {
   const auto second = client();
   first->subscribe(7, first->channel("/kl1/estimate"));
   second->subscribe(8, second->channel("/tf"));
-  ASSERT_TRUE(eventually([&] { return publisher.matched() == 2; }))
-      << "the viewers' topic and the vehicle's client";
+  second->send("{}");
+  EXPECT_EQ(second->read_text()->at("op"), "status") << "it was read, and what was sent before it";
+  ASSERT_TRUE(eventually([&] { return publisher.matched() == 1; }));
   publisher.publish(estimate(42));
   const auto message = first->read_message();
   ASSERT_TRUE(message);
@@ -243,7 +273,7 @@ TEST_F(Server, SendsTheNewestToWhoWantsNoMore) {
   auto publisher = vehicle_.publish(comms::topics::kEstimate);
   const auto viewer = client("/?newest");
   viewer->subscribe(1, viewer->channel("/kl1/estimate"));
-  ASSERT_TRUE(eventually([&] { return publisher.matched() == 2; }));
+  ASSERT_TRUE(eventually([&] { return publisher.matched() == 1; }));
   constexpr std::uint64_t kLast = 100;
   for (std::uint64_t number = 1; number <= kLast; ++number) publisher.publish(estimate(number));
   std::uint64_t newest = 0;
@@ -349,6 +379,24 @@ TEST_F(Server, SendsRequestsAndReturnsTheReasonOfARefusal) {
 
   viewer->call(200, {});
   EXPECT_EQ(viewer->read_text()->at("message"), "there is no service 200");
+}
+
+// GIVEN a vehicle without control WHEN as many landings wait for their answers as may THEN one more is refused, and a stop
+// is sent.
+TEST_F(Server, SendsAStopBesideManyOtherRequests) {
+  tests::Inbox<std::uint8_t> asked;
+  const auto commands = vehicle_.subscribe<msg::Command>(
+      comms::topics::kCommand, [&](const msg::Command& command) { asked.put(command.kind()); });
+  const auto viewer = client();
+  const std::uint32_t land = viewer->service("/kl1/land");
+  for (std::size_t i = 0; i <= VehicleRequests::kMostUnderWay; ++i) viewer->call(land, {0, 1, 0, 0, 0});
+  EXPECT_EQ(viewer->read_text()->at("message"),
+            "64 requests to land wait for their answers, which is the most");
+  viewer->call(viewer->service("/kl1/stop"), {0, 1, 0, 0, 1});
+  EXPECT_TRUE(eventually([&] {
+    const std::vector<std::uint8_t> kinds = asked.items();
+    return std::find(kinds.begin(), kinds.end(), msg::Command_Constants::STOP) != kinds.end();
+  }));
 }
 
 }  // namespace
