@@ -108,8 +108,8 @@ class FleetMonitor {
   std::vector<MonitoredVehicle> vehicles_;
   RightOfWay right_of_way_;
   std::vector<double> progress_s_;
-  std::vector<double> certain_s_;  // the last at which they were just there
-  std::vector<double> near_s_;     // for how long they have been near that to which they go back
+  std::vector<double> certain_s_;               // the last at which they were just there
+  std::vector<double> near_s_;                  // for how long they have been near that to which they go back
   std::vector<Eigen::Vector3d> reference_ned_;  // m, of the step before
   std::vector<double> paused_s_;  // for how long they have been told to wait, and rested; negative: not told
   std::vector<Way> way_;
