@@ -36,6 +36,7 @@ struct FlightController::Impl {
   SupervisorInputs inputs() const;
   void observe(const ControlSetpoint& setpoint, double dt_s);
   void observe_sliding(double dt_s);
+  void observe_moment(double dt_s);
   AttitudeDemand outer_loop(const ControlSetpoint& setpoint, double dt_s);
   Wrench inner_loop(const AttitudeDemand& demand) const;
   void command_vehicle(const ControlSetpoint& setpoint, const AttitudeDemand& demand);
@@ -65,8 +66,8 @@ struct FlightController::Impl {
   AttitudeDemand descend_level(double speed) const;
   AttitudeDemand follow_direct_setpoint(const ControlSetpoint& setpoint) const;
 
-  // With learnt lift and ground effect: modelled lift (m/s^2) of the rotors now, over that of the vehicle file, and the mass that the
-  // commanded thrust is to carry.
+  // With learnt lift and ground effect: modelled lift (m/s^2) of the rotors now, over that of the vehicle file,
+  // and the mass that the commanded thrust is to carry.
   double ground_effect_now() const;
   Eigen::Vector3d expected_disturbance() const;  // m/s^2, NED, to compensate
   double modelled_lift() const { return ground_effect_now() * rotors.thrust_n() / vehicle.mass_kg; }

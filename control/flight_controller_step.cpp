@@ -9,6 +9,7 @@
 #include "swiftlet/control/flight_controller_impl.hpp"
 #include "swiftlet/control/position/thrust_attitude_map.hpp"
 #include "swiftlet/math/euler.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
 #include "swiftlet/plant/model/rotor.hpp"
 
 namespace swiftlet::control {
@@ -27,6 +28,12 @@ constexpr double kLeadShare = 2.0 / 3.0;
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
+// N m about each axis: of rotors in hover, those on one side at no thrust and the others at twice theirs.
+Vector3d differential_moment(const plant::Vehicle& vehicle) {
+  return plant::effectiveness(vehicle).bottomRows<3>().cwiseAbs().rowwise().sum() *
+         plant::hover_thrust(vehicle);
+}
+
 }  // namespace
 
 FlightController::Impl::Impl(const plant::Vehicle& vehicle_in, const ControlSettings& settings_in,
@@ -41,7 +48,7 @@ FlightController::Impl::Impl(const plant::Vehicle& vehicle_in, const ControlSett
       rotors(vehicle_in, settings_in.estimator.rotor_speed_bandwidth),
       lift(settings_in.estimator.accelerometer_noise_density),
       disturbance(settings_in.disturbance, settings_in.rough_air.law == DisturbanceLaw::kIncremental),
-      moment(vehicle_in.inertia),
+      moment(vehicle_in.inertia, differential_moment(vehicle_in)),
       takeoff_monitor(settings_in.estimator.detectors.takeoff_consistency),
       position(settings_in.position, settings_in.limits, design_in),
       attitude(vehicle_in, settings_in.attitude, design_in),
@@ -202,6 +209,8 @@ void FlightController::Impl::observe(const ControlSetpoint& setpoint, double dt_
       observe_sliding(dt_s);
       return;
     case ControlMode::kLevelDescent:
+      // That of the ground is no disturbance.
+      if (supervisor.state().contact_since_ns == 0) observe_moment(dt_s);
       return;
     case ControlMode::kFly:
     case ControlMode::kAttitude:
@@ -210,12 +219,17 @@ void FlightController::Impl::observe(const ControlSetpoint& setpoint, double dt_
       if (!setpoint.integrate || !controls_position()) return;
       if (settings.rough_air.learn_lift)
         lift.step_in_flight(dt_s, specific_force_frd - estimate.accelerometer_bias, modelled_lift());
-      if (settings.rough_air.law == DisturbanceLaw::kIncremental)
-        moment.step(dt_s, gains.disturbance_bandwidth, estimate.body_rates_frd, rotors.moment_frd());
+      observe_moment(dt_s);
       disturbance.step(dt_s, specific_force_frd - estimate.accelerometer_bias, estimate.q_ned_from_frd,
                        lift_now());
       return;
   }
+}
+
+// Needs no position.
+void FlightController::Impl::observe_moment(double dt_s) {
+  if (settings.rough_air.law == DisturbanceLaw::kIncremental)
+    moment.step(dt_s, gains.disturbance_bandwidth, estimate().body_rates_frd, rotors.moment_frd());
 }
 
 // On the ground the contact hides the vertical disturbance. The horizontal one shows once the vehicle slides.

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
 #include <pybind11/eigen.h>
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
@@ -14,9 +15,12 @@
 #include <variant>
 #include <vector>
 
+#include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/ground/flight/flight_inputs.hpp"
 #include "swiftlet/io/mcap/message_decoder.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/plant/model/control_level.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
 
@@ -36,6 +40,17 @@ using SimulationArgument = std::variant<std::string, plant::SimulationSettings>;
 plant::Vehicle vehicle_of(const VehicleArgument& argument);
 control::ControlSettings control_of(const ControlArgument& argument);
 plant::SimulationSettings simulation_of(const SimulationArgument& argument);
+plant::ControlLevel level_of(const std::string& text);
+
+// The uncertainty of a vehicle file. Throws InputError of the module for a model, which has none.
+struct FileUncertainty {
+  std::string file;
+  plant::VehicleUncertainty parameters;
+};
+FileUncertainty uncertainty_of(const VehicleArgument& argument);
+[[noreturn]] void refuse_uncertainty_of_model();
+
+const char* text_of(control::MissionState state);
 
 // Throws InputError of the module.
 [[noreturn]] void refuse(const std::string& sentence);
@@ -44,9 +59,17 @@ plant::SimulationSettings simulation_of(const SimulationArgument& argument);
 // Throws KeyboardInterrupt if the user has asked for it. Needs the GIL.
 void check_signals();
 
-inline std::chrono::milliseconds milliseconds(double seconds) {
-  return std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1e3));
-}
+// The longest wait for timeout_s. Throws InputError of the module if it is negative or not a number. Infinity is a year.
+std::chrono::milliseconds limit_of(double timeout_s);
+
+// Makes calls to an object exclusive. Throws RuntimeError if another thread is in one.
+class InUse {
+ public:
+  explicit InUse(std::mutex& mutex);
+
+ private:
+  std::unique_lock<std::mutex> lock_;
+};
 
 // A copy. Shape (size) if columns is 0, else (size / columns, columns).
 template <class T>

@@ -1,6 +1,7 @@
 // Running vehicles: requests, setpoints, states and streams. Everything that waits releases the GIL.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -77,11 +78,6 @@ const char* kind_of(ActionResult::Kind kind) {
   return "";
 }
 
-const char* text_of(control::MissionState state) {
-  constexpr const char* kNames[] = {"none", "running", "completed", "aborted", "uploaded", "paused"};
-  return kNames[static_cast<std::size_t>(state)];
-}
-
 // Called with the GIL after a request that was made without.
 void require_accepted(const Result& result) {
   check_signals();
@@ -90,7 +86,7 @@ void require_accepted(const Result& result) {
 }
 
 void wait(const ActionHandle& action, double timeout_s) {
-  const auto end = std::chrono::steady_clock::now() + milliseconds(timeout_s);
+  const auto end = std::chrono::steady_clock::now() + limit_of(timeout_s);
   ActionResult result;
   do {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
@@ -121,7 +117,7 @@ void def_request(py::class_<Vehicle>& type, const char* name, const char* doc) {
   type.def(
       name,
       [](Vehicle& self, double timeout_s) {
-        return ask(self, [&](Vehicle& vehicle) { return (vehicle.*kMethod)(milliseconds(timeout_s)); });
+        return ask(self, [&](Vehicle& vehicle) { return (vehicle.*kMethod)(limit_of(timeout_s)); });
       },
       "timeout_s"_a = 5.0, doc);
 }
@@ -131,7 +127,7 @@ void def_mission_request(py::class_<Vehicle>& type, const char* name, const char
   type.def(
       name,
       [](Vehicle& self, std::uint64_t id, double timeout_s) {
-        return ask(self, [&](Vehicle& vehicle) { return (vehicle.*kMethod)(id, milliseconds(timeout_s)); });
+        return ask(self, [&](Vehicle& vehicle) { return (vehicle.*kMethod)(id, limit_of(timeout_s)); });
       },
       "id"_a = 0, "timeout_s"_a = 5.0, doc);
 }
@@ -193,35 +189,38 @@ py::dict dict_of(const std::vector<mcap::Column>& columns, const TopicStream::Sa
   return out;
 }
 
+py::dict await_next(TopicStream& stream, std::chrono::milliseconds timeout) {
+  const auto end = std::chrono::steady_clock::now() + timeout;
+  for (;;) {
+    std::optional<TopicStream::Sample> sample;
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+    {
+      const py::gil_scoped_release without_gil;
+      sample = stream.next(std::clamp(left, std::chrono::milliseconds(0), kSignalPeriod));
+    }
+    if (sample) return dict_of(stream.columns(), *sample);
+    check_signals();
+    if (std::chrono::steady_clock::now() >= end) {
+      PyErr_SetString(PyExc_TimeoutError, "no message arrived");
+      throw py::error_already_set();
+    }
+  }
+}
+
 void add_streams(py::module_& module) {
   py::class_<TopicStream>(module, "Stream",
                           "The messages of a topic as they arrive. An iterator that does not end.")
       .def(
-          "next",
-          [](TopicStream& self, double timeout_s) {
-            const auto end = std::chrono::steady_clock::now() + milliseconds(timeout_s);
-            for (;;) {
-              std::optional<TopicStream::Sample> sample;
-              const auto left =
-                  std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
-              {
-                const py::gil_scoped_release without_gil;
-                sample = self.next(std::clamp(left, std::chrono::milliseconds(0), kSignalPeriod));
-              }
-              if (sample) return dict_of(self.columns(), *sample);
-              check_signals();
-              if (std::chrono::steady_clock::now() >= end) {
-                PyErr_SetString(PyExc_TimeoutError, "no message arrived");
-                throw py::error_already_set();
-              }
-            }
-          },
+          "next", [](TopicStream& self, double timeout_s) { return await_next(self, limit_of(timeout_s)); },
           "timeout_s"_a = 5.0,
           "The oldest message that waits, else the next: its fields by name ('position_ned'), arrays as "
           "NumPy arrays, and "
           "received_ns, ns since 1970. Throws TimeoutError if none arrives.")
       .def("__iter__", [](const py::object& self) { return self; })
-      .def("__next__", [](const py::object& self) { return self.attr("next")(1e6); })
+      .def("__next__",
+           [](TopicStream& self) {
+             return await_next(self, limit_of(std::numeric_limits<double>::infinity()));
+           })
       .def_property_readonly("dropped", &TopicStream::dropped,
                              "Messages that were dropped because nobody took them.");
 }
@@ -257,9 +256,8 @@ void add_requests(py::class_<Vehicle>& vehicle) {
       .def(
           "take_off",
           [](Vehicle& self, double height_m, double speed_m_s, double timeout_s) {
-            return ask(self, [&](Vehicle& one) {
-              return one.take_off(height_m, speed_m_s, milliseconds(timeout_s));
-            });
+            return ask(self,
+                       [&](Vehicle& one) { return one.take_off(height_m, speed_m_s, limit_of(timeout_s)); });
           },
           "height_m"_a = 1.0, "speed_m_s"_a = 0.5, "timeout_s"_a = 5.0,
           "Climbs straight up to this height above the origin.")
@@ -268,7 +266,7 @@ void add_requests(py::class_<Vehicle>& vehicle) {
           [](Vehicle& self, const Eigen::Vector3d& position_ned_m, std::optional<double> yaw_rad,
              double speed_m_s, double timeout_s) {
             return ask(self, [&](Vehicle& one) {
-              return one.go_to({position_ned_m, yaw_rad, speed_m_s}, milliseconds(timeout_s));
+              return one.go_to({position_ned_m, yaw_rad, speed_m_s}, limit_of(timeout_s));
             });
           },
           "position_ned_m"_a, "yaw_rad"_a = py::none(), "speed_m_s"_a = 0.5, "timeout_s"_a = 5.0,
@@ -276,21 +274,19 @@ void add_requests(py::class_<Vehicle>& vehicle) {
       .def(
           "land",
           [](Vehicle& self, double speed_m_s, double timeout_s) {
-            return ask(self, [&](Vehicle& one) { return one.land(speed_m_s, milliseconds(timeout_s)); });
+            return ask(self, [&](Vehicle& one) { return one.land(speed_m_s, limit_of(timeout_s)); });
           },
           "speed_m_s"_a = 0.4, "timeout_s"_a = 5.0, "Done: the rotors are off.")
       .def(
           "upload",
           [](Vehicle& self, const ground::MissionFile& mission, double timeout_s) {
-            return ask(self,
-                       [&](Vehicle& one) { return one.upload(mission.mission, milliseconds(timeout_s)); });
+            return ask(self, [&](Vehicle& one) { return one.upload(mission.mission, limit_of(timeout_s)); });
           },
           "mission"_a, "timeout_s"_a = 5.0, "Uploads a mission without starting it.")
       .def(
           "follow",
           [](Vehicle& self, const ground::MissionFile& mission, double timeout_s) {
-            return ask(self,
-                       [&](Vehicle& one) { return one.follow(mission.mission, milliseconds(timeout_s)); });
+            return ask(self, [&](Vehicle& one) { return one.follow(mission.mission, limit_of(timeout_s)); });
           },
           "mission"_a, "timeout_s"_a = 5.0, "Uploads a mission and starts it. Done: it is completed.");
   def_mission_request<&Vehicle::start_mission>(
@@ -378,7 +374,7 @@ void add_client(py::module_& module) {
             Result result;
             {
               const py::gil_scoped_release without_gil;
-              result = self.connect(milliseconds(timeout_s));
+              result = self.connect(limit_of(timeout_s));
             }
             require_accepted(result);
           },
@@ -391,7 +387,7 @@ void add_client(py::module_& module) {
           "wait_until",
           [](const Vehicle& self, const std::function<bool(const ground::VehicleState&)>& holds,
              double timeout_s) {
-            const auto end = std::chrono::steady_clock::now() + milliseconds(timeout_s);
+            const auto end = std::chrono::steady_clock::now() + limit_of(timeout_s);
             for (;;) {
               if (holds(self.state())) return true;
               if (std::chrono::steady_clock::now() >= end) return false;

@@ -8,7 +8,6 @@
 #include "bindings.hpp"
 
 #include "swiftlet/io/configuration.hpp"
-#include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/simulation/dispersion_file.hpp"
 #include "swiftlet/simulation/vector_environment.hpp"
 
@@ -19,31 +18,32 @@ using namespace py::literals;
 using ground::HoverTask;
 using ground::VectorEnvironment;
 
+// Another thread may call it while a step has released the GIL.
+struct HoverEnvironments : VectorEnvironment {
+  using VectorEnvironment::VectorEnvironment;
+  std::mutex in_use;
+};
+
 ground::Dispersion dispersion_of(const std::string& name, const VehicleArgument& vehicle,
                                  const ground::World& world) {
   if (name.empty()) return {};
   if (name == ground::kUncertainty) {
-    const auto* const vehicle_name = std::get_if<std::string>(&vehicle);
-    if (vehicle_name == nullptr)
-      refuse("dispersion 'uncertainty' is that of a vehicle file, which a model has not: name the file");
-    const std::string file = runtime::configuration_file(runtime::kinds::kVehicle, *vehicle_name).string();
-    return ground::dispersion_of(runtime::load_vehicle_uncertainty(file), world.vehicle, file);
+    const FileUncertainty of = uncertainty_of(vehicle);
+    return ground::dispersion_of(of.parameters, world.vehicle, of.file);
   }
   return ground::load_dispersion_file(runtime::configuration_file(runtime::kinds::kDispersion, name), world);
 }
 
-std::unique_ptr<VectorEnvironment> make(std::size_t count, std::size_t threads,
+std::unique_ptr<HoverEnvironments> make(std::size_t count, std::size_t threads,
                                         const VehicleArgument& vehicle, const SimulationArgument& simulation,
                                         const std::string& dispersion, const std::string& level,
                                         const HoverTask& task) {
   if (count == 0) refuse("count is 0, must be at least 1");
-  const auto known = plant::control_level_from(level);
-  if (!known) refuse("level is '" + level + "', must be 'actuators', 'rates', 'attitude' or 'trajectory'");
   HoverTask at_level = task;
-  at_level.level = *known;
+  at_level.level = level_of(level);
   const ground::World world{vehicle_of(vehicle), simulation_of(simulation)};
   const std::size_t used = threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
-  return std::make_unique<VectorEnvironment>(world, at_level, dispersion_of(dispersion, vehicle, world),
+  return std::make_unique<HoverEnvironments>(world, at_level, dispersion_of(dispersion, vehicle, world),
                                              count, used);
 }
 
@@ -58,7 +58,8 @@ py::array_t<double> observations(const VectorEnvironment& of) {
   return out;
 }
 
-py::array_t<double> reset(VectorEnvironment& self, const std::optional<Array<std::uint64_t>>& seeds) {
+py::array_t<double> reset(HoverEnvironments& self, const std::optional<Array<std::uint64_t>>& seeds) {
+  const InUse use(self.in_use);
   if (seeds && static_cast<std::size_t>(seeds->size()) != self.count())
     refuse("seeds must have shape (" + std::to_string(self.count()) + ",)");
   {
@@ -73,7 +74,8 @@ py::array_t<double> reset(VectorEnvironment& self, const std::optional<Array<std
   return observations(self);
 }
 
-py::tuple step(VectorEnvironment& self, const Array<double>& actions) {
+py::tuple step(HoverEnvironments& self, const Array<double>& actions) {
+  const InUse use(self.in_use);
   const std::size_t size = self.bounds().low.size();
   if (actions.ndim() != 2 || static_cast<std::size_t>(actions.shape(0)) != self.count() ||
       static_cast<std::size_t>(actions.shape(1)) != size)
@@ -104,7 +106,7 @@ py::tuple step(VectorEnvironment& self, const Array<double>& actions) {
 }  // namespace
 
 void add_environments(py::module_& module) {
-  py::class_<VectorEnvironment>(
+  py::class_<HoverEnvironments>(
       module, "HoverEnvironments",
       "Vehicles that are to hover at a target, all stepped at once. See swiftlet.gym.")
       .def(py::init([](std::size_t count, std::size_t threads, const VehicleArgument& vehicle,
@@ -138,13 +140,13 @@ void add_environments(py::module_& module) {
            "max_rate_rad_s"_a = HoverTask().max_rate_rad_s, "max_tilt_rad"_a = HoverTask().max_tilt_rad,
            "max_speed_m_s"_a = HoverTask().max_speed_m_s,
            "max_yaw_rate_rad_s"_a = HoverTask().max_yaw_rate_rad_s)
-      .def_property_readonly("count", &VectorEnvironment::count)
-      .def_property_readonly("observation_size", &VectorEnvironment::observation_size)
+      .def_property_readonly("count", &HoverEnvironments::count)
+      .def_property_readonly("observation_size", &HoverEnvironments::observation_size)
       .def_property_readonly(
-          "action_low", [](const VectorEnvironment& self) { return array_of(self.bounds().low); },
+          "action_low", [](const HoverEnvironments& self) { return array_of(self.bounds().low); },
           "Shape (actions,): the lower bounds of an action.")
       .def_property_readonly(
-          "action_high", [](const VectorEnvironment& self) { return array_of(self.bounds().high); },
+          "action_high", [](const HoverEnvironments& self) { return array_of(self.bounds().high); },
           "Shape (actions,): the upper bounds of an action.")
       .def("reset", &reset, "seeds"_a = py::none(),
            "seeds: (count,), of which the first episodes begin; without it the next episode of each. Returns "

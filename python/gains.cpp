@@ -4,8 +4,6 @@
 #include "swiftlet/control/design/control_design.hpp"
 #include "swiftlet/control/design/flown_delay.hpp"
 #include "swiftlet/ground/batch/gains_report.hpp"
-#include "swiftlet/io/configuration.hpp"
-#include "swiftlet/io/settings/vehicle_file.hpp"
 
 namespace swiftlet::python {
 namespace {
@@ -13,13 +11,11 @@ namespace {
 using namespace py::literals;
 
 // The uncertainty of a vehicle file; none of a model that is in no file.
-ground::Dispersion uncertainty_of(const VehicleArgument& argument, const plant::Vehicle& vehicle) {
-  const auto* const name = std::get_if<std::string>(&argument);
-  if (name == nullptr) return {};
-  const std::string file = runtime::configuration_file(runtime::kinds::kVehicle, *name).string();
-  const plant::VehicleUncertainty uncertainty = runtime::load_vehicle_uncertainty(file);
-  return uncertainty.parameters.empty() ? ground::Dispersion{}
-                                        : ground::dispersion_of(uncertainty, vehicle, file);
+ground::Dispersion dispersion_of(const VehicleArgument& argument, const plant::Vehicle& vehicle) {
+  if (!std::holds_alternative<std::string>(argument)) return {};
+  const FileUncertainty of = uncertainty_of(argument);
+  return of.parameters.parameters.empty() ? ground::Dispersion{}
+                                          : ground::dispersion_of(of.parameters, vehicle, of.file);
 }
 
 using Report = std::string (*)(const control::ControlDesign&, const ground::MarginStudy&,
@@ -31,7 +27,7 @@ std::string report_of(const VehicleArgument& vehicle_argument, const ControlArgu
   const control::ControlSettings settings = control_of(control_argument);
   const control::ControlDesign design = control::design(vehicle, settings);
   const ground::MarginStudy margins =
-      ground::study_margins(design, vehicle, uncertainty_of(vehicle_argument, vehicle), samples, seed);
+      ground::study_margins(design, vehicle, dispersion_of(vehicle_argument, vehicle), samples, seed);
   return report(design, margins, control::flown_delay_margins(design, settings), vehicle.name, settings.name);
 }
 

@@ -32,6 +32,23 @@ plant::SimulationSettings simulation_of(const SimulationArgument& argument) {
       runtime::configuration_file(runtime::kinds::kSimulation, std::get<std::string>(argument)));
 }
 
+plant::ControlLevel level_of(const std::string& text) {
+  const auto level = plant::control_level_from(text);
+  if (!level) refuse("level is '" + text + "', must be 'actuators', 'rates', 'attitude' or 'trajectory'");
+  return *level;
+}
+
+void refuse_uncertainty_of_model() {
+  refuse("dispersion 'uncertainty' is that of a vehicle file, which a model has not: name the file");
+}
+
+FileUncertainty uncertainty_of(const VehicleArgument& argument) {
+  const auto* const name = std::get_if<std::string>(&argument);
+  if (name == nullptr) refuse_uncertainty_of_model();
+  const std::string file = runtime::configuration_file(runtime::kinds::kVehicle, *name).string();
+  return {file, runtime::load_vehicle_uncertainty(file)};
+}
+
 namespace {
 
 // A text in Python for an enumeration of two values, of which the first is 0.
@@ -61,8 +78,7 @@ void add_validate(py::class_<T>& type) {
       "The rules that it breaks; empty if it can be used.");
 }
 
-void add_vehicle(py::module_& module) {
-  using plant::Vehicle;
+void add_vehicle_parts(py::module_& module) {
   py::class_<plant::Violation>(module, "Violation", "A rule that a model breaks.")
       .def_readonly("key", &plant::Violation::key, "As in the file: 'motor.time_constant'.")
       .def_readonly("message", &plant::Violation::message, "With value and limit: 'is -0.1, must be ...'.")
@@ -117,7 +133,10 @@ void add_vehicle(py::module_& module) {
                      "0 .. 1, ascending. A copy: assign a whole list.")
       .def_readwrite("open_circuit_voltage_v", &plant::BatteryParameters::open_circuit_voltage_v,
                      "At these states of charge, V. A copy: assign a whole list.");
+}
 
+void add_vehicle(py::module_& module) {
+  using plant::Vehicle;
   py::class_<Vehicle> vehicle(module, "VehicleModel",
                               "The parameters of an identified vehicle, as in its file.");
   vehicle.def_readwrite("name", &Vehicle::name)
@@ -256,6 +275,7 @@ void add_simulation_settings(py::module_& module) {
       .def_property(
           "step_s", [](const SimulationSettings& self) { return 1e-9 * static_cast<double>(self.step_ns); },
           [](SimulationSettings& self, double step_s) {
+            if (!(step_s > 0.0 && step_s <= 1.0)) refuse("step_s must be above 0 and at most 1");
             self.step_ns = static_cast<std::int64_t>(step_s * 1e9 + 0.5);
           },
           "Integration step, s.")
@@ -307,6 +327,7 @@ void add_missions(py::module_& module) {
 }  // namespace
 
 void add_models(py::module_& module) {
+  add_vehicle_parts(module);
   add_vehicle(module);
   add_control(module);
   add_simulation_settings(module);

@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <dlfcn.h>
 #include <filesystem>
 #include <stdexcept>
 
 #include "bindings.hpp"
 
+#include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/program_directory.hpp"
@@ -44,6 +46,20 @@ void raise(const char* exception, const std::string& reason, const char* kind) {
 
 void check_signals() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+const char* text_of(control::MissionState state) {
+  return ground::mission_state_name(static_cast<std::uint8_t>(state));
+}
+
+std::chrono::milliseconds limit_of(double timeout_s) {
+  constexpr double kYear_s = 365.0 * 86400.0;
+  if (!(timeout_s >= 0.0)) refuse("timeout_s is " + std::to_string(timeout_s) + ", must be at least 0");
+  return std::chrono::milliseconds(static_cast<std::int64_t>(std::min(timeout_s, kYear_s) * 1e3));
+}
+
+InUse::InUse(std::mutex& mutex) : lock_(mutex, std::try_to_lock) {
+  if (!lock_.owns_lock()) throw std::runtime_error("another thread uses this object: give each its own");
 }
 
 void add_errors(py::module_& module) {

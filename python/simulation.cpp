@@ -31,9 +31,7 @@ struct PlannedFlight {
   ground::FlightInputs given;
 
   ground::LaunchConfiguration plan() const {
-    if (given.vehicle && options.dispersion == ground::kUncertainty)
-      throw ground::InputError(
-          "dispersion 'uncertainty' is that of a vehicle file, which a model has not: name the file");
+    if (given.vehicle && options.dispersion == ground::kUncertainty) refuse_uncertainty_of_model();
     if (given.any() && !options.record.empty())
       throw ground::InputError(
           "a record holds the files of the flight: name the files of vehicle, control, simulation and "
@@ -65,14 +63,12 @@ PlannedFlight planned(const MissionArgument& mission, const VehicleArgument& veh
   options.dispersion = dispersion;
   options.seed = seed;
   options.start_ned = start_ned;
-  const auto known = plant::control_level_from(level);
-  if (!known) refuse("level is '" + level + "', must be 'actuators', 'rates', 'attitude' or 'trajectory'");
-  options.level = *known;
+  options.level = level_of(level);
   return flight;
 }
 
-// True once the user has asked for an end. Called often and from any thread; only the main thread of Python learns of
-// signals.
+// True once a handler of a signal has raised an exception, such as KeyboardInterrupt. Called often and from any thread; only
+// the main thread of Python learns of signals.
 class Cancellation {
  public:
   bool operator()() {
@@ -81,23 +77,21 @@ class Cancellation {
   }
   void check() {
     const py::gil_scoped_acquire gil;
-    if (PyErr_CheckSignals() != 0) {
-      PyErr_Clear();
-      cancelled_ = true;
-    }
+    if (PyErr_CheckSignals() == 0) return;
+    raised_.emplace();  // takes the exception
+    cancelled_ = true;
   }
   bool is_cancelled() const { return cancelled_; }
   // Needs the GIL.
   void raise_if_cancelled() const {
-    if (!cancelled_) return;
-    PyErr_SetNone(PyExc_KeyboardInterrupt);
-    throw py::error_already_set();
+    if (raised_) throw py::error_already_set(*raised_);
   }
 
  private:
   static constexpr unsigned kCallsPerCheck = 500;
   std::atomic<unsigned> calls_{0};
   std::atomic<bool> cancelled_{false};
+  std::optional<py::error_already_set> raised_;  // guarded by the GIL
 };
 
 // Of a program without a terminal of its own: what would be said there is not kept.
@@ -263,10 +257,9 @@ py::dict open_loop(const plant::Vehicle& vehicle, const Array<double>& time_s, c
                   "q_ned_from_frd"_a = attitude, "body_rates_frd"_a = rates, "rotor_speeds"_a = speeds);
 }
 
-py::dict state_of(const ground::ClosedLoop& loop) {
-  const plant::TruthSample truth = loop.plant.truth();
+py::dict state_of(const plant::TruthSample& truth, double time_s) {
   const Eigen::Quaterniond& q = truth.q_ned_from_frd;
-  return py::dict("time_s"_a = loop.time_s(), "position_ned"_a = truth.position_ned,
+  return py::dict("time_s"_a = time_s, "position_ned"_a = truth.position_ned,
                   "velocity_ned"_a = truth.velocity_ned,
                   "q_ned_from_frd"_a = Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()),
                   "body_rates_frd"_a = truth.body_rates_frd,
@@ -274,135 +267,174 @@ py::dict state_of(const ground::ClosedLoop& loop) {
                   "supply_voltage_v"_a = truth.supply_voltage_v, "on_ground"_a = truth.on_ground);
 }
 
-py::dict estimate_of(const ground::ClosedLoop& loop) {
-  const control::Estimate& estimate = loop.controller.estimate();
+py::dict estimate_of(const control::Estimate& estimate) {
   const Eigen::Quaterniond& q = estimate.q_ned_from_frd;
   return py::dict("stamp_ns"_a = estimate.stamp_ns, "position_ned"_a = estimate.position_ned,
                   "velocity_ned"_a = estimate.velocity_ned,
                   "q_ned_from_frd"_a = Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()));
 }
 
-void request(ground::ClosedLoop& loop, const control::Request& request) {
-  const control::Outcome outcome = loop.controller.request(request);
-  if (!outcome.accepted) raise("RequestError", outcome.reason, "refused");
-}
-
-void set(ground::ClosedLoop& loop, const control::Setpoint& setpoint, std::uint64_t& sequence) {
-  control::Setpoint stamped = setpoint;
-  stamped.stamp_ns = loop.plant.stamp_ns();
-  stamped.sequence = ++sequence;
-  const control::Outcome outcome = loop.controller.on_setpoint(stamped);
-  if (!outcome.accepted) raise("RequestError", outcome.reason, "refused");
-}
-
 struct Simulation {
+  explicit Simulation(std::unique_ptr<ground::ClosedLoop> made) : loop(std::move(made)) {}
+
   std::unique_ptr<ground::ClosedLoop> loop;
   std::uint64_t setpoints = 0;
+  mutable std::mutex in_use;  // another thread may call it while a step has released the GIL
 };
 
-control::Request of_kind(control::RequestKind kind) {
-  control::Request request;
-  request.kind = kind;
-  return request;
+// Objects of Python are made after it: to make them may let another thread go on.
+template <class Read>
+auto read(const Simulation& simulation, const Read& of) {
+  const InUse use(simulation.in_use);
+  return of(*simulation.loop);
 }
 
-void add_stepped(py::module_& module) {
+void step(Simulation& simulation, double duration_s) {
+  constexpr double kLongest_s = 1e6;
+  if (!(duration_s >= 0.0 && duration_s <= kLongest_s))
+    refuse("duration_s is " + std::to_string(duration_s) + ", must be at least 0 and at most 1e6");
+  const InUse use(simulation.in_use);
+  ground::ClosedLoop& loop = *simulation.loop;
+  Cancellation cancelled;
+  {
+    const py::gil_scoped_release without_gil;
+    const std::int64_t end_ns = loop.plant.stamp_ns() + static_cast<std::int64_t>(duration_s * 1e9 + 0.5);
+    do {
+      loop.step();
+    } while (loop.plant.stamp_ns() < end_ns && !cancelled());
+  }
+  cancelled.raise_if_cancelled();
+}
+
+void request(Simulation& simulation, const control::Request& request) {
+  const control::Outcome outcome =
+      read(simulation, [&](ground::ClosedLoop& loop) { return loop.controller.request(request); });
+  if (!outcome.accepted) raise("RequestError", outcome.reason, "refused");
+}
+
+void request(Simulation& simulation, control::RequestKind kind) {
+  control::Request of_kind;
+  of_kind.kind = kind;
+  request(simulation, of_kind);
+}
+
+void set(Simulation& simulation, const control::Setpoint& setpoint) {
+  const control::Outcome outcome = read(simulation, [&](ground::ClosedLoop& loop) {
+    control::Setpoint stamped = setpoint;
+    stamped.stamp_ns = loop.plant.stamp_ns();
+    stamped.sequence = ++simulation.setpoints;
+    return loop.controller.on_setpoint(stamped);
+  });
+  if (!outcome.accepted) raise("RequestError", outcome.reason, "refused");
+}
+
+std::unique_ptr<Simulation> make(const VehicleArgument& vehicle, const ControlArgument& control,
+                                 const SimulationArgument& simulation, std::uint64_t seed) {
+  const ground::World world{vehicle_of(vehicle), simulation_of(simulation)};
+  for (const plant::Violation& violation : ground::validate(world))
+    refuse(violation.key + ": " + violation.message);
+  return std::make_unique<Simulation>(
+      std::make_unique<ground::ClosedLoop>(world.vehicle, world.simulation, control_of(control), seed));
+}
+
+void add_stepped_requests(py::class_<Simulation>& type) {
   using control::RequestKind;
-  py::class_<Simulation>(
-      module, "Simulation",
-      "A vehicle and its flight controller that advance when told: requests and setpoints in, states "
-      "out. The same seed and calls give bit-identical results.")
-      .def(py::init([](const VehicleArgument& vehicle, const ControlArgument& control,
-                       const SimulationArgument& simulation, std::uint64_t seed) {
-             const ground::World world{vehicle_of(vehicle), simulation_of(simulation)};
-             for (const plant::Violation& violation : ground::validate(world))
-               refuse(violation.key + ": " + violation.message);
-             return Simulation{std::make_unique<ground::ClosedLoop>(world.vehicle, world.simulation,
-                                                                    control_of(control), seed)};
-           }),
-           "vehicle"_a = "kaylion", "control"_a = "motor_lag", "simulation"_a = "default", "seed"_a = 1)
-      .def(
-          "step",
-          [](Simulation& self, double duration_s) {
-            Cancellation cancelled;
-            {
-              const py::gil_scoped_release without_gil;
-              const std::int64_t end_ns =
-                  self.loop->plant.stamp_ns() + static_cast<std::int64_t>(duration_s * 1e9 + 0.5);
-              do {
-                self.loop->step();
-              } while (self.loop->plant.stamp_ns() < end_ns && !cancelled());
-            }
-            cancelled.raise_if_cancelled();
-          },
-          "duration_s"_a = 0.0, "Advances by this time, at least to the next IMU sample, s.")
-      .def_property_readonly(
-          "time_s", [](const Simulation& self) { return self.loop->time_s(); }, "Simulated time, s.")
-      .def_property_readonly(
-          "mode",
-          [](const Simulation& self) { return control::to_string(self.loop->controller.status().mode); },
-          "Flight mode: 'disarmed', 'holding' ...")
-      .def(
-          "state", [](const Simulation& self) { return state_of(*self.loop); },
-          "The ground truth: time_s; position_ned (3,) m, velocity_ned (3,) m/s, q_ned_from_frd (4,) w, x, "
-          "y, z, "
-          "body_rates_frd (3,) rad/s, rotor_speeds (rotors,) rad/s, supply_voltage_v, on_ground.")
-      .def(
-          "estimate", [](const Simulation& self) { return estimate_of(*self.loop); },
-          "Of the controller: stamp_ns; position_ned (3,) m, velocity_ned (3,) m/s, q_ned_from_frd (4,).")
-      .def(
-          "arm", [](Simulation& self) { request(*self.loop, of_kind(RequestKind::kArm)); },
+  type.def(
+          "arm", [](Simulation& self) { request(self, RequestKind::kArm); },
           "Throws RequestError with the reason if it is refused, as all requests do.")
       .def(
           "take_off",
           [](Simulation& self, double height_m, double speed_m_s) {
-            control::Request takeoff = of_kind(RequestKind::kTakeoff);
+            control::Request takeoff;
+            takeoff.kind = RequestKind::kTakeoff;
             takeoff.position_ned.z() = -height_m;
             takeoff.speed = speed_m_s;
-            request(*self.loop, takeoff);
+            request(self, takeoff);
           },
           "height_m"_a = 1.0, "speed_m_s"_a = 0.5)
       .def(
           "go_to",
           [](Simulation& self, const Eigen::Vector3d& position_ned_m, std::optional<double> yaw_rad,
              double speed_m_s) {
-            control::Request go_to = of_kind(RequestKind::kGoTo);
+            control::Request go_to;
+            go_to.kind = RequestKind::kGoTo;
             go_to.position_ned = position_ned_m;
             go_to.yaw_free = !yaw_rad;
             go_to.yaw_rad = yaw_rad.value_or(0.0);
             go_to.speed = speed_m_s;
-            request(*self.loop, go_to);
+            request(self, go_to);
           },
           "position_ned_m"_a, "yaw_rad"_a = py::none(), "speed_m_s"_a = 0.5)
-      .def("hold", [](Simulation& self) { request(*self.loop, of_kind(RequestKind::kHold)); })
+      .def("hold", [](Simulation& self) { request(self, RequestKind::kHold); })
       .def(
           "land",
           [](Simulation& self, double speed_m_s) {
-            control::Request land = of_kind(RequestKind::kLand);
+            control::Request land;
+            land.kind = RequestKind::kLand;
             land.speed = speed_m_s;
-            request(*self.loop, land);
+            request(self, land);
           },
           "speed_m_s"_a = 0.4)
       .def(
-          "stop", [](Simulation& self) { request(*self.loop, of_kind(RequestKind::kStop)); },
-          "Stops the rotors at once.")
+          "stop", [](Simulation& self) { request(self, RequestKind::kStop); }, "Stops the rotors at once.")
       .def(
           "send_velocity",
           [](Simulation& self, const Eigen::Vector3d& velocity_ned_m_s) {
-            set(*self.loop, ground::to_setpoint(ground::VelocitySetpoint{velocity_ned_m_s}), self.setpoints);
+            set(self, ground::to_setpoint(ground::VelocitySetpoint{velocity_ned_m_s}));
           },
           "velocity_ned_m_s"_a, "A setpoint of a stream, at least 2 Hz, from mode 'holding' on.")
       .def(
           "send_position",
           [](Simulation& self, const Eigen::Vector3d& position_ned_m) {
-            set(*self.loop, ground::to_setpoint(ground::PositionSetpoint{position_ned_m}), self.setpoints);
+            set(self, ground::to_setpoint(ground::PositionSetpoint{position_ned_m}));
           },
           "position_ned_m"_a, "A setpoint of a stream, at least 2 Hz, from mode 'holding' on.");
 }
 
-}  // namespace
+void add_stepped(py::module_& module) {
+  using ground::ClosedLoop;
+  py::class_<Simulation> type(
+      module, "Simulation",
+      "A vehicle and its flight controller that advance when told: requests and setpoints in, states "
+      "out. The same seed and calls give bit-identical results. Throws RuntimeError while another thread is "
+      "in step().");
+  type.def(py::init(&make), "vehicle"_a = "kaylion", "control"_a = "motor_lag", "simulation"_a = "default",
+           "seed"_a = 1)
+      .def("step", &step, "duration_s"_a = 0.0, "Advances by this time, at least to the next IMU sample, s.")
+      .def_property_readonly(
+          "time_s",
+          [](const Simulation& self) {
+            return read(self, [](const ClosedLoop& loop) { return loop.time_s(); });
+          },
+          "Simulated time, s.")
+      .def_property_readonly(
+          "mode",
+          [](const Simulation& self) {
+            return read(self, [](const ClosedLoop& loop) {
+              return control::to_string(loop.controller.status().mode);
+            });
+          },
+          "Flight mode: 'disarmed', 'holding' ...")
+      .def(
+          "state",
+          [](const Simulation& self) {
+            return state_of(read(self, [](const ClosedLoop& loop) { return loop.plant.truth(); }),
+                            read(self, [](const ClosedLoop& loop) { return loop.time_s(); }));
+          },
+          "The ground truth: time_s; position_ned (3,) m, velocity_ned (3,) m/s, q_ned_from_frd (4,) w, x, "
+          "y, z, "
+          "body_rates_frd (3,) rad/s, rotor_speeds (rotors,) rad/s, supply_voltage_v, on_ground.")
+      .def(
+          "estimate",
+          [](const Simulation& self) {
+            return estimate_of(read(
+                self, [](const ClosedLoop& loop) { return control::Estimate(loop.controller.estimate()); }));
+          },
+          "Of the controller: stamp_ns; position_ned (3,) m, velocity_ned (3,) m/s, q_ned_from_frd (4,).");
+  add_stepped_requests(type);
+}
 
-void add_simulation(py::module_& module) {
+void add_flight(py::module_& module) {
   PYBIND11_NUMPY_DTYPE(ground::TruthRow, stamp_ns, position_ned, velocity_ned, q_ned_from_frd, body_rates_frd,
                        rotor_speeds, rotor_count, supply_voltage_v, on_ground);
   PYBIND11_NUMPY_DTYPE(ground::ReferenceRow, stamp_ns, mode, position_ned, velocity_ned, acceleration_ned,
@@ -447,7 +479,9 @@ void add_simulation(py::module_& module) {
           "estimate", [](const Flight& self) { return columns_of(self.record->estimate); },
           "The estimate of the controller at 100 Hz: stamp_ns, time_s; position_ned (n, 3) m, velocity_ned "
           "(n, 3) m/s.");
+}
 
+void add_simulate(py::module_& module) {
   module.def(
       "simulate",
       [](const MissionArgument& mission, const VehicleArgument& vehicle, const ControlArgument& control,
@@ -497,6 +531,13 @@ void add_simulation(py::module_& module) {
              "at rest in the origin if not given. Returns arrays with a row for each millisecond: time_s, "
              "position_ned, "
              "velocity_ned, q_ned_from_frd, body_rates_frd, rotor_speeds. Throws InputError.");
+}
+
+}  // namespace
+
+void add_simulation(py::module_& module) {
+  add_flight(module);
+  add_simulate(module);
   add_stepped(module);
 }
 

@@ -1,6 +1,9 @@
 #include "swiftlet/simulation/vector_environment.hpp"
 
 #include <algorithm>
+#include <exception>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace swiftlet::ground {
@@ -8,10 +11,18 @@ namespace swiftlet::ground {
 VectorEnvironment::VectorEnvironment(const World& nominal, const HoverTask& task,
                                      const Dispersion& dispersion, std::size_t count, std::size_t threads)
     : observation_size_(static_cast<std::size_t>(HoverEnvironment::observation_size(nominal.vehicle))),
-      parts_(std::min(count, threads)) {
+      parts_(1) {
+  if (threads < 1 || threads > kMostThreads)
+    throw std::invalid_argument("threads is " + std::to_string(threads) + ", must be from 1 to " +
+                                std::to_string(kMostThreads));
   environments_.reserve(count);
   for (std::size_t i = 0; i < count; ++i) environments_.emplace_back(nominal, task, dispersion);
-  for (std::size_t part = 1; part < parts_; ++part) threads_.emplace_back([this, part] { work(part); });
+  threads_.reserve(std::min(count, threads) - 1);
+  try {
+    for (; parts_ < std::min(count, threads); ++parts_)
+      threads_.emplace_back([this, part = parts_] { work(part); });
+  } catch (const std::exception&) {  // the system starts no more
+  }
 }
 
 VectorEnvironment::~VectorEnvironment() {

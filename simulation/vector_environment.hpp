@@ -17,7 +17,10 @@ namespace swiftlet::ground {
 // The results do not depend on the number of threads. One thread calls it.
 class VectorEnvironment {
  public:
-  // count, threads: at least 1. Further arguments and exceptions as of HoverEnvironment.
+  static constexpr std::size_t kMostThreads = 1024;
+
+  // count: at least 1. threads: 1 .. kMostThreads, else throws std::invalid_argument; fewer if the system starts no more. Further
+  // arguments and exceptions as of HoverEnvironment.
   VectorEnvironment(const World& nominal, const HoverTask& task, const Dispersion& dispersion,
                     std::size_t count, std::size_t threads);
   ~VectorEnvironment();

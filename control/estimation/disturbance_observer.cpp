@@ -6,6 +6,7 @@ namespace swiftlet::control {
 
 void DisturbanceObserver::step(double dt_s, const Eigen::Vector3d& specific_force_frd,
                                const Eigen::Quaterniond& q_ned_from_frd, double lift) {
+  if (!(settings_.bandwidth > 0.0)) return reset();
   const double bandwidth_dt = settings_.bandwidth * dt_s;
   const Eigen::Vector3d unexplained_frd = specific_force_frd + lift * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d unexplained_ned = q_ned_from_frd * unexplained_frd;

@@ -19,7 +19,7 @@ class DisturbanceObserver {
 
   // A step of dt_s > 0 in free flight. specific_force_frd: measured, bias removed, m/s^2. lift: rotor thrust
   // over mass, m/s^2. Low-passes the difference at settings.bandwidth and limits its length to
-  // settings.limit. Ignores an input that is not finite. With bandwidth 0 the estimate stays zero.
+  // settings.limit. Ignores an input that is not finite. With bandwidth 0 the estimate is zero.
   void step(double dt_s, const Eigen::Vector3d& specific_force_frd, const Eigen::Quaterniond& q_ned_from_frd,
             double lift);
 

@@ -12,8 +12,8 @@ class OdometryMotion {
   // The mean motion since the last sample. The mean specific force is that of the change of velocity, the mean rates are
   // those of the change of attitude: propagated with them, an estimate changes as the vehicle's own.
   //
-  // Of a sample whose stamp is closer to the last than a third of the usual interval, as of a clock that is set, the force is that of
-  // before; the next sample tells the motion since the one before it.
+  // Of a sample whose stamp is closer to the last than a third of the usual interval, as of a clock that is
+  // set, the force is that of before; the next sample tells the motion since the one before it.
   //
   // A jump, at which `resets` has counted up, is no motion: the force of before goes on, with the rates of both samples.
   // Without velocity, the force is that of the rotors, specific_thrust (m/s^2, thrust over mass), or that at rest while they

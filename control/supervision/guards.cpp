@@ -31,6 +31,12 @@ GroundLinkAction link_action(const SupervisorContext& context) {
   return context.settings.failsafe.ground_link_action;
 }
 
+// In take-off, still on the ground. Where lift-off is observed, the reference rises from then on (advance_spool_up()).
+bool spooling_up(const SupervisorContext& context) {
+  const GuidanceState& guidance = context.state.guidance;
+  return guidance.phase == Phase::kSpoolUp && !guidance.path.moving;
+}
+
 Outcome battery_sufficient(const SupervisorContext& context) {
   const SupervisorInputs& inputs = context.inputs;
   const double limit = context.settings.failsafe.low_battery_voltage;
@@ -319,17 +325,15 @@ Outcome check_settings(const SupervisorContext& context) {
 namespace guards {
 
 const Guard kAlways{"", [](const SupervisorContext&) { return true; }};
-const Guard kSpoolingUp{"on the ground", [](const SupervisorContext& context) {
-                          return context.state.guidance.phase == Phase::kSpoolUp;
-                        }};
-const Guard kLiftedOff{"lifted off", [](const SupervisorContext& context) {
-                         return context.state.guidance.phase != Phase::kSpoolUp;
-                       }};
+const Guard kSpoolingUp{"on the ground",
+                        [](const SupervisorContext& context) { return spooling_up(context); }};
+const Guard kLiftedOff{"lifted off", [](const SupervisorContext& context) { return !spooling_up(context); }};
 const Guard kOnLandingItem{"on the landing item", [](const SupervisorContext& context) {
                              return on_landing_item(context.guidance());
                            }};
-const Guard kPausable{"lifted off, not on the landing item", [](const SupervisorContext& context) {
-                        return kLiftedOff.holds(context) && !on_landing_item(context.guidance());
+const Guard kPausable{"climbing or later, not on the landing item", [](const SupervisorContext& context) {
+                        return context.state.guidance.phase != Phase::kSpoolUp &&
+                               !on_landing_item(context.guidance());
                       }};
 const Guard kPaused{"a mission is paused", [](const SupervisorContext& context) { return context.paused(); }};
 const Guard kNotPaused{"no mission is paused",

@@ -19,10 +19,10 @@ struct Precondition {
 namespace guards {
 
 extern const Guard kAlways;
-extern const Guard kSpoolingUp;  // in take-off, still on the ground
+extern const Guard kSpoolingUp;  // in take-off, still on the ground: ends at lift-off where that is observed
 extern const Guard kLiftedOff;   // the opposite
 extern const Guard kOnLandingItem;
-extern const Guard kPausable;  // lifted off and not on the landing item
+extern const Guard kPausable;  // in the climb or later, and not on the landing item
 extern const Guard kPaused;    // a mission is paused
 extern const Guard kNotPaused;
 extern const Guard kNoneUnderWay;  // no mission is flown or paused

@@ -39,8 +39,8 @@ struct SupervisorInputs {
   // At which the vehicle is commanded, and which it accepts.
   plant::ControlLevel level = plant::ControlLevel::kActuators;
   plant::ControlLevels accepted_levels = plant::ControlLevel::kActuators;
-  // What vehicle_info reports as fault, and for how long; empty: none. Only above level actuators, where the vehicle has loops and
-  // modes of its own.
+  // What vehicle_info reports as fault, and for how long; empty: none. Only above level actuators, where the
+  // vehicle has loops and modes of its own.
   const char* vehicle_fault = "";
   double vehicle_fault_s = 0.0;
   // Time since the rotors' limits cut a command.

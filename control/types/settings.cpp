@@ -8,7 +8,8 @@ namespace {
 
 using plant::RuleChecker;
 
-constexpr double kMaxTilt = 1.5;  // rad; some vertical thrust must remain
+constexpr double kMaxTilt = 1.5;                    // rad; some vertical thrust must remain
+constexpr double kMaxDisturbanceBandwidth = 500.0;  // rad/s; far above that of rotors
 constexpr char kAxis[] = {'x', 'y', 'z'};
 
 void check_weights(const std::string& key, const LqrWeights& weights, RuleChecker& check) {
@@ -175,7 +176,7 @@ std::vector<plant::Violation> validate(const ControlSettings& settings) {
   check_rpt("position.y", settings.position.y, check);
   check_rpt("position.z", settings.position.z, check);
   check.at_least("position.integral_limit_m_s2", settings.position.integral_limit, 0.0);
-  check.at_least("disturbance.bandwidth_rad_s", settings.disturbance.bandwidth, 0.0);
+  check.between("disturbance.bandwidth_rad_s", settings.disturbance.bandwidth, 0.0, kMaxDisturbanceBandwidth);
   check.at_least("disturbance.limit_m_s2", settings.disturbance.limit, 0.0);
   check.between("rough_air.thrust_lead", settings.rough_air.thrust_lead, 0.0, 5.0);
   check.between("rough_air.rotor_radius_m", settings.rough_air.rotor_radius_m, 0.0, 1.0);

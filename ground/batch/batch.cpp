@@ -7,6 +7,8 @@
 #include <exception>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -37,8 +39,17 @@ class WorkerPool {
 
   void work(std::size_t jobs, const std::function<void(std::size_t done, std::size_t failed)>& progress) {
     std::vector<std::thread> threads;
-    busy_ = jobs;
-    for (std::size_t i = 0; i < jobs; ++i) threads.emplace_back([this] { run(); });
+    threads.reserve(jobs);
+    for (std::size_t i = 0; i < jobs; ++i) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      try {
+        threads.emplace_back([this] { run(); });
+        ++busy_;
+      } catch (const std::exception&) {  // the system starts no more
+        if (threads.empty()) throw;
+        break;
+      }
+    }
     {
       std::unique_lock<std::mutex> lock(mutex_);
       while (!changed_.wait_for(lock, kProgressPeriod, [this] { return busy_ == 0; }))
@@ -115,6 +126,9 @@ BatchRunner::BatchRunner(LaunchConfiguration plan, std::size_t runs)
 
 Batch BatchRunner::fly(std::size_t jobs, const std::function<bool()>& cancelled,
                        const std::function<void(const BatchProgress&)>& progress) const {
+  if (jobs < 1 || jobs > kMostJobs)
+    throw std::invalid_argument("jobs is " + std::to_string(jobs) + ", must be from 1 to " +
+                                std::to_string(kMostJobs));
   const auto start = std::chrono::steady_clock::now();
   const auto fly_one = [&](std::size_t index, FlightRecord& record) -> std::optional<BatchRun> {
     if (cancelled()) return std::nullopt;

@@ -34,6 +34,8 @@ struct Batch {
   std::size_t failed() const;
 };
 
+constexpr std::size_t kMostJobs = 1024;
+
 struct BatchProgress {
   std::size_t requested = 0;
   std::size_t done = 0;
@@ -48,9 +50,9 @@ class BatchRunner {
  public:
   BatchRunner(LaunchConfiguration plan, std::size_t runs);
 
-  // Flies the runs on `jobs` threads; the result does not depend on their number. Calls `progress` about
-  // every 100 ms from this thread, and `cancelled` from all threads. Once `cancelled` returns true, unfinished
-  // runs are discarded. Rethrows the first exception of a run.
+  // Flies the runs on `jobs` threads, fewer if the system starts no more; the result does not depend on their number. jobs: 1 ..
+  // kMostJobs, else throws std::invalid_argument. Calls `progress` about every 100 ms from this thread, and `cancelled` from all
+  // threads. Once `cancelled` returns true, unfinished runs are discarded. Rethrows the first exception of a run.
   Batch fly(std::size_t jobs, const std::function<bool()>& cancelled,
             const std::function<void(const BatchProgress&)>& progress) const;
 

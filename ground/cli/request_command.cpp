@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/command_line/network_options.hpp"
@@ -109,7 +110,7 @@ bool find_all(RequestOutcomes& outcomes, const RequestOptions& options) {
 }
 
 // Takes the request back from those that accepted it.
-void take_back(RequestOutcomes& outcomes, const VehicleRequest& request, const std::string& refusing) {
+void take_back(RequestOutcomes& outcomes, const VehicleRequest& request, const std::string& why) {
   for_all(outcomes, [&](RequestOutcome& outcome) {
     const bool may_obey = outcome.answer.accepted() || outcome.answer.kind == Result::Kind::kSilence;
     if (!may_obey || outcome.mode_before != request.undo_from) return;
@@ -117,7 +118,7 @@ void take_back(RequestOutcomes& outcomes, const VehicleRequest& request, const s
     if (!outcome.answer.accepted()) return;
     const std::string now =
         undone.accepted() ? request.undone : request.not_undone + " (" + undone.reason + ")";
-    outcome.answer = {Result::Kind::kCancelled, now + ", because " + refusing + " " + request.cause};
+    outcome.answer = {Result::Kind::kCancelled, now + ", because " + why};
   });
 }
 
@@ -125,9 +126,17 @@ void take_back(RequestOutcomes& outcomes, const VehicleRequest& request, const s
 void send_to_all_or_none(RequestOutcomes& outcomes, const VehicleRequest& request,
                          const RequestOptions& options) {
   if (!find_all(outcomes, options)) return;
+  const auto sent = std::chrono::steady_clock::now();
   for_all(outcomes, [&](RequestOutcome& outcome) { send(outcome, request); });
+  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - sent).count();
   const std::string refusing = failed_names(outcomes);
-  if (!refusing.empty()) take_back(outcomes, request, refusing);
+  if (!refusing.empty()) {
+    take_back(outcomes, request, refusing + " " + request.cause);
+  } else if (request.skew_s && took_s > *request.skew_s) {
+    take_back(outcomes, request,
+              fmt::format("the last one may have begun {:.2f} s after the first; the limit is {:g} s", took_s,
+                          *request.skew_s));
+  }
   for (const RequestOutcome& outcome : outcomes) print_acceptance(outcome, request, options);
 }
 

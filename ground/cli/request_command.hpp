@@ -43,6 +43,8 @@ struct VehicleRequest {
   // refuses it, `undo` is sent to the others that were in this mode before. The texts say what became of them, and why.
   std::function<ActionHandle(Vehicle&)> undo{};
   control::Mode undo_from = control::Mode::kDisarmed;
+  // With `undo`: it is also taken back if the last one accepted it later than this after it was sent to all.
+  std::optional<double> skew_s{};
   std::string undone = "disarmed again", not_undone = "still armed", cause = "did not arm";
 };
 

@@ -31,8 +31,8 @@ struct SentFile {
 
   MissionFile mission() const;
   TrajectoryFile trajectory() const;
-  // Throws InputError if the vehicle cannot fly it, by its own dry run, from where it stands. If neither --vehicle nor the running
-  // vehicle says which model it is, it says so and checks all but the rotors.
+  // Throws InputError if the vehicle cannot fly it, by its own dry run, from where it stands. If neither
+  // --vehicle nor the running vehicle says which model it is, it says so and checks all but the rotors.
   void require_flyable(const Vehicle& running, const MissionFile& file,
                        std::chrono::milliseconds timeout) const;
   // The same of a trajectory, which the vehicle joins from its motion.

@@ -7,7 +7,6 @@
 #include <fmt/core.h>
 
 #include "swiftlet/control/types/polynomial.hpp"
-#include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/ground/fleet/flight_path.hpp"
 
 namespace swiftlet::ground {
@@ -19,11 +18,11 @@ constexpr double kShortestMove_s = 0.5;  // of control/guidance
 constexpr double kLower_m = 0.05;
 
 // Rests for a while, then moves as `goto` does.
-FlightPath path_of(const Vector3d& from_ned, const Vector3d& to_ned, double speed, double rests_s) {
-  const control::Limits limits;
-  const double duration_s =
-      control::minimum_jerk_duration((to_ned - from_ned).norm(), speed, limits.max_reference_acceleration,
-                                     limits.max_reference_jerk, kShortestMove_s);
+FlightPath path_of(const Vector3d& from_ned, const Vector3d& to_ned, const FormationMove& move,
+                   double rests_s) {
+  const double duration_s = control::minimum_jerk_duration((to_ned - from_ned).norm(), move.speed,
+                                                           move.limits.max_reference_acceleration,
+                                                           move.limits.max_reference_jerk, kShortestMove_s);
   std::vector<FlightPath::Piece> pieces;
   if (rests_s > 0.0) pieces.push_back({0.0, control::minimum_jerk(from_ned, 0.0, from_ned, 0.0, rests_s)});
   pieces.push_back({rests_s, control::minimum_jerk(from_ned, 0.0, to_ned, 0.0, duration_s)});
@@ -49,13 +48,13 @@ std::vector<Vector3d> formation_targets(const std::vector<FormationVehicle>& veh
 }
 
 std::string formation_refusal(const std::vector<FormationVehicle>& vehicles,
-                              const std::vector<Vector3d>& targets_ned, double speed,
+                              const std::vector<Vector3d>& targets_ned, const FormationMove& move,
                               const Ellipsoid& safety) {
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     for (std::size_t j = 0; j < vehicles.size(); ++j) {
       if (i == j || !vehicles[i].is_member) continue;
-      const FlightPath first = path_of(vehicles[i].position_ned, targets_ned[i], speed, 0.0);
-      const FlightPath later = path_of(vehicles[j].position_ned, targets_ned[j], speed, kFormationSkew_s);
+      const FlightPath first = path_of(vehicles[i].position_ned, targets_ned[i], move, 0.0);
+      const FlightPath later = path_of(vehicles[j].position_ned, targets_ned[j], move, move.skew_s);
       const Approach closest = closest_approach(first, safety, later, safety);
       if (closest.clearance >= 1.0) continue;
       const Vector3d apart = closest.b_ned - closest.a_ned;

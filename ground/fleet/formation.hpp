@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/ground/fleet/separation.hpp"
 
 namespace swiftlet::ground {
@@ -19,18 +20,22 @@ struct FormationVehicle {
   bool is_member = false;                                  // of the formation; members fly
 };
 
-// Time by which the members may begin to move one after the other.
-constexpr double kFormationSkew_s = 0.3;
+// How the members move: straight, as `goto` does.
+struct FormationMove {
+  double speed = 0.5;      // m/s, peak
+  control::Limits limits;  // of all members
+  double skew_s = 0.5;     // by which one may begin later than another
+};
 
 // m NED, of each vehicle: where it goes when the centre of the members, the mean of their positions, goes to centre_ned. All
 // keep their offsets. Those that are no members stay.
 std::vector<Eigen::Vector3d> formation_targets(const std::vector<FormationVehicle>& vehicles,
                                                const Eigen::Vector3d& centre_ned);
 
-// Why they must not go there straight at this peak speed, m/s, one sentence; empty if they may: ellipsoids touch on the way, also
-// if one begins kFormationSkew_s later than another.
+// Why they must not go there, one sentence; empty if they may: ellipsoids touch on the way, also if one begins skew_s later than
+// another.
 std::string formation_refusal(const std::vector<FormationVehicle>& vehicles,
-                              const std::vector<Eigen::Vector3d>& targets_ned, double speed,
+                              const std::vector<Eigen::Vector3d>& targets_ned, const FormationMove& move,
                               const Ellipsoid& safety);
 
 // Of each vehicle: another one on whose place it would come down if it landed straight, that stands there or flies lower.

@@ -49,7 +49,8 @@ FleetWatch::FleetWatch(FleetMonitor monitor, std::vector<Watched> vehicles, std:
 void FleetWatch::step() {
   if (gives_up_()) return;
   if (senders_.empty()) {
-    for (const Watched& vehicle : vehicles_) senders_.emplace_back(*vehicle.client, *vehicle.progress);
+    for (const Watched& vehicle : vehicles_)
+      senders_.emplace_back(*vehicle.client, *vehicle.progress, gives_up_);
   }
   const auto now = Clock::now();
   std::vector<View> views;

@@ -15,8 +15,8 @@
 
 namespace swiftlet::ground {
 
-// Begins when a mission runs, and ends when it is destroyed. A mission that another tool has paused is left paused. Each vehicle is
-// asked from a thread of its own: one that does not answer delays no other.
+// Begins when a mission runs, and ends when it is destroyed. A mission that another tool has paused is left
+// paused. Each vehicle is asked from a thread of its own: one that does not answer delays no other.
 class FleetWatch {
  public:
   struct Watched {
@@ -24,8 +24,8 @@ class FleetWatch {
     Progress* progress = nullptr;  // likewise
   };
 
-  // vehicles: in the order of the monitor's. gives_up: true from when the flight is abandoned, and all are landed: nobody is told to
-  // do anything else then.
+  // vehicles: in the order of the monitor's. gives_up: true from when the flight is abandoned, and all are
+  // landed: nothing else is sent from then on. Called from several threads.
   FleetWatch(FleetMonitor monitor, std::vector<Watched> vehicles, std::function<bool()> gives_up);
 
  private:

@@ -208,21 +208,10 @@ fs::path default_record_folder(const std::string& name) {
   return fs::path("flights") / (std::string(stamp) + "-" + name);
 }
 
-LaunchConfiguration plan_flight(const FlyOptions& options) { return plan_flight(options, {}); }
+namespace {
 
-LaunchConfiguration plan_flight(const FlyOptions& options, const FlightInputs& given) {
-  LaunchConfiguration plan;
-  plan.launch_mode = options.launch_mode;
-  plan.clock = options.clock;
-  plan.speed = options.speed;
-  plan.vehicle_file = runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle);
-  plan.control_file = runtime::configuration_file(runtime::kinds::kControl, options.control);
-  plan.simulation_file = runtime::configuration_file(runtime::kinds::kSimulation, options.simulation);
-  plan.vehicle = given.vehicle ? *given.vehicle : runtime::load_vehicle(plan.vehicle_file);
-  plan.control = given.control ? *given.control : runtime::load_control_settings(plan.control_file);
-  plan.simulation =
-      given.simulation ? *given.simulation : runtime::load_simulation_settings(plan.simulation_file);
-  require_valid(given);
+// The options that change the settings of the simulation file.
+void take_simulation_options(const FlyOptions& options, LaunchConfiguration& plan) {
   plan.imu_rate_option_hz = options.imu_rate_hz;
   if (options.imu_rate_hz > 0) plan.simulation.imu.rate_hz = options.imu_rate_hz;
   plan.simulation.control_levels = options.level;
@@ -243,6 +232,9 @@ LaunchConfiguration plan_flight(const FlyOptions& options, const FlightInputs& g
   for (const plant::Violation& violation : plant::validate_faults(plan.simulation.faults, plan.vehicle)) {
     throw InputError(plan.simulation_file.string() + ": " + violation.key + ": " + violation.message);
   }
+}
+
+void take_dispersion(const FlyOptions& options, LaunchConfiguration& plan) {
   if (options.dispersion == kUncertainty) {
     const std::string file = plan.vehicle_file.string();
     plan.dispersion = dispersion_of(runtime::load_vehicle_uncertainty(file), plan.vehicle, file);
@@ -250,8 +242,10 @@ LaunchConfiguration plan_flight(const FlyOptions& options, const FlightInputs& g
     plan.dispersion_file = runtime::configuration_file(runtime::kinds::kDispersion, options.dispersion);
     plan.dispersion = load_dispersion_file(plan.dispersion_file, {plan.vehicle, plan.simulation});
   }
-  plan.seed = options.seed;
+}
 
+// Throws unless the mission can be flown from its start.
+void take_mission(const FlyOptions& options, const FlightInputs& given, LaunchConfiguration& plan) {
   if (given.mission) {
     plan.mission_file = given.mission->name;
     plan.mission = *given.mission;
@@ -272,7 +266,29 @@ LaunchConfiguration plan_flight(const FlyOptions& options, const FlightInputs& g
     plan.planned_duration_s =
         given.mission ? require_flyable_mission(plan) : require_flyable(plan, plan.vehicle, options.reading);
   }
+}
 
+}  // namespace
+
+LaunchConfiguration plan_flight(const FlyOptions& options) { return plan_flight(options, {}); }
+
+LaunchConfiguration plan_flight(const FlyOptions& options, const FlightInputs& given) {
+  LaunchConfiguration plan;
+  plan.launch_mode = options.launch_mode;
+  plan.clock = options.clock;
+  plan.speed = options.speed;
+  plan.vehicle_file = runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle);
+  plan.control_file = runtime::configuration_file(runtime::kinds::kControl, options.control);
+  plan.simulation_file = runtime::configuration_file(runtime::kinds::kSimulation, options.simulation);
+  plan.vehicle = given.vehicle ? *given.vehicle : runtime::load_vehicle(plan.vehicle_file);
+  plan.control = given.control ? *given.control : runtime::load_control_settings(plan.control_file);
+  plan.simulation =
+      given.simulation ? *given.simulation : runtime::load_simulation_settings(plan.simulation_file);
+  require_valid(given);
+  take_simulation_options(options, plan);
+  take_dispersion(options, plan);
+  plan.seed = options.seed;
+  take_mission(options, given, plan);
   if (plan.launch_mode == LaunchMode::kStarted) {
     plan.vehicle_program = program_beside(options.px4_instance ? "swiftlet-px4" : "swiftlet-plant");
     plan.mocap_program = program_beside("swiftlet-mocap");

@@ -17,7 +17,8 @@ class MessageRecord {
   // std::runtime_error.
   MessageRecord(const comms::NodeSettings& network, const Fleet& fleet);
 
-  // Adds the lines of the processes' logs to a file in real time, and ends it. The processes have ended. Returns a sentence if it is not complete.
+  // Adds the lines of the processes' logs to a file in real time, and ends it. The processes have ended.
+  // Returns a sentence if it is not complete.
   std::string finish();
 
  private:

@@ -326,6 +326,22 @@ void NetworkTransport::wait_for_last_figures() {
   });
 }
 
+// Whether the vehicle does what the answered request asked. A request that was under way may have ended the landing.
+bool NetworkTransport::lands(const Result& landing) const {
+  const ControlMode mode = mode_of(client_.view());
+  return landing.accepted() && (mode == ControlMode::kLanding || mode == ControlMode::kDescent);
+}
+
+// Whether another tool ended the landing of a vehicle that outlives this process.
+bool NetworkTransport::is_taken_over(const Result& landing) const {
+  if (!watch_.attached || !landing.accepted()) return false;
+  const View view = client_.view();
+  const msg::ControlStatus& status = view.control.message;
+  const auto result = action_result_by(status, landing);
+  if (!result || result->kind != ActionResult::Kind::kCanceled) return false;
+  return mode_of(view) == ControlMode::kSetpoint || status.request().client() != landing.key.client;
+}
+
 void NetworkTransport::abandon(const std::string& reason) {
   const int interrupts_before = watch_.interrupts();
   if (lockstep_) client_.simulation_clock().without_end();  // disarming needs time to advance
@@ -342,7 +358,7 @@ void NetworkTransport::abandon(const std::string& reason) {
   land.speed(kLandingSpeed);
   const std::int64_t start_ns = client_.view().truth.message.stamp_ns();
   Silence silence;
-  bool descending = false;
+  Result landing;
   while (!rotors_off(mode_of(client_.view()))) {
     if (const auto exited_process = watch_.exited_process())
       throw FlightFailure(reason + "; while landing, " + *exited_process);
@@ -356,10 +372,12 @@ void NetworkTransport::abandon(const std::string& reason) {
       msg::Command disarm;
       disarm.kind(msg::Command_Constants::DISARM);
       client_.command(disarm, kRetryPeriod);
-    } else if (!descending) {
+    } else if (is_taken_over(landing)) {
+      throw FlightFailure(reason +
+                          "; while landing, another ground tool took over; the vehicle is left to it");
+    } else if (!lands(landing)) {
       in_flight = true;
-      // Refused while the rotors spool up or during a descent: requests again.
-      descending = client_.command(land, kRetryPeriod).accepted();
+      landing = client_.command(land, kRetryPeriod);
     }
     update_progress(client_.view());
     client_.wait(kRetryPeriod, [](const View& view) { return rotors_off(mode_of(view)); });

@@ -71,6 +71,8 @@ class NetworkTransport final : public MissionTransport {
   void require_no_interrupt() const;
   void update_progress(const View& view);
   void yield_to_other_tool(const View& view);
+  bool lands(const Result& landing) const;
+  bool is_taken_over(const Result& landing) const;
 
   Client& client_;
   const FlightRecord& record_;

@@ -1,6 +1,7 @@
 #include "swiftlet/ground/flight/order_sender.hpp"
 
 #include <chrono>
+#include <utility>
 
 namespace swiftlet::ground {
 namespace {
@@ -13,8 +14,8 @@ constexpr double kAsideSpeed = 0.8;  // m/s
 
 }  // namespace
 
-OrderSender::OrderSender(Client& client, Progress& progress)
-    : client_(client), progress_(progress), thread_([this] { run(); }) {}
+OrderSender::OrderSender(Client& client, Progress& progress, std::function<bool()> gives_up)
+    : client_(client), progress_(progress), gives_up_(std::move(gives_up)), thread_([this] { run(); }) {}
 
 OrderSender::~OrderSender() {
   {
@@ -49,7 +50,15 @@ void OrderSender::run() {
   }
 }
 
+bool OrderSender::is_cancelled() {
+  if (gives_up_()) return true;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return ends_;
+}
+
+// An order may have waited while the flight was abandoned.
 void OrderSender::carry_out(const Order& order, const std::string& because_of) {
+  if (is_cancelled()) return;
   const View view = client_.view();
   const MissionNews news = mission_news(view.control.message, view.mission.message, client_.mission_id());
   const Request request = execution_.next(order, news, own_client_);
@@ -63,10 +72,7 @@ void OrderSender::carry_out(const Order& order, const std::string& because_of) {
 }
 
 Result OrderSender::send(Request request, const Order& order) {
-  const auto cancelled = [this] {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return ends_;
-  };
+  const auto cancelled = [this] { return is_cancelled(); };
   if (request == Request::kGoTo) {
     msg::Command aside;
     aside.kind(msg::Command_Constants::GOTO);

@@ -3,6 +3,7 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -16,8 +17,8 @@ namespace swiftlet::ground {
 
 class OrderSender {
  public:
-  // Both outlive this object.
-  OrderSender(Client& client, Progress& progress);
+  // Client and progress outlive this object. gives_up: true from when nothing is to be sent any more; from any thread.
+  OrderSender(Client& client, Progress& progress, std::function<bool()> gives_up);
   // Ends at once, also while a request is not answered.
   ~OrderSender();
   OrderSender(const OrderSender&) = delete;
@@ -30,10 +31,12 @@ class OrderSender {
   void run();
   void carry_out(const Order& order, const std::string& because_of);
   Result send(OrderExecution::Request request, const Order& order);
+  bool is_cancelled();
   void say(const Order& order, const std::string& because_of);
 
   Client& client_;
   Progress& progress_;
+  const std::function<bool()> gives_up_;
   OrderExecution execution_;  // of the thread, as those below
   std::optional<std::uint64_t> own_client_;
   Order::Kind said_ = Order::Kind::kFly;

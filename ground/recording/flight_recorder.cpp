@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "swiftlet/services/messages/all_topics.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -18,12 +19,6 @@ constexpr auto kBatchPeriod = 100ms;
 constexpr auto kFlushPeriod = 500ms;
 constexpr const char* kCounts = "swiftlet/counts";
 constexpr const char* kClocks = "swiftlet/clocks";
-
-std::int64_t wall_now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 // Samples come for each sample of the IMU: each such topic has a socket of its own.
 bool is_fast(comms::Qos qos, const std::string& topic) {
@@ -134,7 +129,7 @@ void FlightRecorder::receive(Channel& channel, const comms::RawSample& sample) {
                          std::memory_order_relaxed);
   mcap::Message message{channel.id,
                         static_cast<std::uint32_t>(sample.sequence_number),
-                        wall_now_ns(),
+                        runtime::system_ns(),
                         sample.source_stamp_ns,
                         {sample.payload, sample.size}};
   Vehicle& vehicle = channel.vehicle;

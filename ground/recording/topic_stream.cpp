@@ -6,15 +6,10 @@
 
 #include "swiftlet/services/messages/all_topics.hpp"
 #include "swiftlet/services/messages/schemas.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::ground {
 namespace {
-
-std::int64_t wall_now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 mcap::MessageDecoder decoder_of(const std::string& name) {
   std::optional<mcap::MessageDecoder> decoder;
@@ -42,7 +37,7 @@ TopicStream::TopicStream(const comms::Participant& participant, const std::strin
 
 void TopicStream::receive(const comms::RawSample& raw) {
   Sample sample;
-  sample.received_ns = wall_now_ns();
+  sample.received_ns = runtime::system_ns();
   if (!decoder_.decode({raw.payload, raw.size}, sample.values)) return;
   {
     const std::lock_guard<std::mutex> lock(mutex_);

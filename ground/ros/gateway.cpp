@@ -1,6 +1,5 @@
 #include "swiftlet/ground/ros/gateway.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -11,15 +10,10 @@
 
 #include "swiftlet/services/messages/schemas.hpp"
 #include "swiftlet/services/messages/topics.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::ros {
 namespace {
-
-std::int64_t wall_now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 comms::Fault fault_of(const std::string& sentence) {
   comms::Fault fault;
@@ -79,7 +73,8 @@ void Gateway::forward(const comms::Topic<T>& topic) {
   const bool keeps_time = std::is_same_v<T, comms::msg::Estimate>;
   subscriptions_.push_back(node_.subscribe_raw<T>(
       topic, [this, name = std::string(topic.name), keeps_time](const comms::RawSample& sample) {
-        const std::int64_t time_ns = settings_.time == Time::kVehicle ? stamp_of<T>(sample) : wall_now_ns();
+        const std::int64_t time_ns =
+            settings_.time == Time::kVehicle ? stamp_of<T>(sample) : runtime::system_ns();
         if (keeps_time && clock_) clock_(time_ns);
         mcap::Message message;
         message.log_time_ns = time_ns;

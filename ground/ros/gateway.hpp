@@ -36,7 +36,8 @@ struct GatewaySettings {
 // Publishes the messages of StandardMessages (standard_messages.hpp) of one vehicle, and obeys
 //   goal_pose  geometry_msgs/PoseStamped  flies there and holds; a newer goal replaces it
 //   cmd_vel    geometry_msgs/Twist        a stream of velocities, at 2 Hz or more
-// The vehicle must have taken off; it refuses both otherwise. What is refused or cannot be sent is logged, of streams once a second.
+// The vehicle must have taken off; it refuses both otherwise. What is refused or cannot be sent is logged, of
+// streams once a second.
 class Gateway {
  public:
   // clock: publishes a time stamp as /clock; may be empty. Throws std::runtime_error.

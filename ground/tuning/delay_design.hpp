@@ -36,8 +36,8 @@ struct CommandLevel {
 };
 
 // Slows all loops down, as little as possible, until they tolerate the delay with the reserve. delay_s: from a sample
-// to the vehicle that obeys the command, s. commanded: not at level trajectory, at which control closes no loop. Throws std::invalid_argument with a sentence if a factor of kLeastBandwidthFactor does not suffice,
-// and as control::design() does.
+// to the vehicle that obeys the command, s. commanded: not at level trajectory, at which control closes no loop. Throws
+// std::invalid_argument with a sentence if a factor of kLeastBandwidthFactor does not suffice, and as control::design() does.
 DelayDesign design_for_delay(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
                              double delay_s, const CommandLevel& commanded = {});
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "swiftlet/services/messages/all_topics.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -14,12 +15,6 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kQueueBytes = std::size_t{8} << 20U;
 constexpr std::size_t kLogLines = 50;  // of a vehicle, for viewers that come later
-
-std::int64_t wall_now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 }  // namespace
 
@@ -65,7 +60,7 @@ void LiveTopics::add_topic(Vehicle& vehicle, const comms::Topic<T>& topic) {
   source.number = static_cast<std::uint16_t>(sources_.size() - 1);
   source.subscribe = [this, topic](Source& of) {
     return of.vehicle->node.subscribe_raw<T>(topic, [this, &of](const comms::RawSample& sample) {
-      const std::int64_t now_ns = wall_now_ns();
+      const std::int64_t now_ns = runtime::system_ns();
       if (!queue_.put({of.number,
                        static_cast<std::uint32_t>(sample.sequence_number),
                        now_ns,

@@ -30,6 +30,7 @@
 #include "swiftlet/ground/view/vehicle_requests.hpp"
 #include "swiftlet/ground/view/viewer.hpp"
 #include "swiftlet/services/dds/datagram/token_bucket.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "swiftlet/services/runtime/split_text.hpp"
 
 namespace swiftlet::ground {
@@ -53,12 +54,6 @@ constexpr double kConnectionBurst = 100.0;
 constexpr double kMessageBurst = 1000.0;
 
 using Request = http::request<http::empty_body>;
-
-std::int64_t steady_now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 std::string text_of(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -201,7 +196,7 @@ class ViewServer::Impl::Session : public std::enable_shared_from_this<Session> {
   void read() {
     socket_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
       if (error || !self->is_open_) return self->end();
-      if (!self->messages_.take(steady_now_ns())) return self->close("it sends too many messages");
+      if (!self->messages_.take(runtime::monotonic_ns())) return self->close("it sends too many messages");
       self->take_message();
       self->pump();
       if (self->is_open_) self->read();
@@ -428,7 +423,7 @@ void ViewServer::Impl::accept() {
       accept_timer_.expires_after(kAcceptPause);
       return accept_timer_.async_wait([this](error_code) { accept(); });
     }
-    const bool is_welcome = connections_ < kMostConnections && new_connections_.take(steady_now_ns());
+    const bool is_welcome = connections_ < kMostConnections && new_connections_.take(runtime::monotonic_ns());
     if (is_welcome) {
       error_code ignored;
       socket.set_option(tcp::no_delay(true), ignored);

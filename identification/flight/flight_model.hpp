@@ -5,11 +5,11 @@
 //   rotors           T, M from the measured speeds, or from steady speeds with lag and delay, Eq. (18)
 //
 // T and M are the thrust and moments of the base vehicle; s and g scale them. The paper's c is isotropic. Along the
-// rotors' axis c_z stands apart: the inflow of a climb changes the thrust, and the drag of the rotors acts in their plane only. A log holds no force, so that
-// only thrust over mass and moment over inertia are identifiable. The residuals of the rates are an output
-// error: the rates are integrated over 50 ms from a free initial value. Over longer times, the fit would
-// attribute disturbances to the commands with which the controller rejects them. The poses separate the
-// accelerometer's offset along z from the thrust.
+// rotors' axis c_z stands apart: the inflow of a climb changes the thrust, and the drag of the rotors acts in
+// their plane only. A log holds no force, so that only thrust over mass and moment over inertia are
+// identifiable. The residuals of the rates are an output error: the rates are integrated over 50 ms from a free
+// initial value. Over longer times, the fit would attribute disturbances to the commands with which the
+// controller rejects them. The poses separate the accelerometer's offset along z from the thrust.
 #pragma once
 
 #include <cstddef>

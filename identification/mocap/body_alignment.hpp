@@ -57,8 +57,8 @@ struct BodyAlignment {
 constexpr double kShortestAlignment_s = 5.0;
 
 // Uses times, specific forces, body rates and poses of the log; the IMU is at the centre of mass. If the
-// poses show that the vehicle took off or landed, only what is in the air is used. Throws std::runtime_error with a sentence if the recording is too
-// short, or IMU and poses do not show one motion.
+// poses show that the vehicle took off or landed, only what is in the air is used. Throws std::runtime_error
+// with a sentence if the recording is too short, or IMU and poses do not show one motion.
 BodyAlignment align_body(const FlightLog& log, const AlignmentPriors& priors);
 
 }  // namespace swiftlet::identification

@@ -1,4 +1,5 @@
-// The messages of a simulator and an autopilot, and those of an autopilot's parameters, with the units of https://mavlink.io/en/messages/common.html.
+// The messages of a simulator and an autopilot, and those of an autopilot's parameters, with the units of
+// https://mavlink.io/en/messages/common.html.
 //
 // visit() calls visitor(name, field) for each field in the order of the wire: by size, largest first, then as in
 // the definition. Extensions follow in the order of the definition, after visitor.extensions(). kCrcExtra is the

@@ -40,8 +40,8 @@ Source read_source(const std::string& path, const FileOptions& options = {});
 // runtime::ConfigError for a CSV file of another format.
 MissionFormat detect_format(std::string_view text, const std::string& file_name);
 
-// first_line: of the text in the file, for messages. All functions below throw runtime::ConfigError with file, line, column, value and limit for a violation of
-// the format, the limits or the fence.
+// first_line: of the text in the file, for messages. All functions below throw runtime::ConfigError with file,
+// line, column, value and limit for a violation of the format, the limits or the fence.
 TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& file_name,
                                    const control::Limits& limits, const FileOptions& options = {},
                                    int first_line = 1);

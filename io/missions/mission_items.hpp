@@ -11,8 +11,8 @@
 namespace swiftlet::ground {
 
 // Reads list into file.mission, file.lines and file.assumptions. limits are those of the control settings,
-// tightened by the mission. Trajectory files need to keep to them only where they are flown time_scale times as slow; the segments
-// are those of the files. Throws runtime::ConfigError.
+// tightened by the mission. Trajectory files need to keep to them only where they are flown time_scale times as
+// slow; the segments are those of the files. Throws runtime::ConfigError.
 void read_mission_items(const runtime::ConfigNode& list, MissionFrame frame, const Placement& placement,
                         double time_scale, const control::Limits& limits, MissionFile& file);
 

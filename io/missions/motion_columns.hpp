@@ -7,8 +7,8 @@
 //
 // Names: t; x, y, z; vx, vy, vz; ax, ay, az; yaw, yaw_rate; roll, pitch; p, q, r; thrust. In NED x is north, y
 // east, z down, and yaw turns clockwise from north; in ENU x is east, y north, z up, and yaw turns
-// counter-clockwise from east; in NWU x is north, y west, z up, and yaw turns counter-clockwise from north. roll, pitch and yaw of an attitude are those of Eq. (3), p, q, r are body rates
-// (FRD), thrust is specific, in m/s^2: they have no frame.
+// counter-clockwise from east; in NWU x is north, y west, z up, and yaw turns counter-clockwise from north. roll, pitch and
+// yaw of an attitude are those of Eq. (3), p, q, r are body rates (FRD), thrust is specific, in m/s^2: they have no frame.
 #pragma once
 
 #include <array>

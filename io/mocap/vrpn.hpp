@@ -1,4 +1,5 @@
-// VRPN, which Vicon Tracker, Motive, Qualisys and others serve. Big-endian; layouts of version 7, which did not change since 1999.
+// VRPN, which Vicon Tracker, Motive, Qualisys and others serve. Big-endian; layouts of version 7, which did
+// not change since 1999.
 //
 // Client and server each send a cookie over TCP, then messages. A message has a time, a sender and a type, both numbers that
 // its side has described before by name; descriptions have types below 0. Once the client has described a UDP port, poses

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "swiftlet/plant/simulation/wind_model.hpp"
+
 namespace swiftlet::plant {
 
 namespace {
@@ -23,6 +25,19 @@ void check_whole_steps(const std::string& key, double rate_hz, const SimulationS
 void check_axes(const std::string& key, const Eigen::Vector3d& value, double min, double max,
                 RuleChecker& check) {
   for (int i = 0; i < 3; ++i) check.between(key + "[" + std::to_string(i) + "]", value[i], min, max);
+}
+
+// Gusts that change within a few steps would alternate in sign.
+void check_dryden(const DrydenSettings& dryden, double step_s, RuleChecker& check) {
+  constexpr double kLeastSteps = 10.0;
+  const bool known = check.between("air.dryden.height_m", dryden.height_m, 0.0, 300.0) &&
+                     check.between("air.dryden.airspeed_m_s", dryden.airspeed_m_s, 0.1, 50.0);
+  if (!known || dryden.height_m == 0.0) return;
+  const double time_s = dryden_times_s(dryden).minCoeff();
+  if (time_s < kLeastSteps * step_s)
+    check.add("air.dryden.height_m", "is ", dryden.height_m, ": turbulence of that size passes at ",
+              dryden.airspeed_m_s, " m/s in ", time_s, " s, must take at least ", kLeastSteps, " steps of ",
+              step_s, " s");
 }
 
 void check_navigation_sensors(const SimulationSettings& settings, RuleChecker& check) {
@@ -100,8 +115,7 @@ std::vector<Violation> validate(const SimulationSettings& settings) {
   check_axes("air.wind_ned_m_s", settings.air.wind_ned, -30.0, 30.0, check);
   check_axes("air.gust_sigma_ned_m_s", settings.air.gust_sigma_ned, 0.0, 10.0, check);
   check.between("air.gust_time_constant_s", settings.air.gust_time_constant_s, 0.01, 1000.0);
-  check.between("air.dryden.height_m", settings.air.dryden.height_m, 0.0, 300.0);
-  check.between("air.dryden.airspeed_m_s", settings.air.dryden.airspeed_m_s, 0.1, 50.0);
+  check_dryden(settings.air.dryden, step_s(settings), check);
   check.between("air.rotor_drag_n_s2_per_m", settings.air.rotor_drag, 0.0, 1.0e-3);
 
   check.between("ground.leg_height_m", settings.ground.leg_height_m, 0.0, 1.0);

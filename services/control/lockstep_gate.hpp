@@ -1,5 +1,5 @@
-// Lockstep: holds a sample of the vehicle, of its IMU or its own estimate, back until the pose, battery and rotor-speed samples that it names have
-// arrived, so that every run processes them in the same order.
+// Lockstep: holds a sample of the vehicle, of its IMU or its own estimate, back until the pose, battery and
+// rotor-speed samples that it names have arrived, so that every run processes them in the same order.
 #pragma once
 
 #include <array>

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -110,6 +111,54 @@ inline bool deserialize(eprosima::fastdds::dds::TopicDataType& type, rtps::Seria
   return type.deserialize(&payload, message);
 #endif
 }
+
+// The type support of a message that is handled as its payload. For a topic without keys.
+class PayloadType : public eprosima::fastdds::dds::TopicDataType {
+ public:
+  bool deserialize(PayloadArgument payload, void* message) override {
+    return take(content_of(payload), message);
+  }
+
+ protected:
+  // largest: size of the largest payload, bytes.
+  PayloadType(const std::string& name, std::uint32_t largest) {
+#if SWIFTLET_FAST_DDS_3
+    set_name(name);
+    max_serialized_type_size = largest;
+#else
+    setName(name.c_str());
+    m_typeSize = largest;
+#endif
+  }
+
+  virtual void* create() = 0;  // a message, which destroy() deletes
+  virtual void destroy(void* message) = 0;
+  virtual std::uint32_t size(const void* message) const = 0;  // of its payload, bytes
+  // Writes or reads the payload; false if it does not fit, or is not taken.
+  virtual bool fill(const void* message, rtps::SerializedPayload_t& payload) = 0;
+  virtual bool take(const rtps::SerializedPayload_t& payload, void* message) = 0;
+
+ private:
+#if SWIFTLET_FAST_DDS_3
+  using Representation = eprosima::fastdds::dds::DataRepresentationId_t;
+  bool serialize(const void* message, rtps::SerializedPayload_t& payload, Representation) final {
+    return fill(message, payload);
+  }
+  std::uint32_t calculate_serialized_size(const void* message, Representation) final { return size(message); }
+  void* create_data() final { return create(); }
+  void delete_data(void* message) final { destroy(message); }
+  bool compute_key(rtps::SerializedPayload_t&, rtps::InstanceHandle_t&, bool) final { return false; }
+  bool compute_key(const void*, rtps::InstanceHandle_t&, bool) final { return false; }
+#else
+  bool serialize(void* message, rtps::SerializedPayload_t* payload) final { return fill(message, *payload); }
+  std::function<std::uint32_t()> getSerializedSizeProvider(void* message) final {
+    return [this, message] { return size(message); };
+  }
+  void* createData() final { return create(); }
+  void deleteData(void* message) final { destroy(message); }
+  bool getKey(void*, rtps::InstanceHandle_t*, bool) final { return false; }
+#endif
+};
 
 // ---- settings of the library and of participants
 

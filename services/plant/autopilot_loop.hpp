@@ -3,8 +3,8 @@
 //
 // In lockstep, time waits for the controls that answer each HIL_SENSOR, as soon as the autopilot has sent controls
 // with the flag of lockstep. An autopilot whose loops are slower leaves samples without an answer: time waits for every second
-// one then, or third, and so on. Without an answer for a time-out, and before the first, time goes on at the pace of real time: an
-// autopilot may leave samples without an answer while it starts.
+// one then, or third, and so on. Without an answer for a time-out, and before the first, time goes on at the
+// pace of real time: an autopilot may leave samples without an answer while it starts.
 #pragma once
 
 #include <atomic>

@@ -340,12 +340,18 @@ class RunningSwarm : public testing::Test {
 TEST_F(RunningSwarm, MovesAsOneAndLands) {
   hover(kNames);
   const Eigen::Vector3d a = position("a"), b = position("b"), c = position("c");
-  const ProgramResult moved = swiftlet({"fleet", "goto", "0.5", "1.2", "-1.4"});
+  const ProgramResult moved = swiftlet({"fleet", "goto", "0.5", "1.2", "-1.4", "--skew", "20"});
   ASSERT_EQ(moved.exit_code, 0) << moved.errors;
   const Eigen::Vector3d move = Eigen::Vector3d(0.5, 1.2, -1.4) - (a + b + c) / 3.0;
   EXPECT_LT((position("a") - a - move).norm(), 0.06);
   EXPECT_LT((position("b") - b - move).norm(), 0.06);
   EXPECT_LT((position("c") - c - move).norm(), 0.06);
+
+  // The answers take longer than the skew that is allowed: none goes on.
+  const ProgramResult late = swiftlet({"fleet", "goto", "0.3", "1.2", "-1.4", "--skew", "0"});
+  EXPECT_EQ(late.exit_code, 1);
+  EXPECT_NE(late.errors.find("a: holds, because the last one may have begun "), std::string::npos)
+      << late.errors;
 
   // A part of it, towards the rest.
   const ProgramResult refused = swiftlet({"fleet", "goto", "0.5", "1.3", "-1.4", "--vehicle-name", "a"});
@@ -392,6 +398,23 @@ TEST_F(RunningSwarm, LandsNobodyOnAnother) {
       << landed.errors;
   EXPECT_EQ(mode("a"), "holding");
   EXPECT_EQ(mode("b"), "disarmed");
+}
+
+// GIVEN a vehicle that is powered, but has no control WHEN all are to land THEN it is named, and the others land.
+TEST_F(RunningSwarm, LandsTheOthersBesideAnUnknownOne) {
+  hover("a,b");
+  const Program powered("swiftlet-plant", on_this_domain({"--vehicle-name", "d", "--clock", "lockstep"}),
+                        folder_.path());
+  ASSERT_TRUE(eventually([&] { return swiftlet({"list"}).output.find("d ") != std::string::npos; }, kStuck));
+  const ProgramResult moved = swiftlet({"fleet", "goto", "0.5", "1.2", "-1.4"});
+  EXPECT_EQ(moved.exit_code, 1);
+  EXPECT_NE(moved.errors.find("d: mode and position are not known: nothing was sent"), std::string::npos)
+      << moved.errors;
+  const ProgramResult landed = swiftlet({"fleet", "land"});
+  EXPECT_EQ(landed.exit_code, 1);
+  EXPECT_NE(landed.errors.find("d: was not landed: mode and position are not known"), std::string::npos)
+      << landed.errors;
+  for (const char* const name : {"a", "b"}) EXPECT_EQ(mode(name), "disarmed") << name;
 }
 
 TEST_F(RunningSwarm, IsStoppedAtOnce) {

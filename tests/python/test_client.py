@@ -67,6 +67,17 @@ class Client(unittest.TestCase):
             vehicle.connect(timeout_s=PATIENCE_S)
         timer.join()
 
+    def test_waits_without_limit_and_refuses_other_times(self):
+        vehicle = swiftlet.Vehicle(self.context, "kl9")
+        for timeout_s in (float("nan"), -1.0, float("-inf")):
+            with self.assertRaisesRegex(swiftlet.InputError, "^timeout_s is .*, must be at least 0"):
+                vehicle.connect(timeout_s=timeout_s)
+        timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            vehicle.connect(timeout_s=float("inf"))
+        timer.join()
+
     def test_flies(self):
         self.start("swiftlet-plant", "swiftlet-mocap", "swiftlet-control")
         vehicle = swiftlet.Vehicle(self.context)
@@ -89,7 +100,7 @@ class Client(unittest.TestCase):
         counter = threading.Thread(target=lambda: [ticks.append(1) for _ in iter(lambda: ended.wait(0.01), True)])
         counter.start()
         self.arm(vehicle)
-        vehicle.take_off(0.6).wait(PATIENCE_S)
+        vehicle.take_off(0.6, timeout_s=float("inf")).wait(float("inf"))
         ended.set()
         counter.join()
         self.assertGreater(len(ticks), 50)

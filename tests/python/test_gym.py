@@ -104,6 +104,8 @@ class Vector(unittest.TestCase):
             envs.step(np.zeros((3, 4)))
         with self.assertRaisesRegex(swiftlet.InputError, "environment 1 .* finite"):
             envs.step([[0, 0, 0, 0], [0, np.nan, 0, 0]])
+        with self.assertRaisesRegex(swiftlet.InputError, "^threads is 5000, must be from 1 to 1024"):
+            HoverVectorEnv(2, threads=5000)
         with self.assertRaisesRegex(swiftlet.InputError, "^action_period_s is 0.0205"):
             HoverVectorEnv(1, action_period_s=0.0205)
         vehicle = swiftlet.load_vehicle("kaylion")

@@ -1,4 +1,5 @@
 """Flights in the process of Python: one, many, in steps, and without a controller."""
+import contextlib
 import json
 import os
 import pathlib
@@ -13,6 +14,21 @@ import numpy as np
 import swiftlet
 
 SWIFTLET = pathlib.Path(os.environ["SWIFTLET_BUILD"]) / "bin" / "swiftlet"
+
+
+@contextlib.contextmanager
+def alarm_after(seconds):
+    """SIGALRM after this time, 0: never by itself; its handler raises TimeoutError."""
+    def raise_timeout(*_):
+        raise TimeoutError("too late")
+
+    before = signal.signal(signal.SIGALRM, raise_timeout)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
 
 
 class Flights(unittest.TestCase):
@@ -72,6 +88,15 @@ class Flights(unittest.TestCase):
         with self.assertRaises(KeyboardInterrupt):
             swiftlet.simulate_batch("square", 100_000)
         timer.join()
+
+    def test_keep_the_exception_of_a_signal_handler(self):
+        for fly in (lambda: swiftlet.simulate_batch("square", 100_000), lambda: swiftlet.Simulation().step(1e6)):
+            with alarm_after(0.2), self.assertRaisesRegex(TimeoutError, "^too late$"):
+                fly()
+
+    def test_refuse_too_many_threads(self):
+        with self.assertRaisesRegex(swiftlet.InputError, "^jobs is 5000, must be from 1 to 1024"):
+            swiftlet.simulate_batch("square", 2, jobs=5000)
 
 
 class Batches(unittest.TestCase):
@@ -137,6 +162,35 @@ class Steps(unittest.TestCase):
         first = self.fly(1)
         np.testing.assert_array_equal(first, self.fly(1))
         self.assertFalse(np.array_equal(first, self.fly(2)))
+
+
+    def test_refuse_times_that_are_none(self):
+        simulation = swiftlet.Simulation()
+        for duration_s in (float("inf"), float("nan"), -1.0, 1e300):
+            with self.assertRaisesRegex(swiftlet.InputError, "^duration_s is "):
+                simulation.step(duration_s)
+        self.assertEqual(simulation.time_s, 0.0)
+        with self.assertRaisesRegex(swiftlet.InputError, "^step_s "):
+            swiftlet.load_simulation().step_s = float("nan")
+
+    def test_refuse_a_second_thread(self):
+        simulation, refusals = swiftlet.Simulation(), []
+
+        def look():
+            while not refusals:
+                try:
+                    simulation.state()
+                except RuntimeError as error:
+                    refusals.append(str(error))
+            os.kill(os.getpid(), signal.SIGALRM)
+
+        thread = threading.Thread(target=look, daemon=True)
+        with alarm_after(0), self.assertRaises(TimeoutError):
+            thread.start()
+            simulation.step(1e6)
+        thread.join()
+        self.assertIn("another thread uses this object", refusals[0])
+        self.assertGreater(simulation.state()["time_s"], 0.0)
 
 
 class OpenLoop(unittest.TestCase):

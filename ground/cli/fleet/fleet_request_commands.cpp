@@ -23,6 +23,7 @@
 #include "swiftlet/ground/fleet/fleet_file.hpp"
 #include "swiftlet/ground/fleet/formation.hpp"
 #include "swiftlet/io/configuration.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/services/dds/search_text.hpp"
 #include "swiftlet/services/dds/vehicle_list.hpp"
 
@@ -44,6 +45,8 @@ struct GotoOptions : Options {
   std::optional<double> z_ned_m;
   std::optional<double> height_m;  // instead of z
   double speed = 0.5;
+  double skew_s = FormationMove().skew_s;
+  std::string control = "motor_lag";
 };
 
 struct LandOptions : Options {
@@ -63,7 +66,7 @@ struct Seen {
   bool flies() const { return !control::rotors_off(state.mode) && state.mode != Mode::kArmed; }
 };
 
-// Names of the vehicles in the domain, and of the wanted ones that were not seen. Sorted.
+// Names of the vehicles in the domain, sorted, then of the wanted ones that were not seen.
 std::vector<std::string> names_in(const Context& context, const Options& options) {
   std::this_thread::sleep_for(std::chrono::duration<double>(options.look_s));
   std::vector<std::string> names = context.discovered_vehicles();
@@ -85,13 +88,17 @@ bool is_wanted(const std::string& name, const Options& options) {
   return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
 
-// Throws std::runtime_error if the place of one is not known: it may be in the way.
-std::vector<Seen> look(const Context& context, const Options& options) {
+struct Sight {
+  std::vector<Seen> seen;
+  std::vector<std::string> unknown;  // names of those whose mode and position are not known
+};
+
+Sight look(const Context& context, const Options& options) {
   std::vector<std::unique_ptr<Vehicle>> vehicles;
   for (const std::string& name : names_in(context, options))
     vehicles.push_back(std::make_unique<Vehicle>(context, name));
   const auto deadline = std::chrono::steady_clock::now() + options.timeout();
-  std::vector<Seen> seen;
+  Sight sight;
   for (const std::unique_ptr<Vehicle>& vehicle : vehicles) {
     const auto is_known = [](const VehicleState& state) {
       return state.age_s < 1.0 && state.reference_position_ned_m.allFinite() &&
@@ -99,11 +106,22 @@ std::vector<Seen> look(const Context& context, const Options& options) {
     };
     const auto rest =
         std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
-    if (!vehicle->wait_until(is_known, std::max(rest, std::chrono::milliseconds(0))))
-      throw std::runtime_error(vehicle->name() + ": mode and position are not known: nothing was sent");
-    seen.push_back({vehicle->name(), vehicle->state(), is_wanted(vehicle->name(), options)});
+    if (vehicle->wait_until(is_known, std::max(rest, std::chrono::milliseconds(0)))) {
+      sight.seen.push_back({vehicle->name(), vehicle->state(), is_wanted(vehicle->name(), options)});
+    } else {
+      sight.unknown.push_back(vehicle->name());
+    }
   }
-  return seen;
+  return sight;
+}
+
+// Throws std::runtime_error if the place of one is not known: it may be in the way.
+std::vector<Seen> look_at_all(const Context& context, const Options& options) {
+  Sight sight = look(context, options);
+  if (!sight.unknown.empty())
+    throw std::runtime_error(
+        fmt::format("{}: mode and position are not known: nothing was sent", fmt::join(sight.unknown, ",")));
+  return std::move(sight.seen);
 }
 
 FormationVehicle formation_vehicle(const Seen& vehicle) {
@@ -146,10 +164,13 @@ int go_to(const GotoOptions& given) {
   const GotoOptions options = with_fleet(given);
   if (options.z_ned_m.has_value() == options.height_m.has_value())
     throw InputError("goto: needs either z (down: negative is up) or --height (up, above the ground)");
+  const control::Limits limits =
+      runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control))
+          .limits;
   std::vector<Seen> seen;
   {
     const Context context(options.network);
-    seen = look(context, options);
+    seen = look_at_all(context, options);
   }
   require_holding(seen, options);
   std::vector<FormationVehicle> vehicles;
@@ -169,7 +190,8 @@ int go_to(const GotoOptions& given) {
     if (!above.accepted) throw InputError(std::string(above.reason) + ": nothing was sent");
     target_of[vehicles[i].name] = targets[i];
   }
-  const std::string refusal = formation_refusal(vehicles, targets, options.speed, options.safety);
+  const std::string refusal =
+      formation_refusal(vehicles, targets, {options.speed, limits, options.skew_s}, options.safety);
   if (!refusal.empty()) throw InputError(refusal + ": nothing was sent");
   VehicleRequest request{
       "goto", [&](Vehicle& vehicle) {
@@ -180,18 +202,23 @@ int go_to(const GotoOptions& given) {
   request.undone = "holds";
   request.not_undone = "does NOT hold";
   request.cause = "did not accept it";
+  request.skew_s = options.skew_s;
   return run_request(request_to(members, options), request);
 }
 
 int land(const LandOptions& given) {
   const LandOptions options = with_fleet(given);
-  std::vector<Seen> seen;
+  Sight sight;
   {
     const Context context(options.network);
-    seen = look(context, options);
+    sight = look(context, options);
   }
+  const bool all_known = sight.unknown.empty();
+  for (const std::string& name : sight.unknown)
+    std::fprintf(stderr, "swiftlet: land: %s: was not landed: mode and position are not known\n",
+                 name.c_str());
   std::vector<FormationVehicle> vehicles;
-  for (const Seen& vehicle : seen) vehicles.push_back(formation_vehicle(vehicle));
+  for (const Seen& vehicle : sight.seen) vehicles.push_back(formation_vehicle(vehicle));
   const auto obstacles = landing_obstacles(vehicles, options.safety);
   std::vector<std::string> landing;
   int kept = 0;
@@ -206,12 +233,12 @@ int land(const LandOptions& given) {
                  "swiftlet: land: %s: was not landed: it would come down on %s; move it aside first\n",
                  vehicles[i].name.c_str(), vehicles[*obstacles[i]].name.c_str());
   }
-  if (landing.empty() && kept == 0) throw InputError("no vehicle flies: nothing was sent");
+  if (landing.empty() && kept == 0 && all_known) throw InputError("no vehicle flies: nothing was sent");
   if (landing.empty()) return kFailed;
   const int code =
       run_request(request_to(landing, options),
                   {"land", [&](Vehicle& vehicle) { return vehicle.land(options.speed, options.timeout()); }});
-  return kept == 0 ? code : kFailed;
+  return kept == 0 && all_known ? code : kFailed;
 }
 
 int stop(const StopOptions& options) {
@@ -285,6 +312,15 @@ Command add_fleet_goto_command(runtime::CommandLine fleet) {
       .positive()
       .excludes(z);
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
+  app.add_option("--skew", options->skew_s,
+                 "by which one may begin later than another, s; if the last one answers later, all hold")
+      .range(0.0, 60.0)
+      .show_default();
+  app.add_option("--control", options->control,
+                 "control settings of the vehicles, or the name of a file in config/control: its limits "
+                 "say how long they take")
+      .type_name(runtime::kinds::kControl.value)
+      .show_default();
   add_safety_options(app, *options);
   return {app, [options] { return go_to(*options); }};
 }

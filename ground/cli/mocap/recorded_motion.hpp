@@ -11,8 +11,8 @@
 namespace swiftlet::ground {
 
 // From a record with sensors.csv or that file itself, a CSV log as for `swiftlet identify flight`, or an MCAP file by
-// `swiftlet record`. Of several vehicles only from what is this one's; a record of another one is refused. Only what lies between from_s and until_s, by the clock of the log, s. Throws ConfigError, or
-// std::runtime_error if there are no poses.
+// `swiftlet record`. Of several vehicles only from what is this one's; a record of another one is refused. Only what lies
+// between from_s and until_s, by the clock of the log, s. Throws ConfigError, or std::runtime_error if there are no poses.
 identification::FlightLog read_motion(const std::string& file, const std::string& vehicle,
                                       std::optional<double> from_s, std::optional<double> until_s);
 

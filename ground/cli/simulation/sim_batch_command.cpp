@@ -23,7 +23,6 @@ namespace swiftlet::ground {
 namespace {
 
 constexpr std::size_t kMostRuns = 1'000'000;
-constexpr std::size_t kMostJobs = 1024;
 constexpr std::size_t kBarLength = 30;
 constexpr std::size_t kStages = 5;  // progress lines in all if standard error is no terminal
 

@@ -25,8 +25,8 @@ class ParticipantAdmission {
   ParticipantAdmission();
 
   // Returns the broken rule, a string literal; nullptr if the participant may join, or announces what it did before. A
-  // different announcement is accepted when it arrives three times in a row. digest: of the announcement; 0 for other datagrams about it.
-  // now_ns: of a monotonic clock.
+  // different announcement is accepted when it arrives three times in a row. digest: of the announcement; 0 for
+  // other datagrams about it. now_ns: of a monotonic clock.
   const char* admit(const GuidPrefix& participant, std::uint64_t digest, const SenderAddress& host,
                     std::int64_t now_ns);
 

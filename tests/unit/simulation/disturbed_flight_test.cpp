@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/simulation/simulated_flight.hpp"
 #include "tests/support/campaign.hpp"
@@ -122,15 +123,63 @@ TEST(DisturbedFlight, TracksTheSquareHeavyInDrydenGusts) {
   }
 }
 
-// GIVEN rotors in ground effect THEN modelling it takes most of its error away.
-TEST(DisturbedFlight, KnowsTheGroundEffect) {
+// GIVEN the incremental law, and a moment that begins before the position is lost WHEN it ends in the descent THEN the vehicle
+// is level soon after, and also under the moment.
+TEST(DisturbedFlight, FollowsAMomentInTheDescentWithoutPosition) {
+  constexpr double kLost_s = 10.0;
+  constexpr double kPushEnds_s = 12.0;
   FlightSetup setup;
-  setup.simulation.ground.effect_rotor_radius_m = 0.03;
-  const double unknown_m = setup.fly("0.5", 1).takeoff_peak_m;
-  setup.control.rough_air.rotor_radius_m = 0.03;
-  const double known_m = setup.fly("0.5", 1).takeoff_peak_m;
-  EXPECT_LT(unknown_m, 10e-3);
-  EXPECT_LT(known_m, unknown_m);
+  setup.control.rough_air.law = control::DisturbanceLaw::kIncremental;
+  plant::Fault push;
+  push.kind = plant::FaultKind::kPush;
+  push.at_s = kLost_s - 0.5;
+  push.for_s = kPushEnds_s - push.at_s;
+  push.moment_frd = {3e-4, 0.0, 0.0};
+  plant::Fault lost;
+  lost.kind = plant::FaultKind::kMocapStop;
+  lost.at_s = kLost_s;
+  lost.for_s = 20.0;
+  setup.simulation.faults = {push, lost};
+  ClosedLoop loop(setup.flown, setup.nominal, setup.simulation, setup.control, 1);
+  const auto ask = [&](control::RequestKind kind) {
+    control::Request request;
+    request.kind = kind;
+    request.position_ned.z() = -2.0;
+    request.speed = 1.0;
+    return loop.controller.request(request).accepted;
+  };
+  loop.step_until([] { return false; }, 0.5);
+  ASSERT_TRUE(ask(control::RequestKind::kArm));
+  ASSERT_TRUE(ask(control::RequestKind::kTakeoff));
+  const auto tilt_until = [&](double time_s) {
+    double most_rad = 0.0;
+    while (loop.time_s() < time_s) {
+      loop.step();
+      const Eigen::Vector3d down = loop.plant.truth().q_ned_from_frd * Eigen::Vector3d::UnitZ();
+      most_rad = std::max(most_rad, std::acos(std::min(down.z(), 1.0)));
+    }
+    return most_rad;
+  };
+  tilt_until(kPushEnds_s - 0.3);
+  ASSERT_EQ(loop.controller.status().mode, control::Mode::kDescent);
+  EXPECT_LT(tilt_until(kPushEnds_s), 0.02);
+  tilt_until(kPushEnds_s + 0.7);
+  EXPECT_LT(tilt_until(kPushEnds_s + 1.0), 0.02);
+  EXPECT_EQ(loop.controller.status().mode, control::Mode::kDescent) << "not on the ground yet";
+}
+
+// GIVEN rotors in ground effect THEN the peak error of the take-off is lower with a model of it: for seeds 1 to 8 by 13 to 22 %.
+// Without ground effect it is lower by 28 to 56 %.
+TEST(DisturbedFlight, KnowsTheGroundEffect) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    FlightSetup setup;
+    setup.simulation.ground.effect_rotor_radius_m = 0.03;
+    const double unknown_m = setup.fly("0.5", seed).takeoff_peak_m;
+    setup.control.rough_air.rotor_radius_m = 0.03;
+    const double known_m = setup.fly("0.5", seed).takeoff_peak_m;
+    EXPECT_LT(unknown_m, 10e-3) << seed;
+    EXPECT_LT(known_m, 0.9 * unknown_m) << seed;
+  }
 }
 
 }  // namespace

@@ -1,7 +1,10 @@
 // Environments of reinforcement learning: what they start with, reward and end, and that they repeat.
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <stdexcept>
+#include <sys/resource.h>
+#include <unistd.h>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -214,6 +217,35 @@ TEST(VectorEnvironment, RepeatsBitForBitWithAnyNumberOfThreads) {
   EXPECT_EQ(flown(3, 1, ended_again), once);
   EXPECT_NE(flown(3, 100, ended_of_others), once);
 }
+
+TEST(VectorEnvironment, RefusesTooManyThreads) {
+  for (const std::size_t threads : {std::size_t{0}, VectorEnvironment::kMostThreads + 1})
+    EXPECT_THROW(VectorEnvironment(nominal(), task_at(ControlLevel::kRates), {}, 2, threads),
+                 std::invalid_argument);
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they need the memory themselves
+// GIVEN memory for the stacks of a few threads only THEN it works with these.
+TEST(VectorEnvironment, WorksWithTheThreadsThatTheSystemStarts) {
+  constexpr std::size_t kCount = 64;
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+  rlimit few = before;
+  few.rlim_cur = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + 100'000'000;  // stacks of 8 MB
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &few), 0);
+  VectorEnvironment environments(nominal(), task_at(ControlLevel::kRates), {}, kCount, kCount);
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &before), 0);
+  environments.reset(std::vector<std::uint64_t>(kCount, 5).data());
+  std::vector<double> observations(kCount * kObservation);
+  environments.observe(observations.data());
+  for (std::size_t i = 1; i < kCount; ++i) {
+    for (std::size_t j = 0; j < kObservation; ++j)
+      EXPECT_EQ(observations[i * kObservation + j], observations[j]) << i;
+  }
+}
+#endif
 
 TEST(VectorEnvironment, BeginsTheNextEpisodeInTheStepThatEndsOne) {
   HoverTask task = task_at(ControlLevel::kTrajectory);

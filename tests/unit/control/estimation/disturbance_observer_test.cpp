@@ -1,5 +1,6 @@
 #include "swiftlet/control/estimation/disturbance_observer.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -68,6 +69,42 @@ TEST(DisturbanceObserver, IsZeroWithoutBandwidth) {
   DisturbanceObserver observer({0.0, 3.0});
   for (int i = 0; i < 100; ++i) observer.step(kStep_s, specific_force(kTilted, kLift, kWind), kTilted, kLift);
   EXPECT_EQ(observer.acceleration_ned(), Vector3d::Zero());
+}
+
+// GIVEN an estimate that still rises WHEN the bandwidth goes to 0 THEN it does not run on, and ends at 0.
+TEST(DisturbanceObserver, EndsAtZeroWithABandwidthThatGoesToZero) {
+  for (const bool incremental : {false, true}) {
+    DisturbanceObserver observer({20.0, 3.0}, incremental);
+    for (int i = 0; i <= 5000; ++i) {
+      observer.set({20.0 * std::max(0.0, 1.0 - i / 20.0), 3.0});
+      observer.step(kStep_s, specific_force(kTilted, kLift, kWind), kTilted, kLift);
+      ASSERT_LE(observer.acceleration_ned().norm(), 1.1 * kWind.norm()) << incremental << ' ' << i;
+      if (i >= 20) {
+        ASSERT_TRUE(observer.acceleration_ned().isZero(0.0)) << incremental << ' ' << i;
+        ASSERT_TRUE(observer.rate_ned().isZero(0.0)) << incremental << ' ' << i;
+      }
+    }
+  }
+}
+
+// GIVEN a bandwidth that falls to nearly 0 THEN the estimate stays where it is.
+TEST(DisturbanceObserver, DoesNotRunOnAtASmallBandwidth) {
+  DisturbanceObserver observer({20.0, 3.0}, true);
+  const auto steps = [&](int count) {
+    for (int i = 0; i < count; ++i)
+      observer.step(kStep_s, specific_force(kTilted, kLift, kWind), kTilted, kLift);
+  };
+  steps(25);
+  const Vector3d before = observer.acceleration_ned();
+  observer.set({1.0e-6, 3.0});
+  steps(5000);
+  EXPECT_LT((observer.acceleration_ned() - before).norm(), 1.0e-4);
+}
+
+TEST(DisturbanceObserver, IsStableAtLongSteps) {
+  DisturbanceObserver observer({500.0, 3.0}, true);
+  for (int i = 0; i < 100; ++i) observer.step(0.1, specific_force(kTilted, kLift, kWind), kTilted, kLift);
+  EXPECT_LT((observer.acceleration_ned() - kWind).norm(), 1e-9);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "swiftlet/control/estimation/moment_observer.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -12,13 +13,14 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kStep_s = 0.002;
-constexpr double kBandwidth = 20.0;  // rad/s
+constexpr double kBandwidth = 20.0;                 // rad/s
+const Vector3d kLimit_frd(1.0e-3, 1.0e-3, 1.0e-3);  // N m
 
 // A body that rotor moments and a disturbance turn, Eq. (6), and its observer. Integrated as the observer does.
 struct Body {
   Eigen::Matrix3d inertia = tests::kaylion().inertia;
   Vector3d rates{0.5, -0.3, 0.2};
-  MomentObserver observer{inertia};
+  MomentObserver observer{inertia, kLimit_frd};
 
   void run(double duration_s, const Vector3d& disturbance) {
     for (double t = 0.0; t < duration_s; t += kStep_s) {
@@ -55,6 +57,45 @@ TEST(MomentObserver, IgnoresInvalidInput) {
   body.observer.step(kStep_s, kBandwidth, {nan, 0.0, 0.0}, Vector3d::Zero());
   body.observer.step(kStep_s, kBandwidth, Vector3d::Zero(), {0.0, nan, 0.0});
   EXPECT_EQ(body.observer.moment_frd(), before);
+}
+
+// GIVEN a body under a growing moment WHEN the bandwidth goes to 0 THEN the moment ends at 0 and stays there.
+TEST(MomentObserver, EndsAtZeroWithABandwidthThatGoesToZero) {
+  Body body;
+  body.run(0.5, {1.0e-4, 0.0, 0.0});
+  Vector3d rates = body.rates;
+  for (int i = 0; i <= 5000; ++i) {
+    rates.x() += kStep_s * 2.0;
+    const double bandwidth = kBandwidth * std::max(0.0, 1.0 - i / 500.0);
+    body.observer.step(kStep_s, bandwidth, rates, Vector3d::Zero());
+    if (i >= 500) {
+      ASSERT_TRUE(body.observer.moment_frd().isZero(0.0)) << i;
+    }
+  }
+}
+
+// GIVEN bandwidth 0 from the start THEN the first moment of the rotors is none of the disturbance.
+TEST(MomentObserver, IsZeroWithoutBandwidth) {
+  MomentObserver observer(tests::kaylion().inertia, kLimit_frd);
+  for (int i = 0; i < 10; ++i) {
+    observer.step(kStep_s, 0.0, {0.1, 0.2, 0.3}, {3.0e-4, 0.0, 0.0});
+    EXPECT_TRUE(observer.moment_frd().isZero(0.0));
+  }
+}
+
+// GIVEN steps of 0.1 s, at which an explicit method diverges THEN it settles within its limits.
+TEST(MomentObserver, IsStableAtLongSteps) {
+  MomentObserver observer(tests::kaylion().inertia, kLimit_frd);
+  const Vector3d rotors(1.0e-4, -2.0e-4, 0.5e-4);
+  for (int i = 0; i < 100; ++i) observer.step(0.1, 500.0, {(i == 0 ? 1.0 : 0.0), 0.0, 0.0}, rotors);
+  EXPECT_LT((observer.moment_frd() + rotors).norm(), 1.0e-9);
+}
+
+TEST(MomentObserver, StaysWithinItsLimits) {
+  MomentObserver observer(tests::kaylion().inertia, kLimit_frd);
+  for (int i = 0; i < 1000; ++i)
+    observer.step(kStep_s, kBandwidth, Vector3d::Zero(), {1.0, -1.0, 0.5 * kLimit_frd.z()});
+  EXPECT_LT((observer.moment_frd() - kLimit_frd.cwiseProduct(Vector3d(-1.0, 1.0, -0.5))).norm(), 1.0e-9);
 }
 
 }  // namespace

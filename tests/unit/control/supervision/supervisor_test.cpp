@@ -369,6 +369,64 @@ TEST_F(Flight, RequestTakesEffectInItsStep) {
   EXPECT_EQ(control_setpoint_.control_mode, ControlMode::kSpoolUp);
 }
 
+// GIVEN a take-off whose lift-off is observed WHEN the vehicle has left the ground THEN nothing stops its rotors as on the ground.
+TEST_F(Flight, IsInTheAirFromItsLiftOffOn) {
+  const auto lift_off = [&](bool observed) {
+    ASSERT_TRUE(ask(RequestKind::kStop).accepted);
+    ASSERT_TRUE(ask(RequestKind::kDisarm).accepted);
+    estimate_ = Estimate();
+    inputs_.pose_age_s = inputs_.battery_age_s = 0.0;
+    inputs_.lift_off_ns = kNoLiftOffYet;
+    ASSERT_TRUE(ask(RequestKind::kArm).accepted);
+    ASSERT_TRUE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
+    for (int i = 0; i < 100; ++i) step();
+    ASSERT_EQ(supervisor_.state().guidance.phase, Phase::kSpoolUp);
+    if (!observed) return;
+    inputs_.lift_off_ns = inputs_.stamp_ns;
+    estimate_.position_ned.z() = -0.002;
+    step();
+    ASSERT_EQ(supervisor_.state().guidance.phase, Phase::kSpoolUp) << "until it is clear of the ground";
+  };
+  const auto outcome = [&](bool observed, const std::function<void()>& happens) {
+    lift_off(observed);
+    happens();
+    step();
+    return supervisor_.mode();
+  };
+  const auto disarm = [&] { ask(RequestKind::kDisarm); };
+  EXPECT_EQ(outcome(false, disarm), Mode::kDisarmed);
+  EXPECT_EQ(outcome(true, disarm), Mode::kTakingOff);
+  const auto land = [&] { EXPECT_TRUE(ask(RequestKind::kLand).accepted); };
+  EXPECT_EQ(outcome(false, land), Mode::kDisarmed);
+  EXPECT_EQ(outcome(true, land), Mode::kLanding);
+  const auto lose_pose = [&] { inputs_.pose_age_s = 10.0; };
+  EXPECT_EQ(outcome(false, lose_pose), Mode::kDisarmed);
+  EXPECT_EQ(outcome(true, lose_pose), Mode::kDescent);
+  const auto lose_battery = [&] { inputs_.battery_age_s = 10.0; };
+  EXPECT_EQ(outcome(false, lose_battery), Mode::kDisarmed);
+  EXPECT_EQ(outcome(true, lose_battery), Mode::kLanding);
+  const auto hold = [&] { ask(RequestKind::kHold); };
+  EXPECT_EQ(outcome(true, hold), Mode::kHolding);
+  EXPECT_TRUE(step_until([&] { return estimate_.position_ned.z() < -0.05; }, 3.0)) << "at the minimum height";
+}
+
+// A mission that has lifted off, but does not climb yet, cannot be paused: it would not climb.
+TEST_F(Flight, PausesNoMissionThatRisesFromTheGround) {
+  Mission mission;
+  mission.id = 3;
+  mission.items = {{MissionItemKind::kTakeoff, {0, 0, -1}, 0, true, 0.5, 0.0},
+                   {MissionItemKind::kLand, {0, 0, 0}, 0, true, 0.4, 0.0}};
+  inputs_.lift_off_ns = kNoLiftOffYet;
+  ASSERT_TRUE(ask(RequestKind::kArm).accepted);
+  ASSERT_TRUE(fly(mission).accepted);
+  for (int i = 0; i < 100; ++i) step();
+  inputs_.lift_off_ns = inputs_.stamp_ns;
+  step();
+  EXPECT_STREQ(ask(RequestKind::kMissionPause).reason, "the mission has not taken off yet");
+  EXPECT_TRUE(step_until(Mode::kDisarmed, 20.0));
+  EXPECT_EQ(supervisor_.mission().state, MissionState::kCompleted);
+}
+
 TEST_F(Flight, StepAnswersRequestsByItsOwnInputs) {
   inputs_.has_battery = false;
   EXPECT_FALSE(step_with(RequestKind::kArm).accepted);

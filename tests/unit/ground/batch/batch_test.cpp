@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -162,6 +163,12 @@ TEST_F(BatchTest, CancelKeepsTheCompletedRuns) {
   EXPECT_EQ(report.batch.failed(), 0U) << "cancelled runs do not count as failed";
   EXPECT_NE(to_text(report).find("NOT flown: batch cancelled"), std::string::npos);
   EXPECT_EQ(to_json(report).at("interrupted"), true);
+}
+
+TEST_F(BatchTest, RefusesTooManyJobs) {
+  const BatchRunner runner(plan_flight(options(kMass)), 2);
+  EXPECT_THROW(runner.fly(0, never, ignore_progress), std::invalid_argument);
+  EXPECT_THROW(runner.fly(kMostJobs + 1, never, ignore_progress), std::invalid_argument);
 }
 
 TEST_F(BatchTest, SamplesAllVehiclesBeforeTheFirstFlight) {

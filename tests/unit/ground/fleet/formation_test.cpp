@@ -20,12 +20,12 @@ TEST(Formation, MovesItsCentreAndKeepsItsOffsets) {
   EXPECT_LT((targets[0] - Vector3d(-1, 1, -1.75)).norm(), 1e-12);
   EXPECT_LT((targets[1] - Vector3d(1, 1, -2.25)).norm(), 1e-12);
   EXPECT_EQ(targets[2], vehicles[2].position_ned) << "it stays";
-  EXPECT_EQ(formation_refusal(vehicles, targets, 0.5, kSafety), "");
+  EXPECT_EQ(formation_refusal(vehicles, targets, {}, kSafety), "");
 }
 
-std::string refusal(const std::vector<FormationVehicle>& vehicles, const Vector3d& centre,
-                    double speed = 0.5) {
-  return formation_refusal(vehicles, formation_targets(vehicles, centre), speed, kSafety);
+std::string refusal(const std::vector<FormationVehicle>& vehicles, const Vector3d& centre, double speed = 0.5,
+                    double skew_s = 0.3, const control::Limits& limits = {}) {
+  return formation_refusal(vehicles, formation_targets(vehicles, centre), {speed, limits, skew_s}, kSafety);
 }
 
 TEST(Formation, RefusesAWayNearToOthers) {
@@ -48,6 +48,17 @@ TEST(Formation, LeavesRoomForOneThatBeginsLater) {
   EXPECT_EQ(refusal(vehicles, {3, 0, -1}, 0.5), "");
   EXPECT_NE(refusal(vehicles, {3, 0, -1}, 1.0).find("too near"), std::string::npos);
   EXPECT_EQ(refusal(vehicles, {0.25, 3, -1}, 1.0), "") << "beside each other";
+  EXPECT_EQ(refusal(vehicles, {3, 0, -1}, 1.0, 0.1), "");
+  EXPECT_NE(refusal(vehicles, {3, 0, -1}, 0.5, 0.6).find("too near"), std::string::npos);
+}
+
+// The vehicles' limits decide how long the move takes, and so how far one is ahead of another that begins later.
+TEST(Formation, MovesWithinTheLimitsOfTheVehicles) {
+  const std::vector<FormationVehicle> vehicles = {flying("a", {0, 0, -1}), flying("b", {0.5, 0, -1})};
+  control::Limits slow;
+  slow.max_reference_acceleration = 0.2;
+  EXPECT_NE(refusal(vehicles, {3, 0, -1}, 1.0).find("too near"), std::string::npos);
+  EXPECT_EQ(refusal(vehicles, {3, 0, -1}, 1.0, 0.3, slow), "");
 }
 
 TEST(Formation, RefusesOneThatIsTooNearAlready) {

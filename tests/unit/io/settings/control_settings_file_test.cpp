@@ -305,6 +305,7 @@ const Fault kFaults[] = {
     {"position.x.integral_pole", "-0.1", "at least 0"},
     {"position.integral_limit_m_s2", "-2", "at least 0"},
     {"disturbance.bandwidth_rad_s", "-2", "at least 0"},
+    {"disturbance.bandwidth_rad_s", "501", "at most 500"},
     {"disturbance.limit_m_s2", "-2", "at least 0"},
     {"limits.max_tilt_rad", "0", "above 0"},
     {"limits.max_tilt_rad", "1.6", "is 1.6, must be at least 0 and at most 1.5"},

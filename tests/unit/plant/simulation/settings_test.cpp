@@ -104,6 +104,23 @@ TEST(SimulationSettings, ChecksTheRangeOfEveryNumber) {
   }
 }
 
+// GIVEN Dryden gusts that change faster than the steps follow THEN they are refused, and 10 steps are enough.
+TEST(SimulationSettings, ChecksTheTimeInWhichDrydenGustsChange) {
+  SimulationSettings settings;
+  settings.step_ns = 1'000'000;
+  settings.air.dryden = {0.01, 50.0};
+  const std::vector<plant::Violation> violations = plant::validate(settings);
+  ASSERT_EQ(violations.size(), 1U);
+  EXPECT_EQ(violations.front().key, "air.dryden.height_m");
+  EXPECT_EQ(violations.front().message,
+            "is 0.01: turbulence of that size passes at 50 m/s in 0.0002 s, must take at least 10 steps of "
+            "0.001 s");
+  settings.air.dryden = {0.51, 50.0};
+  EXPECT_TRUE(plant::validate(settings).empty());
+  settings.air.dryden = {0.0, 50.0};
+  EXPECT_TRUE(plant::validate(settings).empty()) << "without Dryden gusts";
+}
+
 TEST(SimulationSettings, ChecksTheRangeOfTheStep) {
   for (const std::int64_t step_ns : {0, -1'000'000, 9'000, 2'000'000}) {
     SimulationSettings settings;
