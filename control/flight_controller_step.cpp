@@ -46,7 +46,6 @@ FlightController::Impl::Impl(const plant::Vehicle& vehicle_in, const ControlSett
       estimate_source(settings_in.estimator.odometry, settings_in.failsafe.mocap_timeout_s),
       poses_ahead(settings_in.estimator.detectors.recovery.longest_wait_s),
       rotors(vehicle_in, settings_in.estimator.rotor_speed_bandwidth),
-      lift(settings_in.estimator.accelerometer_noise_density),
       disturbance(settings_in.disturbance, settings_in.rough_air.law == DisturbanceLaw::kIncremental),
       moment(vehicle_in.inertia, differential_moment(vehicle_in)),
       takeoff_monitor(settings_in.estimator.detectors.takeoff_consistency),

@@ -7,17 +7,6 @@
 
 namespace swiftlet::control {
 
-// The noise bandwidth of a first-order filter of time constant T is 1 / (4 T).
-LiftObserver::LiftObserver(double accelerometer_noise_density)
-    : lift_off_(
-          std::max(kLiftOff, kLiftOffSigmas * accelerometer_noise_density * std::sqrt(0.25 / kOnset_s))) {}
-
-void LiftObserver::reset() {
-  const double lift_off = lift_off_;
-  *this = LiftObserver();
-  lift_off_ = lift_off;
-}
-
 void LiftObserver::update(double dt_s, double measured, double lift, double time_s) {
   const double part = dt_s / (time_s + dt_s);
   measured_ += part * (measured - measured_);
@@ -35,7 +24,7 @@ void LiftObserver::step_on_ground(double dt_s, const Eigen::Vector3d& specific_f
   update(dt_s, -specific_force_frd.z(), lift, kOnset_s);
   const double upward = -(q_ned_from_frd * specific_force_frd).z() - plant::kGravity;
   upward_ += dt_s / (kOnset_s + dt_s) * (upward - upward_);
-  if (upward_ < lift_off_ || modelled_ < kLeastLift) return;
+  if (upward_ < kLiftOff || modelled_ < kLeastLift) return;
   lifted_off_ = true;
   ratio_ = std::clamp(measured_ / modelled_, kLeast, kMost);
 }

@@ -15,20 +15,12 @@ namespace swiftlet::control {
 
 class LiftObserver {
  public:
-  static constexpr double kLiftOff = 0.15;  // m/s^2, least upward acceleration that shows lift-off
-  static constexpr double kLiftOffSigmas =
-      10.0;                                  // the same, over the standard deviation of its filtered noise
+  static constexpr double kLiftOff = 0.15;   // m/s^2, upward acceleration that shows lift-off
   static constexpr double kLeastLift = 5.0;  // m/s^2, modelled: with less, the vehicle does not lift off
   static constexpr double kOnset_s = 0.02;   // of the filter until lift-off
   static constexpr double kMemory_s = 1.0;   // of the means in flight
   static constexpr double kLeast = 0.6;      // of the ratio
   static constexpr double kMost = 1.6;
-
-  // accelerometer_noise_density: m/s^2/sqrt(Hz), white, >= 0: a vehicle that vibrates has to accelerate more to show its lift-off.
-  explicit LiftObserver(double accelerometer_noise_density = 0.0);
-
-  // m/s^2, the upward acceleration that shows lift-off.
-  double lift_off_acceleration() const { return lift_off_; }
 
   // A step of dt_s > 0. specific_force_frd: measured, bias removed, m/s^2. lift: modelled thrust over mass, m/s^2. Both ignore
   // an input that is not finite.
@@ -44,14 +36,13 @@ class LiftObserver {
   bool lifted_off() const { return lifted_off_; }
 
   // For a vehicle on the ground with its rotors off.
-  void reset();
+  void reset() { *this = LiftObserver(); }
   // Takes over the ratio of another controller in flight.
   void adopt(double ratio);
 
  private:
   void update(double dt_s, double measured, double lift, double time_s);
 
-  double lift_off_;  // m/s^2
   bool lifted_off_ = false;
   bool begun_ = false;
   double ratio_ = 1.0;

@@ -1,7 +1,6 @@
 #include "swiftlet/control/estimation/lift_observer.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <random>
 
@@ -66,29 +65,6 @@ TEST(LiftObserver, StandsStillOnTheGround) {
   takeoff.until_lift_off(3.0);  // 0.9 of the weight
   EXPECT_FALSE(takeoff.observer.lifted_off());
   EXPECT_EQ(takeoff.observer.ratio(), 1.0);
-}
-
-// GIVEN a vehicle that vibrates WHEN its rotors turn on the ground THEN no lift-off is seen if its noise is known, and it is when it
-// lifts off.
-TEST(LiftObserver, WaitsForMoreThanTheNoise) {
-  const double density = 0.05;  // m/s^2/sqrt(Hz)
-  const auto stand = [&](const LiftObserver& observer) {
-    Takeoff takeoff;
-    takeoff.observer = observer;
-    takeoff.noise = density / std::sqrt(2.0 * kStep_s);
-    takeoff.ratio = 0.5;
-    takeoff.until_lift_off(3.0);
-    return takeoff;
-  };
-  EXPECT_TRUE(stand(LiftObserver()).observer.lifted_off());
-  Takeoff takeoff = stand(LiftObserver(density));
-  EXPECT_FALSE(takeoff.observer.lifted_off());
-  takeoff.observer.reset();
-  EXPECT_NEAR(takeoff.observer.lift_off_acceleration(), 10.0 * density * std::sqrt(12.5), 1e-12);
-  EXPECT_EQ(LiftObserver(4e-3).lift_off_acceleration(), LiftObserver::kLiftOff) << "of the default settings";
-  const double lifts_at_s = plant::kGravity / takeoff.ratio / takeoff.lift_rate;
-  EXPECT_GT(takeoff.until_lift_off(6.0), lifts_at_s);
-  EXPECT_TRUE(takeoff.observer.lifted_off());
 }
 
 TEST(LiftObserver, FollowsTheRatioInFlightWithinItsMemory) {
