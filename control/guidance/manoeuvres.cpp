@@ -20,13 +20,14 @@ constexpr double kFastLift_s = 0.45;
 constexpr double kLiftRate = 3.0;  // of the weight, per second
 constexpr double kMostLift = 1.5;  // of the weight
 constexpr double kLongestSpoolUp_s = 1.5;
-constexpr double kRiseSpeed = 0.05;       // m/s, from lift-off until it is clear of the ground
-constexpr double kMostRiseSpeed = 0.2;    // m/s
-constexpr double kClearHeight_m = 0.003;  // above the ground
-constexpr double kFlareHeight_m = 0.08;   // the planned path of a landing ends here, then the vehicle sinks
-constexpr double kSinkSpeed = 0.15;       // m/s
-constexpr double kSink_s = 60.0;          // longest duration
-constexpr double kBlindDepth_m = 0.1;     // below the ground, by dead reckoning
+constexpr double kRiseSpeed = 0.05;        // m/s, from lift-off until it is clear of the ground
+constexpr double kMostRiseSpeed = 0.2;     // m/s
+constexpr double kClearHeight_m = 0.003;   // above the ground
+constexpr double kLongestSample_s = 0.01;  // between two steps
+constexpr double kFlareHeight_m = 0.08;    // the planned path of a landing ends here, then the vehicle sinks
+constexpr double kSinkSpeed = 0.15;        // m/s
+constexpr double kSink_s = 60.0;           // longest duration
+constexpr double kBlindDepth_m = 0.1;      // below the ground, by dead reckoning
 constexpr double kMinMove_s = 0.5;
 constexpr int kJoinAttempts = 16;  // attempts to join a trajectory from motion, each with more time
 constexpr double kJoinStretch = 1.25;
@@ -95,15 +96,16 @@ PolynomialSegment join_inside(const Limits& limits, Reference from, const Eigen:
   }
 }
 
-// A reference that moves up from a place.
-void rise_from(const GuidanceContext& context, const Eigen::Vector3d& place_ned, double speed) {
+// A reference that moves up from a place since start_ns.
+void rise_from(const GuidanceContext& context, const Eigen::Vector3d& place_ned, double speed,
+               std::int64_t start_ns) {
   PolynomialSegment up;
   up.duration_s = kLongestSpoolUp_s;
   up.x = {place_ned.x()};
   up.y = {place_ned.y()};
   up.z = {place_ned.z(), -speed};
   up.yaw = {context.state.path.at(context.now_ns).yaw_rad};
-  context.state.path.follow(up, context.now_ns);
+  context.state.path.follow(up, start_ns);
 }
 
 void climb_from(const GuidanceContext& context, Eigen::Vector3d top, std::int64_t start_ns) {
@@ -115,25 +117,31 @@ void climb_from(const GuidanceContext& context, Eigen::Vector3d top, std::int64_
 
 // The spool-up ends after its time. Where lift-off is observed, the vehicle then rises until it is clear of the
 // ground, and the climb begins with its own motion above the place where it left the ground: wind may have pushed it while
-// its legs carried little.
+// its legs carried little. It begins on time, also between two steps, if the vehicle was clear by then: vehicles that start
+// together climb together.
 void advance_spool_up(const GuidanceContext& context) {
   GuidanceState& state = context.state;
   const double elapsed = elapsed_s(state.phase_since_ns, context.now_ns);
   const Eigen::Vector3d& place_ned = context.estimate.position_ned;
   const bool on_time = elapsed >= kSpoolUp_s;
+  const std::int64_t due_ns = state.phase_since_ns + nanoseconds(kSpoolUp_s);
   if (context.lift_off_ns == 0) {
-    if (on_time)
-      climb_from(context, state.path.at(context.now_ns).position_ned,
-                 state.phase_since_ns + nanoseconds(kSpoolUp_s));
+    if (on_time) climb_from(context, state.path.at(context.now_ns).position_ned, due_ns);
     return;
   }
   const bool lifted_off = context.lift_off_ns <= context.now_ns;
   if (lifted_off && !state.path.moving)
-    rise_from(context, state.path.at(context.now_ns).position_ned, kRiseSpeed);
-  const bool clear = lifted_off && place_ned.z() < state.ground_z_ned - kClearHeight_m;
-  if (clear && on_time) {
-    rise_from(context, place_ned, std::clamp(-context.estimate.velocity_ned.z(), 0.0, kMostRiseSpeed));
-    return climb_from(context, place_ned, context.now_ns);
+    rise_from(context, state.path.at(context.now_ns).position_ned, kRiseSpeed, context.now_ns);
+  const double clear_z_ned = state.ground_z_ned - kClearHeight_m;
+  if (lifted_off && on_time && place_ned.z() < clear_z_ned) {
+    const double speed = std::clamp(-context.estimate.velocity_ned.z(), 0.0, kMostRiseSpeed);
+    const double late_s = elapsed - kSpoolUp_s;
+    Eigen::Vector3d place_then_ned = place_ned;
+    place_then_ned.z() += late_s * speed;
+    const bool was_clear = late_s < kLongestSample_s && place_then_ned.z() < clear_z_ned;
+    const std::int64_t start_ns = was_clear ? due_ns : context.now_ns;
+    rise_from(context, was_clear ? place_then_ned : place_ned, speed, start_ns);
+    return climb_from(context, place_ned, start_ns);
   }
   if (elapsed >= kLongestSpoolUp_s)
     climb_from(context, state.path.at(context.now_ns).position_ned, context.now_ns);

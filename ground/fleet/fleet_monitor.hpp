@@ -3,9 +3,12 @@
 //   on its path, late       those that come after it (right_of_way.hpp) stop on their paths, and go on when it has passed
 //   off its path, or lost   it may land or fall: nobody enters the column below it; who is in it steps aside, and goes back to
 //                           its path when nobody is above the way, nor comes there meanwhile
+//   sent aside              nobody enters the column below it and below its way back; who is there already waits
 //
-// Of two vehicles off their paths the one of lower priority steps aside. Pure logic: it is told what is known, and says
-// what each vehicle should do.
+// Of two vehicles off their paths the one of lower priority steps aside. Nobody waits for good: places on paths that vehicles
+// have reached are apart (right_of_way.hpp), so that each can go back to its own past others that stand, if not straight then by
+// a place beside them; one that was sent aside and stands in another's way back is sent on. Pure logic: it is told what is
+// known, and says what each vehicle should do.
 #pragma once
 
 #include <cstddef>
@@ -64,41 +67,55 @@ class FleetMonitor {
 
  private:
   enum class Status { kOnPath, kOffPath, kLost, kDown };
-  // Where the monitor has sent a vehicle: nowhere, aside, or back from there.
-  enum class Way { kPath, kAside, kBack };
-  struct Scene {  // of one step
+  // Where the monitor has sent a vehicle: nowhere, aside, on from there out of another's way back, to a place from which it can
+  // fly back, or back.
+  enum class Way { kPath, kAside, kOn, kAround, kBack };
+  using Places = std::vector<Eigen::Vector3d>;  // m NED
+  struct Scene {                                // of one step
     const std::vector<VehicleNews>& news;
     std::vector<Status> status;
-    std::vector<std::vector<Eigen::Vector3d>> places;  // m NED, where each vehicle is or may be
+    std::vector<Places> places;  // where each vehicle is or may be
   };
 
   void follow(std::size_t i, double elapsed_s, const VehicleNews& news);
   double landing_limit_s(std::size_t i, const VehicleNews& news) const;
-  void rejoin(std::size_t i, const VehicleNews& news);
+  bool rejoin(std::size_t i, double elapsed_s, const VehicleNews& news);
   Status status_of(std::size_t i, const VehicleNews& news) const;
-  std::vector<Eigen::Vector3d> places_of(std::size_t i, const VehicleNews& news, Status status) const;
-  std::vector<Eigen::Vector3d> way_back(std::size_t i, const VehicleNews& news) const;
+  Places places_of(std::size_t i, const VehicleNews& news, Status status) const;
+  Places left_places(std::size_t i) const;
+  Places way_back(std::size_t i, const Eigen::Vector3d& from_ned) const;
+  bool may_sink(std::size_t i, const Scene& scene) const;
+  bool stands(std::size_t i, const Scene& scene) const;
   bool in_column(std::size_t i, const Eigen::Vector3d& place_ned, std::size_t of,
                  const Eigen::Vector3d& top_ned, double share) const;
   bool is_near(std::size_t i, const Eigen::Vector3d& place_ned, std::size_t of, const Eigen::Vector3d& at_ned,
                double share) const;
   bool yields(std::size_t i, std::size_t of, const Scene& scene) const;
+  bool touches(std::size_t i, const Eigen::Vector3d& place_ned, std::size_t of, const Eigen::Vector3d& at_ned,
+               double share, const Scene& scene) const;
   void wait_for_late(const Scene& scene, std::vector<Order>& orders) const;
-  void keep_out_of_column(std::size_t of, const Scene& scene, std::vector<Order>& orders) const;
-  Eigen::Vector3d place_aside(std::size_t i, const Eigen::Vector3d& top_ned, std::size_t of,
+  void keep_away(std::size_t of, const Scene& scene, std::vector<Order>& orders) const;
+  Eigen::Vector3d place_aside(std::size_t i, const Eigen::Vector3d& at_ned, std::size_t of,
                               const Scene& scene) const;
   bool is_free(std::size_t i, const Eigen::Vector3d& place_ned, const Scene& scene) const;
-  std::optional<std::size_t> blocker_of_way_back(std::size_t i, const Scene& scene,
-                                                 const std::vector<Order>& orders, double share) const;
+  std::optional<std::size_t> blocker(std::size_t i, const Places& way, bool has_begun, const Scene& scene,
+                                     const std::vector<Order>& orders) const;
+  std::optional<Eigen::Vector3d> place_beside(std::size_t i, std::size_t of, const Scene& scene,
+                                              const std::vector<Order>& orders) const;
   void send_back(std::size_t i, const Scene& scene, std::vector<Order>& orders);
+  void make_way_back(std::size_t i, const Scene& scene, std::vector<Order>& orders);
 
   std::vector<MonitoredVehicle> vehicles_;
   RightOfWay right_of_way_;
   std::vector<double> progress_s_;
-  std::vector<bool> paused_;
+  std::vector<double> certain_s_;               // the last at which they were just there
+  std::vector<double> near_s_;                  // for how long they have been near that to which they go back
+  std::vector<Eigen::Vector3d> reference_ned_;  // m, of the step before
+  std::vector<double> paused_s_;  // for how long they have been told to wait, and rested; negative: not told
   std::vector<Way> way_;
   std::vector<double> left_s_;              // path time at which they were sent aside
-  std::vector<Eigen::Vector3d> aside_ned_;  // of those that are aside
+  std::vector<double> leaving_s_;           // path time that they may have flown on after that
+  std::vector<Eigen::Vector3d> aside_ned_;  // where those that are aside, or on a way around, were sent
   double now_s_ = 0.0;
 };
 

@@ -157,6 +157,16 @@ std::string axis_commands(char name, const Axis& axis, const Scale& scale) {
   return ticks.empty() ? out : out + fmt::format("set {}tics ({})\n", name, ticks);
 }
 
+// The box of a view in space: gnuplot sizes it by its ground, so that what is high would reach beyond it.
+Box smaller_if_high(Box box, double height_over_width) {
+  const double part = std::clamp(2.0 * height_over_width - 1.0, 0.0, 1.0);
+  const double width = box.right - box.left;
+  box.left += 0.11 * part * width;
+  box.right -= 0.11 * part * width;
+  box.bottom += 0.17 * part * (box.top - box.bottom);
+  return box;
+}
+
 void add_panel(std::string& script, const Panel& panel, std::size_t number) {
   Scale x = scale_of(panel, panel.x, &Point::x, panel.x.least_span);
   Scale y = scale_of(panel, panel.y, &Point::y, panel.y.least_span);
@@ -194,8 +204,11 @@ void add_panel(std::string& script, const Panel& panel, std::size_t number) {
   if (panel.equal) script += panel.in_space ? "set view equal xyz\n" : "set size ratio -1\n";
   if (panel.zero_line) script += "set xzeroaxis lt 1 lc rgb '#777777'\n";
   script += "set title " + quoted(panel.title) + "\n";
-  if (panel.box)
-    fmt::format_to(out, kInBox, panel.box->left, panel.box->right, panel.box->bottom, panel.box->top);
+  if (panel.box) {
+    const Box box =
+        panel.equal && panel.in_space ? smaller_if_high(*panel.box, z.span() / x.span()) : *panel.box;
+    fmt::format_to(out, kInBox, box.left, box.right, box.bottom, box.top);
+  }
   for (const Label& label : panel.labels)
     fmt::format_to(out, "set label {} at {:.7g},{:.7g} {} front tc rgb '{}'\n", quoted(label.text),
                    label.at.x / x.power, label.at.y / y.power,

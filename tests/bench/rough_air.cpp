@@ -13,23 +13,13 @@
 
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
-#include "swiftlet/io/settings/control_settings_file.hpp"
-#include "swiftlet/io/settings/simulation_file.hpp"
-#include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/simulation/simulated_flight.hpp"
+#include "tests/support/flight_setup.hpp"
 
 namespace swiftlet::bench {
 namespace {
 
-// What is flown, and what it is flown in.
-struct World {
-  plant::Vehicle nominal = runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml"));
-  plant::Vehicle flown = nominal;
-  plant::SimulationSettings simulation =
-      runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
-  control::ControlSettings control =
-      runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml"));
-};
+using World = tests::FlightSetup;  // what is flown, and what it is flown in
 
 struct Law {
   const char* name;

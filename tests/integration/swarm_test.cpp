@@ -77,6 +77,43 @@ Start start_of(const Table& command, const Table& imu) {
   return start;
 }
 
+// In lockstep all vehicles have one clock.
+Start on_common_clock(Start start) {
+  start.wall_ns = start.stamp_ns;
+  return start;
+}
+
+// The time at which the climb begins, ns since the start. Its reference is a quintic that begins and ends without acceleration, so
+// that the vertical acceleration is a cubic: this is its root before the samples from which it is found.
+double climb_begin_after(const Table& reference, double start_ns) {
+  const std::vector<double>&stamps = reference.at("stamp_ns"), &up = reference.at("acceleration_ned[2]");
+  constexpr std::size_t kSamples = 4, kApart = 4;
+  std::vector<double> t_s, a;
+  for (std::size_t i = 0; i < up.size() && t_s.size() < kSamples * kApart; ++i) {
+    if (stamps[i] < start_ns || (t_s.empty() && up[i] > -0.1)) continue;
+    t_s.push_back(1e-9 * (stamps[i] - start_ns));
+    a.push_back(up[i]);
+  }
+  if (t_s.size() < kSamples * kApart) return std::numeric_limits<double>::quiet_NaN();
+  const auto cubic = [&](double at_s) {  // Lagrange
+    double sum = 0.0;
+    for (std::size_t i = 0; i < t_s.size(); i += kApart) {
+      double term = a[i];
+      for (std::size_t j = 0; j < t_s.size(); j += kApart)
+        if (j != i) term *= (at_s - t_s[j]) / (t_s[i] - t_s[j]);
+      sum += term;
+    }
+    return sum;
+  };
+  double before_s = t_s.front() - 0.1, after_s = t_s.front();
+  if (cubic(before_s) <= 0.0 || cubic(after_s) >= 0.0) return std::numeric_limits<double>::quiet_NaN();
+  while (after_s - before_s > 1e-9) {
+    const double middle_s = 0.5 * (before_s + after_s);
+    (cubic(middle_s) > 0.0 ? before_s : after_s) = middle_s;
+  }
+  return 1e9 * after_s;
+}
+
 // The vertical reference, m down, at a time after the start.
 double z_after(const Table& reference, double start_ns, double after_ns) {
   const std::vector<double>&stamps = reference.at("stamp_ns"), &z = reference.at("position_ned[2]");
@@ -117,9 +154,16 @@ class SwarmFlight : public testing::Test {
     EXPECT_EQ(written.exit_code, 0) << written.errors;
     return read_table(csv);
   }
-  // They climb alike by their own clocks, each from the height to which its lift-off has carried it at the end of the spool-up: a few millimetres.
-  void expect_same_climb(const Start& a, const Start& b) const {
+  // Their climbs begin within this time of each other, by the wall clock, and they climb alike by their own clocks, each from the
+  // height to which its lift-off has carried it at the end of the spool-up: a few millimetres.
+  void expect_same_climb(const Start& a, const Start& b, double within_ns) const {
     const Table of_a = recorded("/a/reference"), of_b = recorded("/b/reference");
+    const double begins_a_ns = climb_begin_after(of_a, a.stamp_ns);
+    const double begins_b_ns = climb_begin_after(of_b, b.stamp_ns);
+    EXPECT_NEAR(begins_a_ns, kSpoolUp_ns, 0.5e6);
+    EXPECT_NEAR(a.wall_ns + begins_a_ns, b.wall_ns + begins_b_ns, within_ns);
+    RecordProperty("climbs_apart_us",
+                   static_cast<int>(1e-3 * (a.wall_ns - b.wall_ns + begins_a_ns - begins_b_ns)));
     double highest_m = 0.0;
     for (double after_ns = 1e9; after_ns < 3e9; after_ns += 1e7) {
       const double z_a = z_after(of_a, a.stamp_ns, after_ns), z_b = z_after(of_b, b.stamp_ns, after_ns);
@@ -130,6 +174,7 @@ class SwarmFlight : public testing::Test {
   }
   fs::path record() const { return folder_.path() / "record"; }
 
+  static constexpr double kSpoolUp_ns = 0.8e9;
   TemporaryFolder folder_;
 };
 
@@ -146,7 +191,7 @@ TEST_F(SwarmFlight, FliesVehiclesOfTwoFilesFromTheirPlaces) {
   const Start a = start_of(recorded("/a/command"), recorded("/a/imu"));
   const Start b = start_of(recorded("/b/command"), recorded("/b/imu"));
   EXPECT_EQ(a.stamp_ns, b.stamp_ns);
-  expect_same_climb(a, b);
+  expect_same_climb(on_common_clock(a), on_common_clock(b), 0.5e6);
   // The recording has the files of both.
   const ProgramResult reported =
       run_program("swiftlet", {"report", record() / "flight.mcap", "--json"}, folder_.path());
@@ -171,7 +216,7 @@ TEST_F(SwarmFlight, StartsWithinTwoMillisecondsInRealTime) {
   EXPECT_TRUE(a.is_certain && b.is_certain);
   EXPECT_NEAR(a.wall_ns, b.wall_ns, 2e6);
   RecordProperty("difference_us", static_cast<int>(1e-3 * std::abs(a.wall_ns - b.wall_ns)));
-  expect_same_climb(a, b);
+  expect_same_climb(a, b, 2e6);
 }
 
 TEST_F(SwarmFlight, SixVehiclesChangePlaces) {
@@ -313,6 +358,17 @@ TEST_F(RunningSwarm, MovesAsOneAndLands) {
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_NE(refused.errors.find("a would come too near to b: "), std::string::npos) << refused.errors;
   EXPECT_NE(refused.errors.find("nothing was sent"), std::string::npos) << refused.errors;
+  // The vehicles and the safety of a fleet file.
+  const std::string wide =
+      folder_.write("wide.yaml",
+                    "frame: ned\nsafety: {radius_xy_m: 0.6, radius_z_m: 0.6}\nvehicles:\n"
+                    "  - {name: a, start_m: [0, 0], mission: square}\n"
+                    "  - {name: b, start_m: [0, 1], mission: square}\n");
+  const ProgramResult too_near = swiftlet({"fleet", "goto", "0.5", "0.7", "-1.5", "--fleet", wide});
+  EXPECT_EQ(too_near.exit_code, 2);
+  EXPECT_NE(too_near.errors.find("a would come too near to b: "), std::string::npos) << too_near.errors;
+  const ProgramResult both = swiftlet({"fleet", "land", "--fleet", wide, "--radius-xy", "0.2"});
+  EXPECT_EQ(both.exit_code, 2) << both.errors;
   // One refuses what lies outside its fence: the others hold.
   const ProgramResult outside = swiftlet({"fleet", "goto", "0.5", "2.5", "-1.4"});
   EXPECT_EQ(outside.exit_code, 1);

@@ -20,6 +20,7 @@
 #include "swiftlet/ground/cli/request_command.hpp"
 #include "swiftlet/ground/client/context.hpp"
 #include "swiftlet/ground/client/vehicle.hpp"
+#include "swiftlet/ground/fleet/fleet_file.hpp"
 #include "swiftlet/ground/fleet/formation.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
@@ -35,6 +36,7 @@ struct Options : RequestOptions {
   std::string names;  // empty: all that are seen
   double look_s = 1.5;
   Ellipsoid safety;
+  std::string fleet;  // file whose vehicles and safety these are; empty: none
 };
 
 struct GotoOptions : Options {
@@ -146,7 +148,20 @@ RequestOptions request_to(const std::vector<std::string>& names, const Options& 
   return request;
 }
 
-int go_to(const GotoOptions& options) {
+// With the safety of the fleet file, and the names of its vehicles unless some are named. Throws runtime::ConfigError.
+template <typename T>
+T with_fleet(T options) {
+  if (options.fleet.empty()) return options;
+  const FleetFile fleet = load_fleet_file(runtime::configuration_file(runtime::kinds::kFleet, options.fleet));
+  options.safety = fleet.safety;
+  if (!options.names.empty()) return options;
+  for (const FleetMember& member : fleet.vehicles)
+    options.names += (options.names.empty() ? "" : ",") + member.name;
+  return options;
+}
+
+int go_to(const GotoOptions& given) {
+  const GotoOptions options = with_fleet(given);
   if (options.z_ned_m.has_value() == options.height_m.has_value())
     throw InputError("goto: needs either z (down: negative is up) or --height (up, above the ground)");
   const control::Limits limits =
@@ -191,7 +206,8 @@ int go_to(const GotoOptions& options) {
   return run_request(request_to(members, options), request);
 }
 
-int land(const LandOptions& options) {
+int land(const LandOptions& given) {
+  const LandOptions options = with_fleet(given);
   Sight sight;
   {
     const Context context(options.network);
@@ -262,13 +278,20 @@ runtime::CommandLine add_subcommand(runtime::CommandLine fleet, const std::strin
   return app;
 }
 
-void add_safety_options(runtime::CommandLine app, Ellipsoid& safety) {
-  app.add_option("--radius-xy", safety.radius_xy_m, "half of the distance that two keep across, m")
+void add_safety_options(runtime::CommandLine app, Options& options) {
+  runtime::Option fleet =
+      app.add_option("--fleet", options.fleet,
+                     "fleet file, or the name of one in config/fleets: its safety, and its vehicles unless "
+                     "--vehicle-name names some")
+          .type_name(runtime::kinds::kFleet.value);
+  app.add_option("--radius-xy", options.safety.radius_xy_m, "half of the distance that two keep across, m")
       .range(0.01, 10.0)
-      .show_default();
-  app.add_option("--radius-z", safety.radius_z_m, "half of the distance that two keep in height, m")
+      .show_default()
+      .excludes(fleet);
+  app.add_option("--radius-z", options.safety.radius_z_m, "half of the distance that two keep in height, m")
       .range(0.01, 10.0)
-      .show_default();
+      .show_default()
+      .excludes(fleet);
 }
 
 }  // namespace
@@ -298,7 +321,7 @@ Command add_fleet_goto_command(runtime::CommandLine fleet) {
                  "say how long they take")
       .type_name(runtime::kinds::kControl.value)
       .show_default();
-  add_safety_options(app, options->safety);
+  add_safety_options(app, *options);
   return {app, [options] { return go_to(*options); }};
 }
 
@@ -311,7 +334,7 @@ Command add_fleet_land_command(runtime::CommandLine fleet) {
                  "peak speed, m/s; at most descent_speed_m_s of the control settings")
       .positive()
       .show_default();
-  add_safety_options(app, options->safety);
+  add_safety_options(app, *options);
   return {app, [options] { return land(*options); }};
 }
 

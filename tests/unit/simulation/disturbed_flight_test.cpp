@@ -7,13 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/control/types/mode.hpp"
-#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
-#include "swiftlet/io/settings/control_settings_file.hpp"
-#include "swiftlet/io/settings/simulation_file.hpp"
-#include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/simulation/simulated_flight.hpp"
 #include "tests/support/campaign.hpp"
+#include "tests/support/flight_setup.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -41,16 +38,9 @@ struct Flight {
   double lowest_voltage_v = 1e9;  // of the battery, over the whole flight
 };
 
-struct FlightSetup {
-  plant::Vehicle nominal = runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml"));
-  plant::Vehicle flown = nominal;
-  plant::SimulationSettings world =
-      runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
-  control::ControlSettings control =
-      runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml"));
-
+struct FlightSetup : tests::FlightSetup {
   Flight fly(const std::string& speed, std::uint64_t seed) const {
-    ClosedLoop loop(flown, nominal, world, control, seed);
+    ClosedLoop loop(flown, nominal, simulation, control, seed);
     const control::Mission mission = square(speed, control.limits);
     Flight flight;
     double sum = 0.0;
@@ -91,8 +81,8 @@ TEST(DisturbedFlight, TracksTheSquareHeavyInWindOnADrainingBattery) {
   FlightSetup setup;
   setup.flown.mass_kg *= 1.1;
   setup.flown.linear_drag = 0.01;
-  setup.world.air.wind_ned = {1.6, -1.2, 0.0};
-  setup.world.air.gust_sigma_ned = {0.7, 0.7, 0.3};
+  setup.simulation.air.wind_ned = {1.6, -1.2, 0.0};
+  setup.simulation.air.gust_sigma_ned = {0.7, 0.7, 0.3};
   setup.flown.battery.capacity_ah *= 0.06;
   for (const std::uint64_t seed : {1, 2, 3}) {
     const Flight flight = setup.fly("0.5", seed);
@@ -132,9 +122,9 @@ TEST(DisturbedFlight, TracksTheSquareHeavyInDrydenGusts) {
     FlightSetup setup;
     setup.flown.mass_kg *= 1.1;
     setup.flown.linear_drag = 0.01;
-    setup.world.air.wind_ned = {2.2 * std::cos(seed), 2.2 * std::sin(seed), 0.0};
-    setup.world.air.gust_sigma_ned = {0.5, 0.5, 0.5};
-    setup.world.air.dryden = {1.0, 2.2};
+    setup.simulation.air.wind_ned = {2.2 * std::cos(seed), 2.2 * std::sin(seed), 0.0};
+    setup.simulation.air.gust_sigma_ned = {0.5, 0.5, 0.5};
+    setup.simulation.air.dryden = {1.0, 2.2};
     const Flight flight = setup.fly("0.5", static_cast<std::uint64_t>(seed));
     EXPECT_LT(flight.rms_m, 8e-3) << seed;
     EXPECT_LT(flight.peak_m, 30e-3) << seed;
@@ -157,8 +147,8 @@ TEST(DisturbedFlight, FollowsAMomentInTheDescentWithoutPosition) {
   lost.kind = plant::FaultKind::kMocapStop;
   lost.at_s = kLost_s;
   lost.for_s = 20.0;
-  setup.world.faults = {push, lost};
-  ClosedLoop loop(setup.flown, setup.nominal, setup.world, setup.control, 1);
+  setup.simulation.faults = {push, lost};
+  ClosedLoop loop(setup.flown, setup.nominal, setup.simulation, setup.control, 1);
   const auto ask = [&](control::RequestKind kind) {
     control::Request request;
     request.kind = kind;
@@ -191,7 +181,7 @@ TEST(DisturbedFlight, FollowsAMomentInTheDescentWithoutPosition) {
 TEST(DisturbedFlight, KnowsTheGroundEffect) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     FlightSetup setup;
-    setup.world.ground.effect_rotor_radius_m = 0.03;
+    setup.simulation.ground.effect_rotor_radius_m = 0.03;
     const double unknown_m = setup.fly("0.5", seed).takeoff_peak_m;
     setup.control.rough_air.rotor_radius_m = 0.03;
     const double known_m = setup.fly("0.5", seed).takeoff_peak_m;

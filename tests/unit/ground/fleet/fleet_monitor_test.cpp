@@ -171,6 +171,48 @@ TEST_F(Column, OthersStayOutOfTheWayBack) {
   }
 }
 
+// GIVEN one that was sent aside, and one that comes after it and waits for it beside its way back WHEN the way is free THEN
+// both go on: that the other one stands near does not hold it up, and one in the way is flown around.
+TEST_F(Column, TwoThatWouldWaitForEachOtherGoOn) {
+  for (const double east : {-0.3, -0.15, 0.0, 0.15, 0.3, 0.45}) {
+    const MonitoredVehicle first = crossing();
+    const MonitoredVehicle second = vehicle(
+        {{east, -2.2, -1}, {east, -2.2, -1}, {east, 1.0, -1}});  // passes the first one's path after it
+    monitor_.emplace(std::vector<MonitoredVehicle>{first, vehicle({{3, 3, -2}, {3, 3, -2}}), second});
+    now_s_ = 0.0;
+    double first_s = 0.0, second_s = 0.0;
+    bool was_aside = false, waited = false;
+    Vector3d place = first.path.at(0.0);
+    const auto to = [&](const Vector3d& there, double speed) {
+      const Vector3d way = there - place;
+      place += way.normalized() * std::min(way.norm(), speed * kStep_s);
+      return (there - place).norm() < 1e-9;
+    };
+    bool on_path = true;
+    while (now_s_ < 60.0 && (first_s < 10.0 || second_s < 20.0)) {
+      const bool taken = now_s_ > 5.0 && now_s_ < 25.0;
+      orders_ = step({at(place), at(taken ? Vector3d(0.02, 0.05, -2) : Vector3d(3, 3, -2), !taken),
+                      at(second.path.at(second_s))});
+      if (orders_[0].kind == Kind::kStepAside) {
+        on_path = false;
+        was_aside = true;
+        to(orders_[0].place_ned, 0.6);
+      } else if (orders_[0].kind == Kind::kFly) {
+        on_path = on_path || to(first.path.at(first_s), 0.5);
+        if (on_path) place = first.path.at(first_s += kStep_s);
+      }
+      if (orders_[2].kind == Kind::kFly) second_s += kStep_s;
+      waited = waited || (now_s_ > 25.0 && orders_[2].kind == Kind::kPause);
+      ASSERT_GE(clearance(kAround, kAround, second.path.at(second_s) - place), 0.99)
+          << east << " at " << now_s_ << " s";
+    }
+    EXPECT_TRUE(was_aside) << east;
+    EXPECT_TRUE(waited) << east;
+    EXPECT_GE(first_s, 10.0) << east;
+    EXPECT_GE(second_s, 20.0) << east;
+  }
+}
+
 TEST_F(Column, TheWayAsideIsFreeOfOthersAndInTheRoom) {
   const Vector3d third(-0.6, 0, -1);
   MonitoredVehicle narrow = crossing();

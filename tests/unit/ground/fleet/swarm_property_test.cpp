@@ -67,6 +67,7 @@ FlightPath random_path(Random& random, const Eigen::Vector2d& from, const Eigen:
 
 struct Swarm {
   std::vector<MonitoredVehicle> vehicles;
+  FleetMonitor monitor;  // at the start
 };
 
 // A swarm that the check accepts, or nothing.
@@ -77,23 +78,23 @@ std::optional<Swarm> draw(Random& random) {
   std::vector<Eigen::Vector2d> from = places, to = places;
   std::shuffle(from.begin(), from.end(), random);
   std::shuffle(to.begin(), to.end(), random);
-  Swarm swarm;
+  std::vector<MonitoredVehicle> vehicles;
   for (std::size_t i = 0; i < count; ++i) {
     const FlightPath path = random_path(random, from[i], to[i]);
-    for (const MonitoredVehicle& other : swarm.vehicles) {
+    for (const MonitoredVehicle& other : vehicles) {
       if (closest_approach(path, kSafety, other.path, kSafety).clearance < 1.0) return std::nullopt;
     }
     const double stop_s =
         kReaction_s + kMonitor_s + kStep_s +
         0.5 * control::clock_change_duration(greatest_speed(path), kLimits.max_reference_acceleration,
                                              kLimits.max_reference_jerk, 0.5);
-    swarm.vehicles.push_back(
+    vehicles.push_back(
         {{path, kKeptApart, path.pieces().back().start_s}, stop_s, 1 + static_cast<int>(i) % 3});
   }
-  const FleetMonitor monitor(swarm.vehicles);
+  FleetMonitor monitor(vehicles);
   const RightOfWay::Slack slack = monitor.least_slack();
   if (slack.slack_s < monitor.needed_slack_s(slack.second)) return std::nullopt;
-  return swarm;
+  return Swarm{std::move(vehicles), std::move(monitor)};
 }
 
 // kTaken: a pilot takes the vehicle above another one, lets it hover there, and back.
@@ -115,8 +116,8 @@ class Kinematic {
 
   void step(double now_s, Fault fault, bool failed) {
     if (failed && fault == Fault::kStopped) return;
-    if (fault == Fault::kTaken && taken_to_ && (failed || off_path_)) {
-      off_path_ = failed || !fly_to(path_.at(time_s_), kTakenSpeed);
+    if (fault == Fault::kTaken && taken_to_ && (failed || taken_)) {
+      taken_ = failed || !fly_to(path_.at(time_s_), kTakenSpeed);
       if (failed) fly_to(*taken_to_, kTakenSpeed);
       return;
     }
@@ -181,8 +182,9 @@ class Kinematic {
   control::TimeScaling clock_;
   std::optional<double> lost_since_s_;
   std::optional<Eigen::Vector3d> taken_to_;
-  bool off_path_ = false;
-  bool aside_ = false;  // it was, once
+  bool taken_ = false;     // by the pilot, until it is back on its path
+  bool off_path_ = false;  // sent by the monitor
+  bool aside_ = false;     // it was, once
   bool slowed_ = false;
 };
 
@@ -219,7 +221,7 @@ Outcome fly(const Swarm& swarm, Fault fault, std::size_t failing, double fails_s
     vehicles.emplace_back(vehicle.path);
     duration_s = std::max(duration_s, vehicle.path.duration_s());
   }
-  FleetMonitor monitor(swarm.vehicles);
+  FleetMonitor monitor = swarm.monitor;
   std::vector<VehicleNews> news(vehicles.size());
   std::vector<VehicleNews> heard(vehicles.size());
   double heard_s = 0.0;

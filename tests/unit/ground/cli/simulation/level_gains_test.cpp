@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -21,7 +20,7 @@ using plant::ControlLevel;
 
 class LevelGainsOf : public testing::Test {
  protected:
-  // Hovers over a radio, and returns the largest tilt, rad, or vertical speed, m/s, meanwhile; infinity if it came down.
+  // Hovers over a radio, and returns the largest tilt, rad, or vertical speed, m/s, meanwhile.
   double unrest_in_hover(ControlLevel level, double one_way_s) {
     plant::SimulationSettings world =
         runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
@@ -45,7 +44,8 @@ class LevelGainsOf : public testing::Test {
           return most > 0.5;
         },
         25.0);
-    return loop.plant.state().position_ned.z() < -0.3 ? most : std::numeric_limits<double>::infinity();
+    EXPECT_LT(loop.plant.state().position_ned.z(), -0.3) << plant::to_string(level) << ' ' << one_way_s;
+    return most;
   }
 
   plant::Vehicle vehicle_ = runtime::load_vehicle(runtime::find_config("vehicles/crazyflie2.yaml"));
@@ -56,6 +56,8 @@ class LevelGainsOf : public testing::Test {
 // GIVEN the delay that the loops tolerate WHEN a vehicle flies with less THEN it hovers calmly, with more it does not.
 TEST_F(LevelGainsOf, ToleratedDelayIsThatOfAFlight) {
   settings_.estimator.detectors.recovery.longest_wait_s = 0.15;
+  // The delay is that of the loops in hover: with more, the take-off that learns the lift already ends on the ground.
+  settings_.rough_air.learn_lift = false;
   for (const ControlLevel level : {ControlLevel::kRates, ControlLevel::kAttitude}) {
     const LevelGains gains = level_gains(vehicle_, settings_, level, 0.0);
     const double least_s = *std::min_element(gains.tolerated_delay_s.begin(), gains.tolerated_delay_s.end());
