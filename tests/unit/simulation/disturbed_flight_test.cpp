@@ -111,7 +111,7 @@ TEST(DisturbedFlight, LearnsTheMassAtTakeOff) {
 // ratio of the lift would be learnt on the ground.
 TEST(DisturbedFlight, DoesNotTakeVibrationForLiftOff) {
   FlightSetup setup;
-  setup.world.imu.accelerometer_noise_density = 0.5 / std::sqrt(0.5 * setup.world.imu.rate_hz);
+  setup.simulation.imu.accelerometer_noise_density = 0.5 / std::sqrt(0.5 * setup.simulation.imu.rate_hz);
   for (const std::uint64_t seed : {1, 2, 3}) EXPECT_LT(setup.fly("0.5", seed).takeoff_peak_m, 20e-3) << seed;
 }
 
