@@ -19,12 +19,15 @@ constexpr double kFastestSimulation = 100.0;
 constexpr double kRateTolerance = 0.05;
 constexpr double kLeastOdometryRate_hz = 95.0;
 constexpr double kImuRates[] = {500.0, 1000.0};
+constexpr double kLeastOuterRate_hz = 100.0;  // of the IMU of a vehicle that closes the inner loops itself
 constexpr double kMostLost = 0.05;
 constexpr double kImuGap_s = 0.1;      // imu_timeout_s of the control settings
 constexpr double kStampJitter = 0.25;  // of the period
+constexpr double kOuterStampJitter = 0.5;
 constexpr double kDeliveryDelay_s = 0.02;
 constexpr double kImuAge_s = 0.05;     // the loop becomes unstable at such delays
 constexpr double kEarliest_s = 0.005;  // a stamp may lie this much in the future
+constexpr double kEarliest = 2.0;      // or so many periods of the IMU, if they are longer
 
 struct StreamLimits {
   const char* topic;
@@ -110,10 +113,17 @@ CheckResult check_clock(const std::string& topic, double rate, bool simulated) {
   return judged(check_name(topic, "clock"), std::move(measured), limit, clock_finding(rate, simulated));
 }
 
-std::string imu_rate_finding(double rate_hz, double expected_hz, bool declared) {
+// A vehicle that is never commanded at level actuators: control closes its outer loops only.
+bool closes_inner_loops(const VehicleRecording& recording) {
+  return recording.description && !recording.description->levels.has(plant::ControlLevel::kActuators);
+}
+
+std::string imu_rate_finding(double rate_hz, double expected_hz, bool declared, bool is_outer) {
   const bool is_allowed = std::any_of(std::begin(kImuRates), std::end(kImuRates),
                                       [&](double allowed) { return expected_hz == allowed; });
-  if (!is_allowed)
+  if (is_outer && expected_hz < kLeastOuterRate_hz)
+    return fmt::format("vehicle_info declares {:g} Hz: the controller needs 100 Hz or more", expected_hz);
+  if (!is_outer && !is_allowed)
     return fmt::format("vehicle_info declares {:g} Hz: the controller needs 500 or 1000 Hz", expected_hz);
   if (std::abs(rate_hz / expected_hz - 1.0) <= kRateTolerance) return "";
   const char* const of = declared ? "declared" : "required";
@@ -130,7 +140,7 @@ CheckResult check_imu_rate(const VehicleRecording& recording, double rate_hz) {
   const double expected_hz = declared ? recording.description->imu_rate_hz : nearest_hz;
   return judged("imu.rate", figure(rate_hz, "Hz", 1),
                 fmt::format("{:g} Hz +- {:.0f} %", expected_hz, 1e2 * kRateTolerance),
-                imu_rate_finding(rate_hz, expected_hz, declared));
+                imu_rate_finding(rate_hz, expected_hz, declared, closes_inner_loops(recording)));
 }
 
 CheckResult check_gap(const std::string& topic, double gap_s, double limit_s) {
@@ -139,12 +149,12 @@ CheckResult check_gap(const std::string& topic, double gap_s, double limit_s) {
                 gap_s <= limit_s ? "" : fmt::format("gaps: no sample for {:.0f} ms", 1e3 * gap_s));
 }
 
-CheckResult check_stamp_jitter(double jitter) {
+CheckResult check_stamp_jitter(double jitter, double limit) {
   return judged("imu.jitter", figure(1e2 * jitter, "%", 1, " of the period, p99"),
-                fmt::format("at most {:.0f} %", 1e2 * kStampJitter),
-                jitter <= kStampJitter ? ""
-                                       : "the stamps are irregular: they are not taken when the sensor "
-                                         "measures, or the sampling is not steady");
+                fmt::format("at most {:.0f} %", 1e2 * limit),
+                jitter <= limit ? ""
+                                : "the stamps are irregular: they are not taken when the sensor "
+                                  "measures, or the sampling is not steady");
 }
 
 CheckResult check_delivery(double delay_s) {
@@ -210,9 +220,11 @@ CheckResult check_age(const StreamLimits& limits, const SampleTimes& samples, co
   }
   if (ages.empty()) return skipped(name, "no IMU sample arrived before");
   const double age_s = quantile(std::move(ages), 0.5);
-  std::string finding = age_finding(age_s, limits.oldest_s, kEarliest_s);
+  const double earliest_s =
+      imu.size() < kFewest ? kEarliest_s : std::max(kEarliest_s, kEarliest / rate_by_arrivals(imu));
+  std::string finding = age_finding(age_s, limits.oldest_s, earliest_s);
   if (std::abs(age_s) > 10.0) finding = "the stamps are not those of the vehicle's clock in ns, as in imu";
-  return judged(name, figure(1e3 * age_s, "ms", 1, " behind imu"), age_limit(limits.oldest_s, kEarliest_s),
+  return judged(name, figure(1e3 * age_s, "ms", 1, " behind imu"), age_limit(limits.oldest_s, earliest_s),
                 finding);
 }
 
@@ -256,7 +268,8 @@ CheckResults check_imu_stream(const VehicleRecording& recording) {
   results.push_back(check_gap(
       "imu", stamps_count ? longest_interval_by_stamps_s(samples) : longest_interval_by_arrivals_s(samples),
       kImuGap_s));
-  results.push_back(stamps_count ? check_stamp_jitter(stamp_jitter_p99(samples))
+  const double jitter_limit = closes_inner_loops(recording) ? kOuterStampJitter : kStampJitter;
+  results.push_back(stamps_count ? check_stamp_jitter(stamp_jitter_p99(samples), jitter_limit)
                                  : skipped("imu.jitter", "the stamps do not follow the clock"));
   results.push_back(keeps_clock ? check_delivery(delivery_delay_p99_s(samples))
                                 : skipped("imu.delivery", "the stamps do not follow the computer's clock"));

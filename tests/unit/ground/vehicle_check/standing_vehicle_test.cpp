@@ -247,6 +247,22 @@ TEST(StandingVehicle, ARateThatIsNotDeclaredMustBeOneOfTheContract) {
   expect_names(check(recording), "imu.rate", "half the required rate");
 }
 
+// GIVEN a vehicle with an IMU of 100 Hz, as PX4 sends it, whose battery is stamped up to a period after the newest sample THEN it
+// is sound if it closes the inner loops itself, but not at less than 100 Hz, and not at level actuators.
+TEST(StandingVehicle, ThatClosesTheInnerLoopsNeedsAHundredSamplesASecond) {
+  VehicleRecording recording = record_standing();
+  const double rate_hz = recording.description->imu_rate_hz;
+  keep_every(recording.imu.samples, static_cast<std::size_t>(rate_hz / 100.0));
+  number_again(recording);
+  for (auto& received : recording.battery.samples) received.sample.stamp_ns += 10'000'000;
+  recording.description->imu_rate_hz = 100.0;
+  expect_names(check(recording), "imu.rate", "declares 100 Hz: the controller needs 500 or 1000 Hz");
+  recording.description->levels = plant::ControlLevel::kRates;
+  expect_sound(check(recording));
+  recording.description->imu_rate_hz = 50.0;
+  expect_names(check(recording), "imu.rate", "declares 50 Hz: the controller needs 100 Hz or more");
+}
+
 TEST(StandingVehicle, ASimulatedVehicleMayRunFasterThanTheClock) {
   VehicleRecording recording = record_standing();
   for (auto& received : recording.imu.samples)
