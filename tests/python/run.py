@@ -9,6 +9,7 @@ tests (`test_models`, `test_models.Vehicles`, `notebooks`, `types`) only those.
 import concurrent.futures
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import time
@@ -42,6 +43,8 @@ def steps(names, work):
 
 
 def main():
+    # Tests interrupt themselves, also where the shell has let this process ignore SIGINT.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     build, work = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
     work.mkdir(parents=True, exist_ok=True)
     environment = {**os.environ, "PYTHONPATH": f"{build / 'python'}:{HERE}", "MYPYPATH": str(build / "python"),
