@@ -3,9 +3,9 @@
 //
 // On the ground the floor carries what the rotors do not, and the accelerometer measures gravity whatever the thrust:
 // the ratio cannot be seen before lift-off. Lift-off shows it: thrust rises until the accelerometer measures an
-// upward acceleration that its vibration does not explain, and at that moment the lift is the weight. From then on the ratio is that of the means of the
-// measured and the modelled lift, over the time since lift-off, at most kMemory_s. It is a quotient of two signals behind one
-// filter, so that noise and the lag of the rotors do not bias it.
+// upward acceleration that its vibration does not explain, and at that moment the lift is the weight. From then on the
+// ratio is that of the means of the measured and the modelled lift, over the time since lift-off, at most kMemory_s. It
+// is a quotient of two signals behind one filter, so that noise and the lag of the rotors do not bias it.
 #pragma once
 
 #include <Eigen/Core>

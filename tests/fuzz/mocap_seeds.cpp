@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "swiftlet/io/mocap/vrpn.hpp"
-#include "tests/support/natnet_packets.hpp"
-#include "tests/support/vicon_packets.hpp"
+#include "tests/support/mocap/natnet_packets.hpp"
+#include "tests/support/mocap/vicon_packets.hpp"
 
 namespace {
 

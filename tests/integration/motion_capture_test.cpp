@@ -19,11 +19,11 @@
 
 #include "swiftlet/io/mocap/room.hpp"
 #include "tests/support/hop_mission.hpp"
-#include "tests/support/natnet_server.hpp"
+#include "tests/support/mocap/natnet_server.hpp"
+#include "tests/support/mocap/vrpn_server.hpp"
 #include "tests/support/plant_log.hpp"
 #include "tests/support/separate_processes.hpp"
 #include "tests/support/terminal.hpp"
-#include "tests/support/vrpn_server.hpp"
 
 namespace swiftlet::tests {
 namespace {

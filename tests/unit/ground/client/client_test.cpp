@@ -14,6 +14,7 @@
 #include "swiftlet/ground/client/vehicle.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/private_domain.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -21,15 +22,8 @@ namespace {
 using comms::DomainLock;
 using tests::eventually;
 using tests::Inbox;
+using tests::settings_of;
 using namespace std::chrono_literals;
-
-comms::NodeSettings settings_of(const char* name, const DomainLock& lock) {
-  comms::NodeSettings settings;
-  settings.name = name;
-  settings.domain = lock.domain();
-  settings.localhost_only = true;
-  return settings;
-}
 
 // Receives requests and optionally answers them.
 class Control {

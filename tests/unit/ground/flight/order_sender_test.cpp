@@ -8,25 +8,19 @@
 
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/private_domain.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
 using tests::eventually;
+using tests::settings_of;
 
 class NoProgress final : public Progress {
  public:
   void update(int, const std::string&) override {}
   void say(const std::string&) override {}
 };
-
-comms::NodeSettings settings_of(const char* name, const comms::DomainLock& lock) {
-  comms::NodeSettings settings;
-  settings.name = name;
-  settings.domain = lock.domain();
-  settings.localhost_only = true;
-  return settings;
-}
 
 // GIVEN an order that waits in the sender WHEN the flight is abandoned THEN it is not sent, and cannot end the landing.
 TEST(OrderSender, SendsNothingOnceTheFlightIsAbandoned) {

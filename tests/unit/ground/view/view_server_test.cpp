@@ -21,6 +21,7 @@
 #include "swiftlet/services/dds/payload.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/foxglove_client.hpp"
+#include "tests/support/private_domain.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -56,15 +57,10 @@ Answer ask(std::uint16_t port, http::request<http::string_body> request) {
 
 class Server : public testing::Test {
  protected:
-  Server() : context_(network("ground")), vehicle_(network("control")) { start({}); }
-
-  comms::NodeSettings network(const char* name) const {
-    comms::NodeSettings settings;
-    settings.name = name;
-    settings.domain = lock_.domain();
-    settings.localhost_only = true;
-    return settings;
+  Server() : context_(tests::settings_of("ground", lock_)), vehicle_(tests::settings_of("control", lock_)) {
+    start({});
   }
+
   void start(ViewSettings settings) {
     server_.reset();
     settings.port = 0;

@@ -12,7 +12,7 @@
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/mocap/capture_file.hpp"
 #include "swiftlet/io/text_file.hpp"
-#include "tests/support/natnet_packets.hpp"
+#include "tests/support/mocap/natnet_packets.hpp"
 
 namespace swiftlet::mocap::natnet {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/vicon_packets.hpp"
+#include "tests/support/mocap/vicon_packets.hpp"
 
 namespace swiftlet::mocap::vicon {
 namespace {

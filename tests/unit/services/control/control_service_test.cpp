@@ -15,6 +15,7 @@
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/private_domain.hpp"
 
 namespace swiftlet::services {
 namespace {
@@ -40,14 +41,6 @@ bool may_be_realtime() {
     granted = runtime::make_this_thread_realtime(settings).empty();
   }).join();
   return granted;
-}
-
-comms::NodeSettings settings_of(const char* name, const comms::DomainLock& lock) {
-  comms::NodeSettings settings;
-  settings.name = name;
-  settings.domain = lock.domain();
-  settings.localhost_only = true;
-  return settings;
 }
 
 // A service for which the test plays motion capture and a vehicle at rest.
@@ -95,8 +88,8 @@ class RealtimeService : public testing::Test {
   void forget_reported() { reported_ = -1; }
 
   comms::DomainLock lock_;
-  comms::Node vehicle_node_{settings_of("plant", lock_)};
-  comms::Node control_node_{settings_of("control", lock_)};
+  comms::Node vehicle_node_{tests::settings_of("plant", lock_)};
+  comms::Node control_node_{tests::settings_of("control", lock_)};
   std::atomic<int> reported_{-1};
   comms::Subscription status_ = vehicle_node_.subscribe<msg::ControlStatus>(
       topics::kControlStatus, [this](const msg::ControlStatus& status) {

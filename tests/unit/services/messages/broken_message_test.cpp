@@ -15,6 +15,7 @@
 #include "swiftlet/services/dds/participant_session.hpp"
 #include "swiftlet/services/dds/qos/profiles.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/private_domain.hpp"
 #include "tests/support/serialization.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
@@ -38,19 +39,12 @@ Bytes cut(Bytes bytes, std::size_t size) {
   return bytes;
 }
 
-NodeSettings settings(const DomainLock& lock, const char* name) {
-  NodeSettings settings;
-  settings.name = name;
-  settings.domain = lock.domain();
-  settings.localhost_only = true;
-  return settings;
-}
-
 // A peer that publishes raw bytes on one topic.
 class RawPeer {
  public:
   RawPeer(const DomainLock& lock, const std::string& topic, const std::string& type, Qos qos)
-      : session_(settings(lock, "raw"), Announcement(), std::make_shared<DatagramGuard>(), nullptr) {
+      : session_(swiftlet::tests::settings_of("raw", lock), Announcement(), std::make_shared<DatagramGuard>(),
+                 nullptr) {
     dds::Topic* const raw_topic = session_.topic("rt/kl1/" + topic, dds::TypeSupport(new RawType(type)));
     writer_ = session_.publisher->create_datawriter(raw_topic, writer_qos(qos, 0, 0, Transport::kUdp));
   }
@@ -70,7 +64,7 @@ template <class Type>
 void expect_dropped(const Topic<typename Type::type>& topic, const typename Type::type& whole,
                     const std::vector<Bytes>& broken) {
   const DomainLock lock;
-  Node node(settings(lock, "node"));
+  Node node(swiftlet::tests::settings_of("node", lock));
   Inbox<typename Type::type> inbox;
   const auto subscription =
       node.subscribe<typename Type::type>(topic, [&](const auto& message) { inbox.put(message); });

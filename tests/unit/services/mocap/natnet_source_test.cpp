@@ -14,7 +14,7 @@
 
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "tests/support/eventually.hpp"
-#include "tests/support/natnet_server.hpp"
+#include "tests/support/mocap/natnet_server.hpp"
 
 namespace swiftlet::mocap {
 namespace {

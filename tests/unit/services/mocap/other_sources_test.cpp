@@ -12,9 +12,9 @@
 #include "swiftlet/services/mocap/sources/source_options.hpp"
 #include "swiftlet/services/mocap/sources/vicon_source.hpp"
 #include "tests/support/eventually.hpp"
-#include "tests/support/natnet_packets.hpp"
+#include "tests/support/mocap/natnet_packets.hpp"
+#include "tests/support/mocap/vicon_packets.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tests/support/vicon_packets.hpp"
 
 namespace swiftlet::mocap {
 namespace {

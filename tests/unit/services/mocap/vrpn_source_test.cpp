@@ -10,7 +10,7 @@
 
 #include "swiftlet/services/mocap/sources/source_options.hpp"
 #include "tests/support/eventually.hpp"
-#include "tests/support/vrpn_server.hpp"
+#include "tests/support/mocap/vrpn_server.hpp"
 
 namespace swiftlet::mocap {
 namespace {

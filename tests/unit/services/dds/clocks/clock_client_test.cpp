@@ -13,6 +13,7 @@
 #include "swiftlet/services/dds/clocks/clock_server.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/private_domain.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -28,17 +29,9 @@ std::int64_t own_ns() {
 
 class Clocks : public testing::Test {
  protected:
-  NodeSettings settings(const char* name) const {
-    NodeSettings settings;
-    settings.name = name;
-    settings.domain = lock_.domain();
-    settings.localhost_only = true;
-    return settings;
-  }
-
   const DomainLock lock_;
-  Node vehicle_{settings("plant")};
-  Node asking_{settings("mocap")};
+  Node vehicle_{swiftlet::tests::settings_of("plant", lock_)};
+  Node asking_{swiftlet::tests::settings_of("mocap", lock_)};
 };
 
 TEST_F(Clocks, AreTranslated) {

@@ -1,4 +1,4 @@
-#include "tests/support/natnet_server.hpp"
+#include "tests/support/mocap/natnet_server.hpp"
 
 #include <arpa/inet.h>
 #include <chrono>

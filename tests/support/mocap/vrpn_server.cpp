@@ -1,4 +1,4 @@
-#include "tests/support/vrpn_server.hpp"
+#include "tests/support/mocap/vrpn_server.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "tests/support/natnet_packets.hpp"
+#include "tests/support/mocap/natnet_packets.hpp"
 
 #include <cstring>
 

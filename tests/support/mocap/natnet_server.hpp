@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "swiftlet/services/mocap/sources/sockets.hpp"
-#include "tests/support/natnet_packets.hpp"
+#include "tests/support/mocap/natnet_packets.hpp"
 
 namespace swiftlet::tests {
 
