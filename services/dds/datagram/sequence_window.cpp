@@ -1,7 +1,6 @@
 #include "swiftlet/services/dds/datagram/sequence_window.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 namespace swiftlet::comms {
 namespace {
@@ -12,16 +11,6 @@ constexpr double kRateMargin = 4.0;
 // A writer has become slower when so many samples came late for so long, without two that came at once: a backlog.
 constexpr int kLateSamples = 8;
 constexpr std::int64_t kSlower_ns = 1'000'000'000;
-
-std::size_t hash(const GuidPrefix& participant, const EntityId& entity) {
-  std::uint64_t words[2];
-  std::memcpy(words, participant.data(), 8);
-  std::memcpy(words + 1, participant.data() + 8, 4);
-  std::memcpy(reinterpret_cast<unsigned char*>(words + 1) + 4, entity.data(), 4);
-  std::uint64_t mixed = (words[0] ^ (words[1] * 0x9e3779b97f4a7c15U)) * 0xff51afd7ed558ccdU;
-  mixed ^= mixed >> 32U;
-  return static_cast<std::size_t>(mixed);
-}
 
 }  // namespace
 
@@ -71,7 +60,7 @@ void SequenceWindow::Writer::measure_rate(double silent_ns) {
 
 bool SequenceWindow::admit(const GuidPrefix& participant, const EntityId& entity, std::uint32_t number,
                            std::int64_t now_ns) {
-  const std::size_t first = hash(participant, entity);
+  const std::size_t first = hash_of(participant, entity);
   Writer* longest_silent = nullptr;
   for (std::size_t i = 0; i < kPlaces; ++i) {
     Writer& writer = writers_[(first + i) & (kWriters - 1)];
