@@ -33,7 +33,8 @@ CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size,
 const char* DatagramGuard::fault_of(const CheckedDatagram& checked, const SenderAddress& sender,
                                     const Now& now) {
   const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
-  for (std::size_t i = 0; i < checked.writer_count; ++i) {
+  const std::size_t changeable = opener_ ? 0 : checked.writer_count;  // nobody changes what is sealed
+  for (std::size_t i = 0; i < changeable; ++i) {
     const NumberedWriter& writer = checked.writers[i];
     if (!sequences_.admit(checked.source, writer.entity, writer.number, now.steady_ns))
       return "sequence number that the writer cannot have reached (8.3.5.5)";
