@@ -32,6 +32,7 @@ constexpr auto kFailsafes = 2500ms;  // after the cut: longer than each of them 
 constexpr auto kComesDown = 20s;
 constexpr auto kHeals = 20s;
 constexpr auto kStall = 60ms;
+constexpr auto kStandbyWaits = 25ms;
 constexpr double kObeys_ms = 200.0;  // the vehicle, its last command
 // A standby waits for 25 ms, and the vehicle obeys it with the next sample. The rest is room for the threads that send and
 // receive in turn on a computer that is busy.
@@ -118,7 +119,7 @@ class PartitionFlight {
     pilot_->enable_link_loss_failsafe();
   }
 
-  // Makes it again if the machine stalled, or the first controller for longer than the standby waits, whatever is cut.
+  // Makes it again if the machine stalled, for longer than a standby waits.
   CutResult make(const Cut& cut) {
     CutResult result;
     std::vector<double> repeats_ms;
@@ -126,8 +127,7 @@ class PartitionFlight {
       if (attempt > 0) repeats_ms.push_back(result.stood_still_ms);
       result = make_once(cut);
       result.repeats_ms = repeats_ms;
-      const bool valid = !result.stalled && result.standby_took_over == partition_.takes_over;
-      if (valid || fault_of(partition_, cut, result).empty()) break;
+      if (!result.stalled || fault_of(partition_, cut, result).empty()) break;
     }
     return result;
   }
@@ -151,8 +151,8 @@ class PartitionFlight {
     const std::chrono::nanoseconds flown(samples_->stamp_ns() - from_ns);
     const std::chrono::nanoseconds cable = from_.take_longest_stall();
     const std::chrono::nanoseconds clock = Clock::now() - begin - flown;
-    result.stalled = cable > kStall || clock > kStall;
     const std::chrono::nanoseconds core(cores_.take_longest_ns());
+    result.stalled = cable > kStall || clock > kStall || core > kStandbyWaits;
     result.stood_still_ms = std::chrono::duration<double, std::milli>(std::max({cable, clock, core})).count();
     result.core_stood_still_ms = std::chrono::duration<double, std::milli>(core).count();
     result.metrics = samples_->metrics(from_ns, samples_->stamp_ns());
