@@ -128,6 +128,7 @@ SupervisorInputs FlightController::Impl::inputs() const {
   inputs.vertical_specific_force_residual =
       -(specific_force_frd.z() - estimate.accelerometer_bias.z()) - lift_now();
   if (observes_lift_off()) inputs.lift_off_ns = lift.lifted_off() ? lift_off_ns : kNoLiftOffYet;
+  inputs.command_delay_s = sent_commands.delay_s();
   inputs.takeoff_inconsistent = takeoff_monitor.contradicted();
   inputs.specific_force_frd = specific_force_frd;
   inputs.rotor_speed = *std::max_element(rotors.speeds().begin(), rotors.speeds().end());
