@@ -19,8 +19,9 @@ constexpr double kFastLift = 0.75;  // of the weight
 constexpr double kFastLift_s = 0.45;
 constexpr double kLiftRate = 3.0;   // of the weight, per second
 constexpr double kMostLift = 1.5;   // of the weight
-constexpr double kMostLead = 0.06;  // of the weight, by which the commanded lift leads the obeyed one: no faster than this in the delay
+constexpr double kMostLead = 0.08;  // of the weight, by which the commanded lift may lead the obeyed one
 constexpr double kAwaitLiftOff_s = 0.8;    // after the greatest lift
+constexpr double kSettle_s = 0.09;         // after the vehicle has answered its lift-off: its thrust is steady again
 constexpr double kRiseSpeed = 0.05;        // m/s, from lift-off until it is clear of the ground
 constexpr double kMostRiseSpeed = 0.2;     // m/s
 constexpr double kClearHeight_m = 0.003;   // above the ground
@@ -144,7 +145,9 @@ void advance_spool_up(const GuidanceContext& context) {
   if (lifted_off && !state.path.moving)
     rise_from(context, state.path.at(context.now_ns).position_ned, kRiseSpeed, context.now_ns);
   const double clear_z_ned = state.ground_z_ned - kClearHeight_m;
-  if (lifted_off && on_time && place_ned.z() < clear_z_ned) {
+  const bool settled =
+      lifted_off && elapsed_s(context.lift_off_ns, context.now_ns) >= context.command_delay_s + kSettle_s;
+  if (settled && on_time && place_ned.z() < clear_z_ned) {
     const double speed = std::clamp(-context.estimate.velocity_ned.z(), 0.0, kMostRiseSpeed);
     const double late_s = elapsed - kSpoolUp_s;
     Eigen::Vector3d place_then_ned = place_ned;
