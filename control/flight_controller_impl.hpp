@@ -129,7 +129,7 @@ struct FlightController::Impl {
   double thrust_n = 0.0;           // collective thrust of the command, at other levels
   plant::ObeyedCommand obeyed;     // as the vehicle reports
   SentCommands sent_commands;
-  plant::VehicleCommand sent;      // the command at the level
+  plant::VehicleCommand sent;  // the command at the level
   Reference reference;
   Heading heading;  // of the reference's yaw
   AttitudeSetpoint attitude_setpoint;

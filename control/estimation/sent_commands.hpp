@@ -12,9 +12,10 @@ namespace swiftlet::control {
 
 class SentCommands {
  public:
-  static constexpr std::size_t kCapacity = 256;    // 0.256 s at 1 kHz: an older command is not obeyed (docs/vehicle.md)
-  static constexpr double kLongestDelay_s = 0.2;   // longer ones count as this
-  static constexpr double kMemory_s = 0.3;         // of the mean delay
+  static constexpr std::size_t kCapacity =
+      256;  // 0.256 s at 1 kHz: an older command is not obeyed (docs/vehicle.md)
+  static constexpr double kLongestDelay_s = 0.2;  // longer ones count as this
+  static constexpr double kMemory_s = 0.3;        // of the mean delay
 
   // The command that answers the sample of this stamp, and its collective thrust, N. Ignores a stamp that is not newer than the last.
   void sent(std::int64_t stamp_ns, double thrust_n);

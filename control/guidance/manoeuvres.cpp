@@ -17,11 +17,11 @@ constexpr double kSpoolUpLift = 0.95;  // of the weight, at the end of the spool
 // Where lift-off is observed, thrust rises fast up to a lift below that of any vehicle, then slowly until lift-off.
 constexpr double kFastLift = 0.75;  // of the weight
 constexpr double kFastLift_s = 0.45;
-constexpr double kLiftRate = 3.0;   // of the weight, per second
-constexpr double kMostLift = 1.5;   // of the weight
-constexpr double kMostLead = 0.08;  // of the weight, by which the commanded lift may lead the obeyed one
-constexpr double kAwaitLiftOff_s = 0.8;    // after the greatest lift
-constexpr double kSettle_s = 0.09;         // after the vehicle has answered its lift-off: its thrust is steady again
+constexpr double kLiftRate = 3.0;        // of the weight, per second
+constexpr double kMostLift = 1.5;        // of the weight
+constexpr double kMostLead = 0.08;       // of the weight, by which the commanded lift may lead the obeyed one
+constexpr double kAwaitLiftOff_s = 0.8;  // after the greatest lift
+constexpr double kSettle_s = 0.09;  // after the vehicle has answered its lift-off: its thrust is steady again
 constexpr double kRiseSpeed = 0.05;        // m/s, from lift-off until it is clear of the ground
 constexpr double kMostRiseSpeed = 0.2;     // m/s
 constexpr double kClearHeight_m = 0.003;   // above the ground
