@@ -78,6 +78,8 @@ TEST_P(Levels, TheTakeOffEndsIfTheRotorsNeverRun) {
   request.kind = control::RequestKind::kTakeoff;
   request.position_ned.z() = -1.0;
   ASSERT_TRUE(loop.controller.request(request).accepted);
+  run(loop, 0.1);
+  ASSERT_EQ(mode(loop), control::Mode::kTakingOff);
   ASSERT_TRUE(loop.step_until([&] { return mode(loop) == control::Mode::kDisarmed; }, 10.5));
   EXPECT_GT(loop.time_s(), 10.9);
   EXPECT_EQ(loop.controller.status().reason, control::Reason::kRotorsNotRunning);
