@@ -23,7 +23,8 @@ constexpr int kUnusableToFault = 200;  // unusable IMU samples in a row to a fau
 constexpr double kDescentGain = 4.0;   // 1/s, vertical speed error to acceleration, level descent
 constexpr double kBrakeGain = 2.0;     // 1/s, the same for the horizontal speed
 constexpr double kDescentLimit = 2.0;  // m/s^2, of that acceleration
-// Of the lag of the attitude loop, by which the law kLead leads. A longer lead helps little more in gusts, and passes on more noise.
+// Of the lag of the attitude loop, by which the law kLead leads. A longer lead helps little more in gusts, and passes
+// on more noise.
 constexpr double kLeadShare = 2.0 / 3.0;
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
@@ -263,8 +264,8 @@ double FlightController::Impl::ground_effect_now() const {
   return plant::ground_effect(of.rotor_radius_m, of.rotor_height_m + above_m);
 }
 
-// The disturbance, horizontally nearer to the time at which the tilt that is commanded now will have been reached. Slowly changing angles
-// follow with the lag k_rate / k_angle.
+// The disturbance, horizontally nearer to the time at which the tilt that is commanded now will have been reached.
+// Slowly changing angles follow with the lag k_rate / k_angle.
 Vector3d FlightController::Impl::expected_disturbance() const {
   Vector3d expected = disturbance.acceleration_ned();
   if (settings.rough_air.law != DisturbanceLaw::kLead) return expected;

@@ -45,8 +45,8 @@ TEST_P(Levels, FliesWithoutMeasuredRotorsAndWithAWrongMass) {
   EXPECT_TRUE(loop.plant.on_ground());
 }
 
-// GIVEN a vehicle that starts its rotors 3 s later than it is told to THEN control commands no thrust until then, and flies as from
-// there on; at level actuators, whose vehicle does as it is told, it does not wait.
+// GIVEN a vehicle that starts its rotors 3 s later than it is told to THEN control commands no thrust until then, and
+// flies as from there on; at level actuators, whose vehicle does as it is told, it does not wait.
 TEST_P(Levels, TheTakeOffBeginsWhenTheRotorsRun) {
   ClosedLoop loop(vehicle_, world_, settings_, 1);
   ASSERT_TRUE(loop.step_until([&] { return loop.time_s() > 1.0; }, 2.0));

@@ -369,7 +369,8 @@ TEST_F(Flight, RequestTakesEffectInItsStep) {
   EXPECT_EQ(control_setpoint_.control_mode, ControlMode::kSpoolUp);
 }
 
-// GIVEN a take-off whose lift-off is observed WHEN the vehicle has left the ground THEN nothing stops its rotors as on the ground.
+// GIVEN a take-off whose lift-off is observed WHEN the vehicle has left the ground THEN nothing stops its rotors as
+// on the ground.
 TEST_F(Flight, IsInTheAirFromItsLiftOffOn) {
   const auto lift_off = [&](bool observed) {
     ASSERT_TRUE(ask(RequestKind::kStop).accepted);
