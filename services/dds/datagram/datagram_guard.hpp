@@ -12,6 +12,7 @@
 #include "swiftlet/services/dds/datagram/datagram_seal.hpp"
 #include "swiftlet/services/dds/datagram/participant_admission.hpp"
 #include "swiftlet/services/dds/datagram/refusal_log.hpp"
+#include "swiftlet/services/dds/datagram/reply_check.hpp"
 #include "swiftlet/services/dds/datagram/sequence_window.hpp"
 #include "swiftlet/services/runtime/priority_inheriting_mutex.hpp"
 
@@ -24,8 +25,8 @@ struct Now {
   static Now read();
 };
 
-// Thread-safe: shared by the transports of a participant and their receiving threads. Allocates only when constructed, and
-// with security for announcements.
+// Thread-safe: shared by the transports of a participant and their receiving threads. Allocates only when constructed, for
+// fragments that are sent, and with security for announcements.
 class DatagramGuard {
  public:
   // What a participant said last about itself. Nothing proves it.
@@ -55,6 +56,9 @@ class DatagramGuard {
   // Turns a datagram of the middleware into a sealed one. Requires seals().
   void seal(std::vector<std::uint8_t>& datagram, const Now& now);
 
+  // Notes what the replies to a datagram have to agree with. data: as the middleware sends it, or its beginning.
+  void note_sent(const std::uint8_t* data, std::size_t size);
+
   RefusalLog& refusals() { return refusals_; }
 
  private:
@@ -69,6 +73,7 @@ class DatagramGuard {
       mutex_;  // guards the rest; all threads that receive take it, for each datagram
   std::optional<DatagramOpener> opener_;
   SequenceWindow sequences_;
+  ReplyCheck replies_;
   ParticipantAdmission participants_;
   std::map<GuidPrefix, Announcement> announcements_;  // the longest silent one is replaced
 };
