@@ -58,6 +58,18 @@ rtps::GUID_t participant_guid(const rtps::GuidPrefix_t& participant) {
   return {participant, rtps::c_EntityId_RTPSParticipant};
 }
 
+rtps::GUID_t participant_guid(const GuidPrefix& participant) {
+  rtps::GuidPrefix_t prefix;
+  std::copy(participant.begin(), participant.end(), prefix.value);
+  return participant_guid(prefix);
+}
+
+GuidPrefix bytes_of(const rtps::GuidPrefix_t& participant) {
+  GuidPrefix bytes;
+  std::copy_n(participant.value, bytes.size(), bytes.begin());
+  return bytes;
+}
+
 }  // namespace
 
 Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& vehicles)
@@ -68,12 +80,14 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
   check(settings);
   if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
   if (!settings.security.empty()) refused_peers_.emplace();
+  joined_ns_ = Now::read().steady_ns;
   session_ = std::make_unique<ParticipantSession>(settings, announcement_, guard_, this);
   periodic_task_.emplace(kCheckPeriod, [this] {
     rejoin_if_rediscovery_failed();
     guard_->refusals().write_due(Clock::now());
+    const std::lock_guard<std::mutex> session_lock(session_mutex_);
     const std::lock_guard<std::mutex> lock(peers_mutex_);
-    refuse_silent_strangers();
+    if (session_ != nullptr) refuse_silent_strangers(session_->participant->guid());
     if (refused_peers_) refused_peers_->write_due(Clock::now());
     conflict_log_.write_due(Clock::now());
   });
@@ -161,6 +175,7 @@ void Participant::Impl::leave() {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   peers_.clear();
   strangers_.clear();
+  joined_ns_ = Now::read().steady_ns;
   authenticated_.clear();
   writers_.clear();
   readers_.clear();
@@ -228,7 +243,7 @@ void Participant::Impl::on_participant(const Guid& guid, const std::string& name
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   const Peer peer{name, from_user_data(user_data)};
   if (is_authenticated(guid)) return update_peer(guid, peer);
-  strangers_.emplace(guid, Stranger{peer, Clock::now()}).first->second.peer = peer;
+  strangers_[guid] = peer;
 }
 
 void Participant::Impl::on_participant_gone(const Guid& guid, bool said_goodbye) {
@@ -249,10 +264,14 @@ void Participant::Impl::on_authentication(const Guid& guid, bool authenticated) 
   if (authenticated) {
     authenticated_.insert(guid);
     if (stranger == strangers_.end()) return;
-    update_peer(guid, stranger->second.peer);
+    update_peer(guid, stranger->second);
     strangers_.erase(stranger);
   } else {
-    refuse(guid, stranger == strangers_.end() ? Peer{} : stranger->second.peer, "");
+    const auto heard = guard_->announcements(Now::read());
+    const auto said = heard.find(bytes_of(guid.guidPrefix));
+    refuse(guid,
+           said == heard.end() ? Peer{} : Peer{said->second.name, from_user_data(said->second.user_data)},
+           "");
   }
 }
 
@@ -266,10 +285,15 @@ void Participant::Impl::refuse(const Guid& guid, const Peer& peer, const char* r
 }
 
 // Who refuses this process does not answer it. Neither is told why.
-void Participant::Impl::refuse_silent_strangers() {
-  for (const auto& [guid, stranger] : strangers_) {
-    if (Clock::now() - stranger.since > kHandshakePatience)
-      refuse(guid, stranger.peer, ": it does not complete the handshake");
+void Participant::Impl::refuse_silent_strangers(const Guid& own) {
+  if (!refused_peers_) return;
+  const Now now = Now::read();
+  for (const auto& [participant, said] : guard_->announcements(now)) {
+    const Guid guid = participant_guid(participant);
+    if (guid == own || is_authenticated(guid)) continue;
+    if (now.steady_ns - std::max(said.since_ns, joined_ns_) >
+        kHandshakePatience / std::chrono::nanoseconds(1))
+      refuse(guid, {said.name, from_user_data(said.user_data)}, ": it does not complete the handshake");
   }
 }
 

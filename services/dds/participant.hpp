@@ -92,7 +92,7 @@ struct Participant::Impl final : public DiscoveryListener {
   // All of these require peers_mutex_.
   bool is_authenticated(const Guid& guid) const;
   void refuse(const Guid& guid, const Peer& peer, const char* reason);
-  void refuse_silent_strangers();
+  void refuse_silent_strangers(const Guid& own);
   void update_peer(const Guid& guid, const Peer& peer);  // a known peer may serve more vehicles now
   void drop_peer(const Guid& guid, bool said_goodbye);
   void add_endpoint(RemoteEndpoints& endpoints, const Guid& guid, RemoteEndpoint endpoint,
@@ -123,12 +123,9 @@ struct Participant::Impl final : public DiscoveryListener {
   std::function<void(const std::string&)> on_lost_source_;
   // Of any vehicle; with security only authenticated ones, whose announcements are not encrypted.
   std::map<Guid, Peer> peers_;
-  // With security.
-  struct Stranger {
-    Peer peer;
-    std::chrono::steady_clock::time_point since;
-  };
-  std::map<Guid, Stranger> strangers_;  // announced, not authenticated
+  // With security. Fast DDS 3 tells of participants only when they are authenticated; guard_ knows the others.
+  std::map<Guid, Peer> strangers_;  // not authenticated yet
+  std::int64_t joined_ns_ = 0;      // of the clock of guard_
   std::set<Guid> authenticated_;
   RemoteEndpoints writers_;  // of other processes, any vehicle
   RemoteEndpoints readers_;

@@ -89,6 +89,8 @@ ParticipantSession::ParticipantSession(const NodeSettings& settings, const Annou
     throw std::runtime_error("cannot join DDS domain " + std::to_string(settings.domain) +
                              ": no port could be opened or the transport could not be set up");
   }
+  // Fast DDS 3 remembers the addresses of the host from the first participant of the process on; this lets it read them again.
+  participant->set_qos(participant->get_qos());
   publisher = participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
   subscriber = participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
   if (publisher == nullptr || subscriber == nullptr) {
