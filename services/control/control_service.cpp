@@ -232,6 +232,11 @@ Role ControlService::take_role(const VehicleSample& sample) {
     const bool flew = sample.obeyed.reported && sample.obeyed.any;
     if (active && flew && !failover_.continues()) loop_.attempt_restart_in_air();
   }
+  Takeover takeover;
+  if (failover_.take_takeover(takeover)) {
+    takeover_.put(takeover);
+    wake_.post();
+  }
   return role;
 }
 
@@ -291,6 +296,8 @@ void ControlService::run(const std::atomic<bool>& stop) {
   while (!stop.load(std::memory_order_relaxed)) {
     adopt_levels();
     update_strength();
+    Takeover takeover;
+    if (takeover_.take(takeover)) spdlog::warn("{}", to_string(takeover));
     const StreamAges ages = stream_ages();
     publish_pending_stop(ages);
     telemetry_.set_realtime(is_realtime());
