@@ -232,6 +232,11 @@ Role ControlService::take_role(const VehicleSample& sample) {
     const bool flew = sample.obeyed.reported && sample.obeyed.any;
     if (active && flew && !failover_.continues()) loop_.attempt_restart_in_air();
   }
+  Takeover takeover;
+  if (failover_.take_takeover(takeover)) {
+    takeover_.put(takeover);
+    wake_.post();
+  }
   return role;
 }
 
@@ -269,6 +274,7 @@ void ControlService::on_ground_link(const msg::GroundLink& message) {
 
 void ControlService::answer(const VehicleSample& sample, Role role) {
   const std::int64_t arrived_ns = runtime::monotonic_ns();
+  loop_.set_obeyed(sample.obeyed);
   last_answer_ = std::visit(
       [&](const auto& motion) { return loop_.step(motion, arrived_ns, role, failover_.followed_term()); },
       sample.motion);
@@ -291,6 +297,8 @@ void ControlService::run(const std::atomic<bool>& stop) {
   while (!stop.load(std::memory_order_relaxed)) {
     adopt_levels();
     update_strength();
+    Takeover takeover;
+    if (takeover_.take(takeover)) spdlog::warn("{}", to_string(takeover));
     const StreamAges ages = stream_ages();
     publish_pending_stop(ages);
     telemetry_.set_realtime(is_realtime());

@@ -115,6 +115,7 @@ class ControlService {
       step_mutex_;  // of the threads of IMU samples and of the vehicle's estimates; one of both is refused
   Arrivals imu_arrivals_, pose_arrivals_, battery_arrivals_;
   boost::lockfree::spsc_queue<Heartbeat, boost::lockfree::capacity<64>> heartbeats_;
+  runtime::LatestValue<Takeover> takeover_;  // to the thread of run()
   std::atomic<bool> active_{false};
   std::atomic<std::uint32_t> wanted_strength_;    // DDS ownership strength of the commands
   std::atomic<std::int64_t> stepped_down_ns_{0};  // monotonic

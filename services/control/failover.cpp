@@ -72,17 +72,52 @@ Role Failover::sample(std::int64_t stamp_ns, const plant::ObeyedCommand& obeyed,
         obeyed.any && obeyed.term > own_term_ && silence_ns_ <= least_patience_ns(obeyed);
     if (another_flies) step_down(obeyed.term);
   } else if (silence_ns_ > patience_ns(obeyed, now_ns) && !is_on_trial()) {
-    continues_ = knows_flight(now_ns);
-    own_term_ = next_term();
-    newest_term_ = own_term_;
-    role_ = Role::kActive;
+    take_over(stamp_ns, obeyed, now_ns);
   }
+  watch_takeover(stamp_ns, obeyed);
   return role_;
+}
+
+void Failover::take_over(std::int64_t stamp_ns, const plant::ObeyedCommand& obeyed, std::int64_t now_ns) {
+  continues_ = knows_flight(now_ns);
+  takeover_ = {silence_ns_,
+               patience_ns(obeyed, now_ns),
+               loop_delay_.figures().p95_ns,
+               rank(now_ns),
+               continues_,
+               silence_ns_,
+               longest_pause_ns_};
+  taken_over_ns_ = stamp_ns;
+  const bool from_another = obeyed_term_ != 0 || followed_term_ != 0;
+  takeover_state_ = from_another ? TakeoverState::kWatched : TakeoverState::kNone;
+  own_term_ = next_term();
+  newest_term_ = own_term_;
+  role_ = Role::kActive;
+}
+
+void Failover::watch_takeover(std::int64_t stamp_ns, const plant::ObeyedCommand& obeyed) {
+  if (takeover_state_ != TakeoverState::kWatched) return;
+  takeover_.obeyed = obeyed.any && obeyed.term == own_term_;
+  if (!takeover_.obeyed) {
+    takeover_.longest_silence_ns = std::max(takeover_.longest_silence_ns, silence_ns_);
+    takeover_.longest_pause_ns = std::max(takeover_.longest_pause_ns, longest_pause_ns_);
+  }
+  const bool is_over = takeover_.obeyed || !obeyed.any || role_ != Role::kActive ||
+                       stamp_ns < taken_over_ns_ || stamp_ns - taken_over_ns_ > kTrialNs;
+  if (is_over) takeover_state_ = TakeoverState::kComplete;
+}
+
+bool Failover::take_takeover(Takeover& takeover) {
+  if (takeover_state_ != TakeoverState::kComplete) return false;
+  takeover_state_ = TakeoverState::kNone;
+  takeover = takeover_;
+  return true;
 }
 
 void Failover::pass_time(std::int64_t stamp_ns, const plant::ObeyedCommand& obeyed, std::int64_t now_ns) {
   const std::int64_t elapsed_ns = sampled_ ? stamp_ns - last_stamp_ns_ : 0;
-  const std::int64_t waited_ns = now_ns - last_now_ns_;
+  const std::int64_t waited_ns = sampled_ ? now_ns - last_now_ns_ : 0;
+  const std::int64_t silent_before_ns = silence_ns_;
   if (obeyed.any) {
     silence_ns_ = stamp_ns - obeyed.stamp_ns;
   } else if (elapsed_ns < 0) {
@@ -91,6 +126,7 @@ void Failover::pass_time(std::int64_t stamp_ns, const plant::ObeyedCommand& obey
     // A burst of samples that waited for this process adds next to nothing.
     silence_ns_ += std::min({elapsed_ns, waited_ns, kMaxStepNs});
   }
+  longest_pause_ns_ = silence_ns_ > silent_before_ns ? std::max(longest_pause_ns_, waited_ns) : waited_ns;
   followed_for_ns_ += std::clamp<std::int64_t>(elapsed_ns, 0, kMaxStepNs);
   sampled_ = true;
   last_stamp_ns_ = stamp_ns;

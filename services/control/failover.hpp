@@ -7,6 +7,7 @@
 
 #include "swiftlet/plant/model/samples.hpp"
 #include "swiftlet/services/control/loop_delay.hpp"
+#include "swiftlet/services/control/takeover.hpp"
 
 namespace swiftlet::services {
 
@@ -53,6 +54,9 @@ class Failover {
   // it.
   bool continues() const { return continues_; }
 
+  // Returns true once for each takeover from another controller, when it is known when the vehicle obeyed it.
+  bool take_takeover(Takeover& takeover);
+
   // Silence of the active controller, on the vehicle's clock, after which a standby takes over: the first in
   // rank after kPatienceNs, each further one kPerRankNs later. A standby that does not know the state of the
   // flight waits for kUnknownFlightPatienceNs: those that know it take over first. Over a slow network
@@ -83,6 +87,8 @@ class Failover {
   std::int64_t least_patience_ns(const plant::ObeyedCommand& obeyed) const;
   std::int64_t patience_ns(const plant::ObeyedCommand& obeyed, std::int64_t now_ns) const;
   int rank(std::int64_t now_ns) const;
+  void take_over(std::int64_t stamp_ns, const plant::ObeyedCommand& obeyed, std::int64_t now_ns);
+  void watch_takeover(std::int64_t stamp_ns, const plant::ObeyedCommand& obeyed);
 
   std::uint64_t controller_;
   int failover_priority_;
@@ -95,11 +101,17 @@ class Failover {
   std::int64_t followed_for_ns_ = 0;  // vehicle's clock
   bool continues_ = false;
 
+  enum class TakeoverState { kNone, kWatched, kComplete };
+  Takeover takeover_;
+  std::int64_t taken_over_ns_ = 0;  // vehicle's clock
+  TakeoverState takeover_state_ = TakeoverState::kNone;
+
   LoopDelay loop_delay_;
   bool sampled_ = false;
   std::int64_t last_stamp_ns_ = 0;
   std::int64_t last_now_ns_ = 0;
   std::int64_t silence_ns_ = 0;
+  std::int64_t longest_pause_ns_ = 0;         // between two samples in this silence, monotonic
   std::array<Heartbeat, kMaxPeers> peers_{};  // controller 0: unused entry
 };
 

@@ -353,6 +353,18 @@ struct OutgoingDatagram {
 #endif
   std::uint32_t size;
 
+  struct Piece {
+    const rtps::octet* bytes;
+    std::uint32_t size;
+  };
+  Piece first_piece() const {
+#if SWIFTLET_FAST_DDS_3
+    if (pieces.empty()) return {nullptr, 0};
+    return {static_cast<const rtps::octet*>(pieces.front().buffer), pieces.front().size};
+#else
+    return {bytes, size};
+#endif
+  }
   void copy_to(std::vector<rtps::octet>& copy) const {
 #if SWIFTLET_FAST_DDS_3
     copy.clear();

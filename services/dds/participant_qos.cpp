@@ -59,8 +59,11 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
 
   if (kHasFlowControllers) qos.flow_controllers().push_back(long_message_flow());
 
-  // Announcements of forged participants must not fill the memory. When the limit is reached, Fast DDS ignores newcomers.
+  // Forged announcements must not fill the memory. When a limit is reached, Fast DDS ignores newcomers.
   qos.allocation().participants = {0, kMostParticipants, 1};
+  // Fast DDS bounds the endpoints of all participants together, at so many for each.
+  qos.allocation().readers = {0, kMostEndpoints / kMostParticipants, 1};
+  qos.allocation().writers = {0, kMostEndpoints / kMostParticipants, 1};
 
   UDPv4TransportDescriptor udp = profile.udp;
   udp.non_blocking_send = true;  // a full socket buffer drops a sample instead of blocking the sender

@@ -26,9 +26,9 @@
 #include "swiftlet/services/runtime/process.hpp"
 #include "tests/bench/longest_steps.hpp"
 #include "tests/bench/process_usage.hpp"
-#include "tests/bench/stall_witness.hpp"
 #include "tests/bench/table.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/stall_witness.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet {
@@ -337,7 +337,7 @@ FleetFigures hover(int vehicles, int rate_hz, bool realtime, double seconds, boo
   fleet.begin();
   const auto start = ground::Clock::now();
   const std::array<Usage, 3> before = fleet.usage();
-  std::optional<bench::StallWitness> witness;
+  std::optional<tests::StallWitness> witness;
   if (with_witness) witness.emplace(1'000'000'000 / rate_hz);
   const auto window = std::chrono::milliseconds(std::lround(1e3 * seconds));
   if (tests::eventually([&] { return fleet.has_ended(); }, window, kLook))

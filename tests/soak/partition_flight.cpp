@@ -15,6 +15,7 @@
 #include "swiftlet/ground/client/controllers.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/network_relay.hpp"
+#include "tests/support/stall_witness.hpp"
 
 namespace swiftlet::soak {
 namespace {
@@ -31,10 +32,14 @@ constexpr auto kFailsafes = 2500ms;  // after the cut: longer than each of them 
 constexpr auto kComesDown = 20s;
 constexpr auto kHeals = 20s;
 constexpr auto kStall = 60ms;
+constexpr auto kStandbyWaits = 25ms;
 constexpr double kObeys_ms = 200.0;  // the vehicle, its last command
-constexpr double kTakeover_ms =
-    280.0;  // a standby waits for at most 250 ms, if commands need long, and takes its turn
+// A standby waits for 25 ms, and the vehicle obeys it with the next sample. The rest is room for the threads that send and
+// receive in turn on a computer that is busy.
+constexpr double kTakeover_ms = 60.0;
 constexpr int kAttempts = 4;
+constexpr int kVehiclePriority = 60;  // of the thread of swiftlet-plant that takes the commands
+constexpr std::int64_t kSample_ns = 2'000'000;
 constexpr double kFall_m_s = 1.0;  // faster than any descent
 
 using Host = NetworkFlight::Host;
@@ -98,7 +103,8 @@ class PartitionFlight {
       : partition_(partition),
         hosts_(folder),
         from_(hosts_.network(), partition.from, {}),
-        to_(hosts_.network(), partition.to, {}) {
+        to_(hosts_.network(), partition.to, {}),
+        cores_(kSample_ns, kVehiclePriority) {
     hosts_.start(1, {}, NetworkFlight::kMocap);
     observer_ = client_on(hosts_.network(), NetworkFlight::kVehicle, "observer");
     observer_->hear_controllers();
@@ -113,19 +119,22 @@ class PartitionFlight {
     pilot_->enable_link_loss_failsafe();
   }
 
-  // Makes it again if the machine stalled, or the first controller for longer than the standby waits, whatever is cut.
+  // Makes it again if the machine stalled, for longer than a standby waits.
   CutResult make(const Cut& cut) {
     CutResult result;
+    std::vector<double> repeats_ms;
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      if (attempt > 0) repeats_ms.push_back(result.stood_still_ms);
       result = make_once(cut);
-      const bool valid = !result.stalled && result.standby_took_over == partition_.takes_over;
-      if (valid || fault_of(partition_, cut, result).empty()) break;
+      result.repeats_ms = repeats_ms;
+      if (!result.stalled || fault_of(partition_, cut, result).empty()) break;
     }
     return result;
   }
 
  private:
   CutResult make_once(const Cut& cut) {
+    cores_.take_longest_ns();  // also before the cut: the standby waits for as long as commands needed lately
     const auto flies = [this] { return mode() == ControlMode::kMission && !standby_flies(); };
     const auto flies_side = [this] { return samples_->z_ned() < -0.98 && samples_->speed() > 0.5; };
     do {
@@ -140,7 +149,12 @@ class PartitionFlight {
     const std::int64_t from_ns = samples_->stamp_ns();
     result.outcome = outcome_of(cut, result.reasons);
     const std::chrono::nanoseconds flown(samples_->stamp_ns() - from_ns);
-    result.stalled = from_.take_longest_stall() > kStall || Clock::now() - begin - flown > kStall;
+    const std::chrono::nanoseconds cable = from_.take_longest_stall();
+    const std::chrono::nanoseconds clock = Clock::now() - begin - flown;
+    const std::chrono::nanoseconds core(cores_.take_longest_ns());
+    result.stalled = cable > kStall || clock > kStall || core > kStandbyWaits;
+    result.stood_still_ms = std::chrono::duration<double, std::milli>(std::max({cable, clock, core})).count();
+    result.core_stood_still_ms = std::chrono::duration<double, std::milli>(core).count();
     result.metrics = samples_->metrics(from_ns, samples_->stamp_ns());
     result.standby_took_over = standby_flies();
     result.healed = eventually([this] { return healed(); }, kHeals, 20ms);
@@ -258,6 +272,7 @@ class PartitionFlight {
   const Partition& partition_;
   NetworkFlight hosts_;
   tests::NetworkRelay from_, to_;
+  tests::StallWitness cores_;
   std::unique_ptr<ground::Client> observer_;
   std::unique_ptr<tests::FlightSamples> samples_;  // of the observer
   std::unique_ptr<ground::Client> pilot_;
@@ -299,8 +314,10 @@ std::string fault_of(const Partition& partition, const Cut& cut, const CutResult
     return partition.takes_over ? "the standby did not take over" : "the standby took over";
   if (result.metrics.changes_of_controller != (partition.takes_over ? 1 : 0))
     return fmt::format("{} changes of the controller", result.metrics.changes_of_controller);
-  if (cut.outcome != Outcome::kFalls && result.metrics.longest_gap_ms > partition.longest_gap_ms)
-    return fmt::format("expected: at most {} ms without a new command", partition.longest_gap_ms);
+  const double longest_gap_ms =
+      partition.longest_gap_ms + (partition.takes_over ? result.core_stood_still_ms : 0.0);
+  if (cut.outcome != Outcome::kFalls && result.metrics.longest_gap_ms > longest_gap_ms)
+    return fmt::format("expected: at most {:.0f} ms without a new command", longest_gap_ms);
   if ((cut.outcome == Outcome::kFliesOn ? result.metrics.largest_deviation_m
                                         : result.metrics.final_distance_m) > cut.within_m)
     return fmt::format("expected: within {} m", cut.within_m);
@@ -308,6 +325,15 @@ std::string fault_of(const Partition& partition, const Cut& cut, const CutResult
   if (!result.had_priority) return "the real-time priority was not granted";
   if (!result.priority_kept) return "the real-time priority was lost";
   return "";
+}
+
+std::string repeats_of(const CutResult& result) {
+  std::string text;
+  for (const double ms : result.repeats_ms) text += fmt::format("{}{:.0f} ms", text.empty() ? "" : ", ", ms);
+  const std::size_t count = result.repeats_ms.size();
+  return count == 0 ? ""
+                    : fmt::format("{} repeat{} because the computer stalled: {}", count,
+                                  count == 1 ? "" : "s", text);
 }
 
 void fly_through(const Partition& partition, const std::filesystem::path& folder,

@@ -1,5 +1,6 @@
 // `./dev soak partition`: each row of the table is a test case, with a check for each cut.
 #include <algorithm>
+#include <cstdio>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -20,12 +21,14 @@ void expect_as_in_the_table(NetworkFlight::Host from, NetworkFlight::Host to, bo
   int cuts = 0;
   fly_through(*row, folder.path(), [&](const Cut& cut, const CutResult& result) {
     ++cuts;
+    if (const std::string repeats = repeats_of(result); !repeats.empty())
+      std::printf("%s: %d ms cut, %s\n", row->name().c_str(), cut.ms, repeats.c_str());
     EXPECT_EQ(fault_of(*row, cut, result), "")
         << row->name() << ", " << cut.ms
         << " ms: " << (result.outcome ? to_string(*result.outcome) : "neither") << " (" << result.reasons
-        << "), " << result.metrics.longest_gap_ms << " ms without a new command, "
-        << result.metrics.largest_deviation_m << " m off the reference, " << result.metrics.final_distance_m
-        << " m from the place of the cut\n"
+        << "), " << result.metrics.longest_gap_ms << " ms without a new command (a core stood still for "
+        << result.core_stood_still_ms << " ms), " << result.metrics.largest_deviation_m
+        << " m off the reference, " << result.metrics.final_distance_m << " m from the place of the cut\n"
         << result.log;
   });
   EXPECT_EQ(cuts, 4);

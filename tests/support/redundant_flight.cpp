@@ -5,6 +5,9 @@
 #include <csignal>
 #include <stdexcept>
 
+#include <fmt/core.h>
+
+#include "swiftlet/control/types/mode.hpp"
 #include "tests/support/eventually.hpp"
 
 namespace swiftlet::tests {
@@ -127,7 +130,14 @@ int RedundantFlight::active_count() const { return count(msg::ControllerState_Co
 int RedundantFlight::standby_count() const { return count(msg::ControllerState_Constants::STANDBY); }
 
 void RedundantFlight::wait(const char* what, const std::function<bool()>& predicate) const {
-  if (!eventually(predicate)) throw std::runtime_error(std::string("timed out: ") + what);
+  if (eventually(predicate)) return;
+  const ground::View view = client_.view();
+  const msg::ControlStatus& status = view.control.message;
+  throw std::runtime_error(
+      fmt::format("timed out: {}; the ground has mode {} ({}), {:.1f} s old, at z {:.2f} m, {:.1f} s old",
+                  what, control::to_string(static_cast<control::Mode>(status.mode())),
+                  status.reason().c_str(), view.control.age_s(ground::Clock::now()),
+                  view.truth.message.position_ned()[2], view.truth.age_s(ground::Clock::now())));
 }
 
 void RedundantFlight::wait_for_roles(int active, int standby) const {

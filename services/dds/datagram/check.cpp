@@ -26,8 +26,6 @@ constexpr std::uint32_t kSmallestFragment = 1024;
 constexpr std::uint32_t kSmallestLastFragment = 4;
 // Fast DDS keeps each sample of a gap in memory.
 constexpr std::uint32_t kLongestGap = 256;
-// A discovery server skips all announcements that do not concern a client.
-constexpr std::uint32_t kLongestBuiltinGap = 65'536;
 constexpr std::uint32_t kMostNumbers = 256;  // of a set (9.4.2.6)
 
 struct Submessage {
@@ -58,11 +56,11 @@ EntityId entity_id(ByteReader& in) {
   return entity;
 }
 
-// The part of a set of numbers that follows its first number.
-bool skip_bitmap(ByteReader& in) {
+// Returns how many numbers the part of a set that follows its first number is about.
+std::uint32_t skip_bitmap(ByteReader& in) {
   const std::uint32_t numbers = in.u32();
   in.skip(numbers <= kMostNumbers ? (numbers + 31) / 32 * 4 : 0);
-  return numbers <= kMostNumbers;
+  return numbers;
 }
 
 // With security, what may stand outside an encrypted message: announcements, handshakes, and what is itself encrypted.
@@ -99,7 +97,7 @@ class DatagramCheck {
   const char* check_payload(Submessage& submessage, const ListContext& context, bool names_key);
   const char* check_data_frag(Submessage& submessage);
   const char* check_fragments(ByteReader& body, std::uint64_t& payload_bytes);
-  const char* note(const EntityId& writer, std::uint32_t number);
+  const char* note(const EntityId& writer, std::uint32_t number, std::uint32_t gap_end = 0);
 
   const std::uint8_t* begin_;
   const DatagramLimits& limits_;
@@ -185,24 +183,25 @@ const char* DatagramCheck::check_body(Submessage& submessage) {
   }
 }
 
-const char* DatagramCheck::note(const EntityId& writer, std::uint32_t number) {
+const char* DatagramCheck::note(const EntityId& writer, std::uint32_t number, std::uint32_t gap_end) {
   if (!is_writer(writer)) return "submessage of a writer that is none (9.3.1.2)";
   auto* const end = result_.writers.begin() + result_.writer_count;
   auto* const known = std::find_if(result_.writers.begin(), end,
                                    [&](const NumberedWriter& other) { return other.entity == writer; });
   if (known != end) {
     known->number = std::max(known->number, number);
+    known->gap_end = std::max(known->gap_end, gap_end);
     return nullptr;
   }
   if (result_.writer_count == CheckedDatagram::kMostWriters) return "submessages of more than 32 writers";
-  result_.writers[result_.writer_count++] = {writer, number};
+  result_.writers[result_.writer_count++] = {writer, number, gap_end};
   return nullptr;
 }
 
 const char* DatagramCheck::check_acknack(ByteReader body) {
   body.skip(8);
   const SequenceNumber base = sequence_number(body);
-  if (!skip_bitmap(body)) return "ACKNACK with a set of more than 256 numbers (9.4.2.6)";
+  if (skip_bitmap(body) > kMostNumbers) return "ACKNACK with a set of more than 256 numbers (9.4.2.6)";
   body.skip(4);
   if (!body.ok()) return "ACKNACK too short (8.3.8.1)";
   return base.in_range ? nullptr : "ACKNACK with a sequence number out of range (8.3.5.5)";
@@ -226,24 +225,32 @@ const char* DatagramCheck::check_gap(ByteReader body) {
   const EntityId writer = entity_id(body);
   const SequenceNumber start = sequence_number(body);
   const SequenceNumber base = sequence_number(body);
-  if (!skip_bitmap(body)) return "GAP with a set of more than 256 numbers (9.4.2.6)";
+  const std::uint32_t numbers = skip_bitmap(body);
+  if (numbers > kMostNumbers) return "GAP with a set of more than 256 numbers (9.4.2.6)";
   if (!body.ok()) return "GAP too short (8.3.8.4)";
   if (!start.in_range || !base.in_range) return "GAP with a sequence number out of range (8.3.5.5)";
   if (start.value == 0 || base.value < start.value) return "GAP that ends before it begins (8.3.8.4.3)";
   if (base.value - start.value > (is_builtin(writer) ? kLongestBuiltinGap : kLongestGap))
     return "GAP of more than 256 samples, or of discovery 65,536 (8.3.8.4)";
-  return note(writer, base.value);
+  return note(writer, base.value, base.value + numbers);
 }
 
 const char* DatagramCheck::check_nack_frag(ByteReader body) {
-  body.skip(8);
+  entity_id(body);
+  const EntityId writer = entity_id(body);
   const SequenceNumber sample = sequence_number(body);
-  const std::uint32_t base = body.u32();
-  if (!skip_bitmap(body)) return "NACK_FRAG with a set of more than 256 numbers (9.4.2.8)";
+  const std::uint64_t base = body.u32();
+  const std::uint32_t numbers = skip_bitmap(body);
+  if (numbers > kMostNumbers) return "NACK_FRAG with a set of more than 256 numbers (9.4.2.8)";
   body.skip(4);
   if (!body.ok()) return "NACK_FRAG too short (8.3.8.12)";
   if (!sample.in_range || sample.value == 0) return "NACK_FRAG with a sequence number out of range (8.3.5.5)";
-  return base > 0 ? nullptr : "NACK_FRAG of fragment 0 (9.4.2.8)";
+  const std::uint64_t last = base + std::max(numbers, 1U) - 1;
+  if (base == 0 || last > limits_.largest_sample_bytes / kSmallestFragment)
+    return "NACK_FRAG of fragments that no sample has (9.4.2.8)";
+  if (result_.request_count == CheckedDatagram::kMostRequests) return "more than 8 NACK_FRAG";
+  result_.requests[result_.request_count++] = {writer, sample.value, static_cast<std::uint32_t>(last)};
+  return nullptr;
 }
 
 const char* DatagramCheck::check_data(Submessage& submessage) {
@@ -317,6 +324,7 @@ const char* DatagramCheck::check_data_frag(Submessage& submessage) {
   if (submessage.has(kInlineQosFlag)) {
     if (const char* const fault = check_inline_qos(body, context, names_key)) return fault;
   }
+  result_.fragment = true;
   if (body.rest() < payload_bytes) return "DATA_FRAG with less data than its fragments have (8.3.8.3.3)";
   return note(writer, number.value);
 }
@@ -332,9 +340,10 @@ const char* DatagramCheck::check_fragments(ByteReader& body, std::uint64_t& payl
   if (sample % size != 0 && sample % size < kSmallestLastFragment)
     return "DATA_FRAG whose last fragment is shorter than 4 bytes (8.3.8.3.3)";
   const std::uint64_t fragments = (sample + size - 1) / size;
-  if (start == 0 || count == 0 || start + count - 1 > fragments)
-    return "DATA_FRAG with fragments that the sample does not have (8.3.8.3.3)";
-  payload_bytes = std::min(count * size, sample - (start - 1) * size);
+  if (count != 1) return "DATA_FRAG of several fragments (8.3.8.3)";
+  if (start == 0 || start > fragments)
+    return "DATA_FRAG with a fragment that the sample does not have (8.3.8.3.3)";
+  payload_bytes = std::min(size, sample - (start - 1) * size);
   return nullptr;
 }
 

@@ -11,6 +11,9 @@
 
 namespace swiftlet::comms {
 
+// A discovery server skips all announcements that do not concern a client.
+constexpr std::uint32_t kLongestBuiltinGap = 65'536;
+
 struct DatagramLimits {
   // With DDS Security every message is encrypted, but for announcements and handshakes. Fast DDS takes others for genuine.
   bool security = false;
@@ -23,6 +26,14 @@ struct DatagramLimits {
 struct NumberedWriter {
   EntityId entity{};
   std::uint32_t number = 0;
+  std::uint32_t gap_end = 0;  // the highest number of its gaps; 0: none
+};
+
+// Fragments of a sample that a NACK_FRAG asks for.
+struct FragmentRequest {
+  EntityId writer{};
+  std::uint32_t number = 0;  // of the sample
+  std::uint32_t last = 0;    // fragment
 };
 
 // The result of a check. Allocates nothing.
@@ -40,6 +51,12 @@ struct CheckedDatagram {
   static constexpr std::size_t kMostWriters = 32;
   std::array<NumberedWriter, kMostWriters> writers{};
   std::size_t writer_count = 0;
+
+  static constexpr std::size_t kMostRequests = 8;
+  std::array<FragmentRequest, kMostRequests> requests{};
+  std::size_t request_count = 0;
+
+  bool fragment = false;  // holds a DATA_FRAG
 
   // Where parameters begin that the middleware must not parse: see hide_parameters().
   static constexpr std::size_t kMostHidden = 8;

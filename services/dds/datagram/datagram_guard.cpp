@@ -11,7 +11,7 @@ Now Now::read() {
 }
 
 DatagramGuard::DatagramGuard(const runtime::NetworkKeys& keys, const DatagramLimits& limits)
-    : limits_(limits) {
+    : limits_(limits), replies_(limits.discovery_servers ? kLongestBuiltinGap : kGapsAhead) {
   if (keys.empty()) return;
   sealer_.emplace(keys);
   opener_.emplace(keys);
@@ -22,7 +22,8 @@ CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size,
   CheckedDatagram checked;
   if (opener_) {
     const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
-    checked.fault = opener_->open(data, size, port, now.since_1970_ns);
+    checked.fault = opener_->open(data, size, port, now.since_1970_ns, now.steady_ns);
+    if (checked.fault == kSentTwice) return checked;
   }
   if (checked.fault == nullptr) checked = check_datagram(data, opener_ ? size - kSealBytes : size, limits_);
   if (checked.fault == nullptr) checked.fault = fault_of(checked, sender, now);
@@ -33,11 +34,13 @@ CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size,
 const char* DatagramGuard::fault_of(const CheckedDatagram& checked, const SenderAddress& sender,
                                     const Now& now) {
   const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
-  for (std::size_t i = 0; i < checked.writer_count; ++i) {
+  const std::size_t changeable = opener_ ? 0 : checked.writer_count;  // nobody changes what is sealed
+  for (std::size_t i = 0; i < changeable; ++i) {
     const NumberedWriter& writer = checked.writers[i];
     if (!sequences_.admit(checked.source, writer.entity, writer.number, now.steady_ns))
       return "sequence number that the writer cannot have reached (8.3.5.5)";
   }
+  if (const char* const fault = replies_.fault_of(checked)) return fault;
   if (!checked.about_participant) return nullptr;
   return participants_.admit(checked.source, checked.announcement_digest, sender, now.steady_ns);
 }
@@ -45,6 +48,12 @@ const char* DatagramGuard::fault_of(const CheckedDatagram& checked, const Sender
 std::size_t DatagramGuard::participants_heard(const Now& now) {
   const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
   return participants_.heard_lately(now.steady_ns);
+}
+
+void DatagramGuard::note_sent(const std::uint8_t* data, std::size_t size) {
+  if (!ReplyCheck::concerns_replies(data, size)) return;
+  const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
+  replies_.note_sent(data, size);
 }
 
 void DatagramGuard::seal(std::vector<std::uint8_t>& datagram, const Now& now) {

@@ -10,6 +10,7 @@
 #include "swiftlet/services/dds/datagram/datagram_seal.hpp"
 #include "swiftlet/services/dds/datagram/participant_admission.hpp"
 #include "swiftlet/services/dds/datagram/refusal_log.hpp"
+#include "swiftlet/services/dds/datagram/reply_check.hpp"
 #include "swiftlet/services/dds/datagram/sequence_window.hpp"
 #include "swiftlet/services/runtime/priority_inheriting_mutex.hpp"
 
@@ -22,7 +23,7 @@ struct Now {
   static Now read();
 };
 
-// Thread-safe: shared by the transports of a participant and their receiving threads. Allocates only when constructed.
+// Thread-safe: shared by the transports of a participant and their receiving threads. Allocates only when constructed, and for fragments that are sent.
 class DatagramGuard {
  public:
   // keys: of the network; empty: datagrams are not sealed.
@@ -40,6 +41,9 @@ class DatagramGuard {
   // Turns a datagram of the middleware into a sealed one. Requires seals().
   void seal(std::vector<std::uint8_t>& datagram, const Now& now);
 
+  // Notes what the replies to a datagram have to agree with. data: as the middleware sends it, or its beginning.
+  void note_sent(const std::uint8_t* data, std::size_t size);
+
   RefusalLog& refusals() { return refusals_; }
 
  private:
@@ -52,6 +56,7 @@ class DatagramGuard {
       mutex_;  // guards the rest; all threads that receive take it, for each datagram
   std::optional<DatagramOpener> opener_;
   SequenceWindow sequences_;
+  ReplyCheck replies_;
   ParticipantAdmission participants_;
 };
 

@@ -17,7 +17,8 @@ constexpr std::size_t kTimeAt = 8;
 constexpr std::size_t kCountAt = 16;
 constexpr std::size_t kTagAt = 24;
 constexpr std::size_t kTagBytes = 16;
-constexpr std::size_t kPrefixAt = 8;  // in the datagram
+constexpr std::size_t kPrefixAt = 8;                      // in the datagram
+constexpr std::int64_t kCopiesArrive_ns = 1'000'000'000;  // within
 
 void put(std::uint8_t* to, std::uint64_t value, std::size_t bytes) {
   for (std::size_t i = 0; i < bytes; ++i) to[i] = static_cast<std::uint8_t>(value >> (8 * i));
@@ -71,7 +72,7 @@ DatagramOpener::DatagramOpener(const runtime::NetworkKeys& keys) : senders_(kSen
 }
 
 const char* DatagramOpener::open(const std::uint8_t* data, std::size_t size, std::uint32_t port,
-                                 std::int64_t now_ns) {
+                                 std::int64_t now_ns, std::int64_t steady_ns) {
   if (size < kPrefixAt + GuidPrefix().size() + kSealBytes) return "not sealed with a network key";
   const std::uint8_t* const trailer = data + size - kSealBytes;
   if (trailer[0] != kSealKind || get(trailer + 2, 2) != kSealBytes - 4)
@@ -86,8 +87,8 @@ const char* DatagramOpener::open(const std::uint8_t* data, std::size_t size, std
   if (sent_ns < now_ns - kSealTolerance_ns || sent_ns > now_ns + kSealTolerance_ns)
     return "sealed more than 30 s ago or ahead: a recording, or the clocks of the hosts differ";
   Sender& from = sender(data + kPrefixAt, port);
-  from.heard_ns = now_ns;
-  return from.take(get(trailer + kCountAt, 8)) ? nullptr : "received before";
+  from.heard_ns = steady_ns;
+  return from.take(get(trailer + kCountAt, 8), sent_ns);
 }
 
 DatagramOpener::Sender& DatagramOpener::sender(const std::uint8_t* participant, std::uint32_t port) {
@@ -107,21 +108,22 @@ DatagramOpener::Sender& DatagramOpener::sender(const std::uint8_t* participant, 
   return *longest_silent;
 }
 
-bool DatagramOpener::Sender::take(std::uint64_t count) {
+const char* DatagramOpener::Sender::take(std::uint64_t count, std::int64_t sealed_ns) {
   constexpr std::uint64_t kWindow = 256;
   const auto bit = [](std::uint64_t of) { return std::uint64_t{1} << of % 64; };
   const auto word = [this](std::uint64_t of) -> std::uint64_t& { return received[of / 64 % 4]; };
-  if (count + kWindow <= newest) return false;
+  if (count + kWindow <= newest) return "older than 256 others of its sender";
   if (count > newest) {
     // Counts between the newest and this one were not received.
     const std::uint64_t skipped = std::min(count - newest, kWindow);
     for (std::uint64_t i = 0; i < skipped; ++i) word(count - i) &= ~bit(count - i);
     newest = count;
+    sent_ns = sealed_ns;
   } else if ((word(count) & bit(count)) != 0) {
-    return false;
+    return sealed_ns > sent_ns - kCopiesArrive_ns ? kSentTwice : "received before";
   }
   word(count) |= bit(count);
-  return true;
+  return nullptr;
 }
 
 }  // namespace swiftlet::comms

@@ -19,6 +19,9 @@ constexpr std::size_t kSealBytes = 60;
 // long.
 constexpr std::int64_t kSealTolerance_ns = 30'000'000'000;
 
+// Fast DDS sends a datagram to each address of a host with several networks: no fault, but of no use either.
+inline constexpr char kSentTwice[] = "sent to several addresses of this host";
+
 // Appends trailers. Thread-safe.
 class DatagramSealer {
  public:
@@ -40,7 +43,9 @@ class DatagramOpener {
 
   // Returns the broken rule as a string literal, nullptr if the trailer is valid; the datagram is then kSealBytes shorter. A
   // datagram is valid once on each port: port is the local one, because a participant may receive it on several.
-  const char* open(const std::uint8_t* data, std::size_t size, std::uint32_t port, std::int64_t now_ns);
+  // now_ns: since 1970; steady_ns: of a monotonic clock.
+  const char* open(const std::uint8_t* data, std::size_t size, std::uint32_t port, std::int64_t now_ns,
+                   std::int64_t steady_ns);
 
  private:
   struct Key {
@@ -51,10 +56,12 @@ class DatagramOpener {
   struct Sender {
     GuidPrefix participant{};
     std::uint32_t port = 0;
-    std::int64_t heard_ns = 0;
+    std::int64_t heard_ns = 0;                // of the monotonic clock
+    std::int64_t sent_ns = 0;                 // when the newest was sealed
     std::uint64_t newest = 0;                 // count
     std::array<std::uint64_t, 4> received{};  // a bit for each of the 256 counts up to the newest
-    bool take(std::uint64_t count);           // false if it was received, or is too old to know
+    // Returns the broken rule, or nullptr.
+    const char* take(std::uint64_t count, std::int64_t sealed_ns);
   };
   static constexpr std::size_t kSenders = 2048;  // a power of two
   static constexpr std::size_t kPlaces = 8;

@@ -12,6 +12,9 @@ namespace {
 
 namespace transport = eprosima::fastdds::rtps;
 
+// Fast DDS takes the last fragment of a sample for as long as the first one said, however much there is: zeros follow it.
+constexpr std::size_t kLongestFragment = 1 << 16;
+
 // All zeros for shared memory: its locators have no address of a host.
 SenderAddress address_of(const rtps::Locator_t& locator) {
   SenderAddress address{};
@@ -35,9 +38,12 @@ class GuardedTransport final : public ChainedTransport {
   bool OpenOutputChannel(transport::SendResourceList& channels, const rtps::Locator_t& locator) override;
 
   bool send_through(rtps::SenderResource& below, const OutgoingDatagram& datagram, const Destination& to) {
+    const OutgoingDatagram::Piece first = datagram.first_piece();
+    guard_->note_sent(first.bytes, first.size);
     // Shared memory gets one piece: of several, Fast DDS 3.1.2 leaves out the last, the statistics, and sends as many
     // bytes of an earlier message in its place.
-    if (!guard_->seals() && below.kind() != LOCATOR_KIND_SHM) return comms::send(below, datagram, to);
+    const bool as_it_is = first.size == datagram.size || below.kind() != LOCATOR_KIND_SHM;
+    if (!guard_->seals() && as_it_is) return comms::send(below, datagram, to);
     // Allocates when a thread sends for the first time.
     thread_local std::vector<rtps::octet> sent(1 << 16);
     datagram.copy_to(sent);
@@ -126,10 +132,11 @@ void GuardedTransport::receive(transport::TransportReceiverInterface* next, cons
   const CheckedDatagram checked = guard_->admit(data, size, sender, local.port, Now::read());
   if (checked.fault != nullptr) return;
   try {
-    if (checked.hidden_count > 0) {  // only datagrams of discovery
-      std::vector<rtps::octet> copy(data, data + checked.length);
+    if (checked.hidden_count > 0 || checked.fragment) {
+      std::vector<rtps::octet> copy(checked.length + kLongestFragment);
+      std::copy_n(data, checked.length, copy.begin());
       hide_parameters(checked, copy.data());
-      next->OnDataReceived(copy.data(), static_cast<std::uint32_t>(copy.size()), local, remote);
+      next->OnDataReceived(copy.data(), static_cast<std::uint32_t>(checked.length), local, remote);
     } else {
       next->OnDataReceived(data, static_cast<std::uint32_t>(checked.length), local, remote);
     }

@@ -41,6 +41,7 @@ constexpr ParameterRule kRules[] = {
     {0x0005, Shape::kString, 0},       // PID_TOPIC_NAME
     {0x0006, Shape::kFixed, 4},        // PID_OWNERSHIP_STRENGTH
     {0x0007, Shape::kString, 0},       // PID_TYPE_NAME
+    {0x000f, Shape::kFixed, 4},        // PID_DOMAIN_ID
     {0x0015, Shape::kFixed, 2},        // PID_PROTOCOL_VERSION
     {0x0016, Shape::kFixed, 2},        // PID_VENDORID
     {0x001a, Shape::kFixed, 12},       // PID_RELIABILITY
@@ -84,9 +85,11 @@ constexpr ParameterRule kRules[] = {
     {0x1002, Shape::kToken, 0},        // PID_PERMISSIONS_TOKEN
     {0x1004, Shape::kToken, 8},        // PID_ENDPOINT_SECURITY_INFO
     {0x1005, Shape::kToken, 8},        // PID_PARTICIPANT_SECURITY_INFO
+    {0x8000, Shape::kFixed, 4},        // PID_PRODUCT_VERSION
     {0x8002, Shape::kFixed, 16},       // PID_PERSISTENCE_GUID
     {0x8005, Shape::kFixed, 1},        // PID_DISABLE_POSITIVE_ACKS
     {0x8006, Shape::kSequence, 8},     // PID_DATASHARING
+    {0x8007, Shape::kFixed, 4},        // PID_NETWORK_CONFIGURATION_SET
     {0x800f, Shape::kFixed, 24},       // PID_CUSTOM_RELATED_SAMPLE_IDENTITY
 };
 

@@ -14,6 +14,8 @@ namespace swiftlet::comms {
 
 // Participants that a process knows at the same time, itself included.
 constexpr std::size_t kMostParticipants = 512;
+// Readers, and writers, of all those participants: as many as 150 vehicles have.
+constexpr std::size_t kMostEndpoints = 8192;
 
 // Of a host: an IPv4 or IPv6 address as in a locator.
 using SenderAddress = std::array<std::uint8_t, 16>;

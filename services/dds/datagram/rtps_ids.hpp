@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -12,6 +13,8 @@ using EntityId = std::array<std::uint8_t, 4>;     // of one of its endpoints
 
 // By the prefixes that ROS 2 gives to discovery servers: 44.53.N.5f.45.50.52.4f.53.49.4d.41.
 bool is_discovery_server(const GuidPrefix& participant);
+
+std::size_t hash_of(const GuidPrefix& participant, const EntityId& entity);
 
 constexpr EntityId kUnknownEntity{};
 constexpr EntityId kParticipantWriter{0x00, 0x01, 0x00, 0xc2};  // of announcements of participants

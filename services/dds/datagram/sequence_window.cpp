@@ -1,25 +1,16 @@
 #include "swiftlet/services/dds/datagram/sequence_window.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 namespace swiftlet::comms {
 namespace {
 
 constexpr double kShortestInterval_ns = 50e3;  // also of a writer that was heard once
 constexpr double kAveraged_ns = 0.25e9;        // in which the usual rate is measured
-constexpr double kCatchUp_ns = 1e9;            // after which a writer is no longer taken to be behind
 constexpr double kRateMargin = 4.0;
-
-std::size_t hash(const GuidPrefix& participant, const EntityId& entity) {
-  std::uint64_t words[2];
-  std::memcpy(words, participant.data(), 8);
-  std::memcpy(words + 1, participant.data() + 8, 4);
-  std::memcpy(reinterpret_cast<unsigned char*>(words + 1) + 4, entity.data(), 4);
-  std::uint64_t mixed = (words[0] ^ (words[1] * 0x9e3779b97f4a7c15U)) * 0xff51afd7ed558ccdU;
-  mixed ^= mixed >> 32U;
-  return static_cast<std::size_t>(mixed);
-}
+// A writer has become slower when so many samples came late for so long, without two that came at once: a backlog.
+constexpr int kLateSamples = 8;
+constexpr std::int64_t kSlower_ns = 1'000'000'000;
 
 }  // namespace
 
@@ -29,40 +20,54 @@ double SequenceWindow::Writer::interval_ns() const {
 
 bool SequenceWindow::Writer::admit(std::uint32_t number, std::int64_t now_ns) {
   if (number <= newest) return true;
-  const std::uint32_t ahead = number - newest;
-  const auto passed_ns = static_cast<double>(now_ns - heard_ns);
-  const double expected = passed_ns / interval_ns();
+  const double expected = timely + static_cast<double>(now_ns - timely_ns) / interval_ns() * kRateMargin;
   const bool may_burst = is_builtin(entity) || now_ns - met_ns < kFirstContact_ns;
-  const std::uint32_t burst = may_burst ? kFirstBurst : kSampleBurst;
-  if (ahead > burst + kRateMargin * expected + behind) {
+  const double furthest = std::max<double>(newest, expected) + (may_burst ? kFirstBurst : kSampleBurst);
+  if (number > furthest) {
     agreeing = number >= refused && number - refused <= kSampleBurst ? agreeing + 1 : 1;
     refused = number;
     if (agreeing < kAgreeingDatagrams) return false;
-    behind = 0.0;
-  } else {
-    // Nothing is known of the rate of a writer that was heard once.
-    const double missing = samples == 0.0 ? 0.0 : std::min(expected, kCatchUp_ns / interval_ns()) - ahead;
-    behind = std::max(0.0, behind * std::max(0.0, 1.0 - passed_ns / kCatchUp_ns) + missing);
-    const double kept = kAveraged_ns / (kAveraged_ns + passed_ns);
-    samples = kept * samples + ahead;
-    samples_span_ns = kept * samples_span_ns + passed_ns;
+    timely = number;
+    timely_ns = now_ns;
+    late = 0;
   }
+  const auto silent_ns = static_cast<double>(now_ns - heard_ns);
   newest = number;
   heard_ns = now_ns;
   agreeing = 0;
+  measure_rate(silent_ns);
   return true;
+}
+
+void SequenceWindow::Writer::measure_rate(double silent_ns) {
+  const auto passed_ns = static_cast<double>(heard_ns - timely_ns);
+  const std::uint32_t sent = newest - timely;
+  if (samples > 0.0 && sent + kSampleBurst / 2 < passed_ns / interval_ns()) {
+    const bool backlog = silent_ns < interval_ns() / kRateMargin;
+    if (late == 0 || backlog) {
+      late = 0;
+      late_since_ns = heard_ns;
+    }
+    if (++late < kLateSamples || heard_ns - late_since_ns < kSlower_ns) return;
+  }
+  const double kept = kAveraged_ns / (kAveraged_ns + passed_ns);
+  samples = kept * samples + sent;
+  samples_span_ns = kept * samples_span_ns + passed_ns;
+  timely = newest;
+  timely_ns = heard_ns;
+  late = 0;
 }
 
 bool SequenceWindow::admit(const GuidPrefix& participant, const EntityId& entity, std::uint32_t number,
                            std::int64_t now_ns) {
-  const std::size_t first = hash(participant, entity);
+  const std::size_t first = hash_of(participant, entity);
   Writer* longest_silent = nullptr;
   for (std::size_t i = 0; i < kPlaces; ++i) {
     Writer& writer = writers_[(first + i) & (kWriters - 1)];
     if (writer.entity == entity && writer.participant == participant) return writer.admit(number, now_ns);
     if (longest_silent == nullptr || writer.heard_ns < longest_silent->heard_ns) longest_silent = &writer;
   }
-  *longest_silent = {participant, entity, number, now_ns, now_ns};
+  *longest_silent = {participant, entity, number, now_ns, now_ns, number, now_ns};
   return true;
 }
 

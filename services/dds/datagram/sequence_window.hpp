@@ -10,9 +10,9 @@
 
 namespace swiftlet::comms {
 
-// A writer may be ahead of its newest number by this many samples, by four times as many as it sends at its usual rate in
-// the time since then, and by those that it is behind: after a stall of the receiver, what the socket kept is read within
-// microseconds, and what did not fit into it is missing.
+// A writer may be ahead by this many samples of the newest one that was heard, and of four times as many as it sends at its
+// usual rate in the time since the reader last kept up with it: after a stall of the reader, what the socket kept is read
+// within microseconds, and what did not fit into it is missing.
 constexpr std::uint32_t kSampleBurst = 8;
 // At first, while a reader learns what the writer has sent before; and of the middleware's own writers at all times. A
 // process of many vehicles announces hundreds of endpoints at once, and a refused announcement is repeated after seconds.
@@ -41,14 +41,20 @@ class SequenceWindow {
     std::uint32_t newest = 0;
     std::int64_t met_ns = 0;  // heard for the first time
     std::int64_t heard_ns = 0;
+    // The newest sample that came no later than the usual rate lets expect. Stalls of the reader delay samples, and lose
+    // some, but nothing is heard before it was sent: those that followed such a sample soon tell the rate of the writer.
+    std::uint32_t timely = 0;
+    std::int64_t timely_ns = 0;
+    int late = 0;  // samples in a row that came later than that
+    std::int64_t late_since_ns = 0;
     double samples = 0.0;  // lately, and in how long
     double samples_span_ns = 0.0;
-    double behind = 0.0;        // samples that it would have sent at its usual rate, but that were not heard
     std::uint32_t refused = 0;  // the last refused number
     int agreeing = 0;           // refused numbers in a row that agree with each other
 
     double interval_ns() const;
     bool admit(std::uint32_t number, std::int64_t now_ns);
+    void measure_rate(double silent_ns);  // before the newest sample
   };
 
   std::vector<Writer> writers_;

@@ -95,6 +95,7 @@ class Vehicle {
   void stop_reporting() { reports_ = false; }
   void obey(bool obeys) { obeys_ = obeys; }
 
+  const std::vector<std::unique_ptr<Controller>>& controllers() const { return controllers_; }
   int active() const {
     return static_cast<int>(std::count_if(controllers_.begin(), controllers_.end(), [](const auto& c) {
       return c->runs && c->failover.role() == Role::kActive;
@@ -152,6 +153,70 @@ TEST(Failover, StandbyTakesOverWithinItsPatience) {
   EXPECT_TRUE(standby.failover.continues());
   EXPECT_LE(vehicle.longest_gap_ns(), Failover::kPatienceNs + 2 * kPeriodNs);
   EXPECT_GT(standby.failover.term(), first.failover.term());
+}
+
+TEST(Failover, TellsHowItTookOver) {
+  Vehicle vehicle;
+  auto& first = vehicle.add(7, 5);
+  vehicle.run(300);
+  auto& standby = vehicle.add(8, 2);
+  vehicle.add(9, 3);
+  vehicle.run(1000);
+  Takeover takeover;
+  EXPECT_FALSE(first.failover.take_takeover(takeover)) << "from no other controller";
+  for (const auto& controller : vehicle.controllers()) controller->runs = controller.get() == &standby;
+  vehicle.run(100);
+
+  ASSERT_TRUE(standby.failover.take_takeover(takeover));
+  EXPECT_EQ(takeover.delay_p95_ns, kPeriodNs);
+  EXPECT_EQ(takeover.rank, 1);
+  EXPECT_EQ(takeover.patience_ns, Failover::kPatienceNs + Failover::kPerRankNs);
+  EXPECT_GT(takeover.silence_ns, takeover.patience_ns);
+  EXPECT_LE(takeover.silence_ns, takeover.patience_ns + kPeriodNs);
+  EXPECT_TRUE(takeover.obeyed);
+  EXPECT_EQ(takeover.longest_silence_ns, vehicle.longest_gap_ns());
+  EXPECT_EQ(takeover.longest_pause_ns, kPeriodNs);
+  EXPECT_TRUE(takeover.continues);
+  EXPECT_FALSE(standby.failover.take_takeover(takeover)) << "once";
+  EXPECT_EQ(to_string({ms(42), ms(40), ms(2), 1, true, ms(42), ms(3), true}),
+            "takes over: 42 ms without a new command, waited for 40 ms (95 % of the commands need up to 2 "
+            "ms, 1 standby before "
+            "it); the vehicle obeyed after 42 ms; the longest pause between two samples was 3 ms");
+}
+
+// The samples of 80 ms come at once, and the vehicle obeys only what answers the last of them.
+TEST(Failover, TellsThatSamplesPaused) {
+  Vehicle vehicle;
+  auto& first = vehicle.add(7, 5);
+  vehicle.run(300);
+  auto& standby = vehicle.add(8, 2);
+  vehicle.run(1000);
+  first.runs = standby.runs = false;
+  vehicle.run(80);
+  standby.runs = true;
+  vehicle.run(20);
+  Takeover takeover;
+  ASSERT_TRUE(standby.failover.take_takeover(takeover));
+  EXPECT_LE(takeover.silence_ns, takeover.patience_ns + kPeriodNs);
+  EXPECT_EQ(takeover.longest_silence_ns, vehicle.longest_gap_ns());
+  EXPECT_EQ(takeover.longest_pause_ns, ms(80) + kPeriodNs);
+}
+
+TEST(Failover, TellsThatTheVehicleDoesNotObey) {
+  Vehicle vehicle;
+  auto& first = vehicle.add(7, 5);
+  vehicle.run(300);
+  auto& standby = vehicle.add(8, 2);
+  vehicle.run(1000);
+  first.runs = false;
+  vehicle.obey(false);
+  vehicle.run(100);
+  Takeover takeover;
+  EXPECT_FALSE(standby.failover.take_takeover(takeover)) << "it still may";
+  vehicle.run(500);
+  ASSERT_TRUE(standby.failover.take_takeover(takeover));
+  EXPECT_FALSE(takeover.obeyed);
+  EXPECT_GT(takeover.longest_silence_ns, Failover::kTrialNs);
 }
 
 // The commands of the active controller arrive late, those of the standby on the vehicle's host do not.

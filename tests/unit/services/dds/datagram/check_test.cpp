@@ -164,6 +164,7 @@ TEST(Datagram, FragmentsMustBelongToTheirSample) {
   EXPECT_TRUE(refuses(fragment(fragment_fields(1, 1, 2, 3000), 1024), "unusual size"));
   EXPECT_TRUE(refuses(fragment(fragment_fields(4, 1, 1024, 3000), 1024), "does not have"));
   EXPECT_TRUE(refuses(fragment(fragment_fields(0, 1, 1024, 3000), 1024), "does not have"));
+  EXPECT_TRUE(refuses(fragment(fragment_fields(1, 2, 1024, 3000), 2048), "several fragments"));
   EXPECT_TRUE(refuses(fragment(fragment_fields(1, 1, 1024, 3000), 1020), "less data"));
   EXPECT_TRUE(refuses(fragment(fragment_fields(3, 1, 1024, 2050), 1024), "shorter than 4 bytes"));
   EXPECT_TRUE(refuses(RtpsMessage().add(0x16, 2, fragment_fields(1, 1, 1024, 3000).sentinel()), "less data"));

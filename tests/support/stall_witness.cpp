@@ -1,4 +1,4 @@
-#include "tests/bench/stall_witness.hpp"
+#include "tests/support/stall_witness.hpp"
 
 #include <algorithm>
 #include <ctime>
@@ -7,10 +7,9 @@
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "swiftlet/services/runtime/realtime.hpp"
 
-namespace swiftlet::bench {
+namespace swiftlet::tests {
 namespace {
 
-constexpr int kPriority = 98;
 constexpr std::int64_t kLookNs = 250'000;
 
 void sleep_until(std::int64_t time_ns) {
@@ -21,7 +20,8 @@ void sleep_until(std::int64_t time_ns) {
 
 }  // namespace
 
-StallWitness::StallWitness(std::int64_t period_ns) : period_ns_(period_ns) {
+StallWitness::StallWitness(std::int64_t period_ns, int priority)
+    : period_ns_(period_ns), priority_(priority) {
   cpu_set_t allowed;
   CPU_ZERO(&allowed);
   sched_getaffinity(0, sizeof allowed, &allowed);
@@ -47,8 +47,14 @@ double StallWitness::lost_percent() const {
   return most;
 }
 
+std::int64_t StallWitness::take_longest_ns() {
+  std::int64_t longest_ns = 0;
+  for (const auto& core : cores_) longest_ns = std::max(longest_ns, core->longest_ns.exchange(0));
+  return longest_ns;
+}
+
 void StallWitness::watch(Core& core, int cpu) {
-  runtime::make_this_thread_realtime({true, kPriority, cpu});
+  runtime::make_this_thread_realtime({true, priority_, cpu});
   const std::int64_t start_ns = runtime::monotonic_ns();
   for (std::int64_t due_ns = start_ns; !end_; due_ns = runtime::monotonic_ns() + kLookNs) {
     sleep_until(due_ns);
@@ -56,8 +62,9 @@ void StallWitness::watch(Core& core, int cpu) {
     // A sample during a stall is answered at its end: all but those of the last period are late by more than
     // a period.
     core.lost_ns += std::max<std::int64_t>(now_ns - due_ns - period_ns_, 0);
+    core.longest_ns = std::max<std::int64_t>(core.longest_ns, now_ns - due_ns);
     core.elapsed_ns = now_ns - start_ns;
   }
 }
 
-}  // namespace swiftlet::bench
+}  // namespace swiftlet::tests

@@ -1,0 +1,101 @@
+// Section numbers are those of "DDS Interoperability Wire Protocol (DDSI-RTPS)", version 2.5.
+#include "swiftlet/services/dds/datagram/reply_check.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "swiftlet/io/byte_reader.hpp"
+#include "swiftlet/services/dds/datagram/submessage.hpp"
+
+namespace swiftlet::comms {
+namespace {
+
+using runtime::ByteReader;
+
+template <std::size_t kSize>
+std::array<std::uint8_t, kSize> bytes_of(ByteReader& in) {
+  std::array<std::uint8_t, kSize> bytes{};
+  if (const std::uint8_t* const taken = in.take(kSize)) std::copy_n(taken, kSize, bytes.begin());
+  return bytes;
+}
+
+// Calls found(kind, body) for each submessage up to the first that reaches to the end of the message.
+template <class Found>
+void for_each_submessage(const std::uint8_t* message, std::size_t size, const Found& found) {
+  ByteReader rest(message, size, true);
+  rest.skip(kHeaderBytes);
+  while (rest.rest() >= 4) {
+    const std::uint8_t kind = rest.u8();
+    const bool little_endian = (rest.u8() & kLittleEndianFlag) != 0;
+    const std::uint8_t* const length_at = rest.take(2);
+    std::size_t length = ByteReader(length_at, 2, little_endian).u16();
+    if (length == 0 && kind != kPad && kind != kInfoTimestamp) length = rest.rest();
+    length = std::min(length, rest.rest());
+    found(kind, ByteReader(rest.data(), length, little_endian));
+    rest.skip(length);
+  }
+}
+
+}  // namespace
+
+ReplyCheck::ReplyCheck(std::uint32_t gaps_ahead) : gaps_ahead_(gaps_ahead), acknowledged_(kWriters) {}
+
+bool ReplyCheck::concerns_replies(const std::uint8_t* message, std::size_t size) {
+  bool concerns = false;
+  for_each_submessage(message, size, [&](std::uint8_t kind, const ByteReader&) {
+    concerns = concerns || kind == kAcknack || kind == kDataFrag;
+  });
+  return concerns;
+}
+
+void ReplyCheck::note_sent(const std::uint8_t* message, std::size_t size) {
+  GuidPrefix destination{};
+  for_each_submessage(message, size, [&](std::uint8_t kind, ByteReader body) {
+    if (kind == kInfoDestination) {
+      destination = bytes_of<12>(body);
+    } else if (kind == kAcknack) {
+      body.skip(4);  // the reader
+      const auto writer = bytes_of<4>(body);
+      body.skip(4);  // the high word of the number
+      const std::uint32_t base = body.u32();
+      if (body.ok()) acknowledged_[hash_of(destination, writer) % kWriters] = {destination, writer, base};
+    } else if (kind == kDataFrag) {
+      body.skip(4 + 4);  // flags, place of the inline QoS, and the reader
+      const auto writer = bytes_of<4>(body);
+      body.skip(4);
+      const std::uint32_t number = body.u32();
+      body.skip(4 + 2);  // the first fragment, and how many
+      const std::uint32_t fragment_bytes = body.u16();
+      const std::uint32_t sample_bytes = body.u32();
+      if (!body.ok() || fragment_bytes == 0) return;
+      auto& samples = fragments_[writer];
+      samples[number] = (sample_bytes + fragment_bytes - 1) / fragment_bytes;
+      if (samples.size() > kSamplesOfWriter) samples.erase(samples.begin());
+    }
+  });
+}
+
+std::uint32_t ReplyCheck::acknowledged(const GuidPrefix& participant, const EntityId& writer) const {
+  const Acknowledged& known = acknowledged_[hash_of(participant, writer) % kWriters];
+  return known.participant == participant && known.writer == writer ? known.base : 0;
+}
+
+const char* ReplyCheck::fault_of(const CheckedDatagram& received) const {
+  for (std::size_t i = 0; i < received.request_count; ++i) {
+    const FragmentRequest& request = received.requests[i];
+    const auto samples = fragments_.find(request.writer);
+    if (samples == fragments_.end()) return "NACK_FRAG of a writer without fragments (8.3.8.12)";
+    const auto sample = samples->second.find(request.number);
+    if (sample == samples->second.end() || request.last > sample->second)
+      return "NACK_FRAG of fragments that were not sent (8.3.8.12)";
+  }
+  for (std::size_t i = 0; i < received.writer_count; ++i) {
+    const NumberedWriter& writer = received.writers[i];
+    const std::uint32_t ahead = is_builtin(writer.entity) ? gaps_ahead_ : kGapsAhead;
+    if (writer.gap_end > ahead && writer.gap_end - ahead > acknowledged(received.source, writer.entity))
+      return "GAP far beyond what was acknowledged (8.3.8.4)";
+  }
+  return nullptr;
+}
+
+}  // namespace swiftlet::comms

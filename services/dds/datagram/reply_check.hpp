@@ -1,0 +1,49 @@
+// Refuses replies that do not fit to what this participant has sent. Fast DDS reads beyond a sample when it is asked for
+// fragments that the sample does not have, and keeps each number of a gap that its reader cannot use yet in memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "swiftlet/services/dds/datagram/check.hpp"
+
+namespace swiftlet::comms {
+
+// Gaps may reach so far beyond the samples that the reader of a writer has acknowledged.
+constexpr std::uint32_t kGapsAhead = 4096;
+
+// Not thread-safe.
+class ReplyCheck {
+ public:
+  // gaps_ahead: of writers of the middleware itself; kGapsAhead unless discovery servers skip announcements.
+  explicit ReplyCheck(std::uint32_t gaps_ahead);
+
+  // Notes the acknowledgements and fragments in a message that is sent. Ignores what it cannot read.
+  static bool concerns_replies(const std::uint8_t* message, std::size_t size);
+  void note_sent(const std::uint8_t* message, std::size_t size);
+
+  // Returns the broken rule, or nullptr.
+  const char* fault_of(const CheckedDatagram& received) const;
+
+ private:
+  static constexpr std::size_t kWriters = 4096;
+  static constexpr std::size_t kSamplesOfWriter = 64;  // the depth of request topics
+
+  struct Acknowledged {
+    GuidPrefix participant{};
+    EntityId writer{};
+    std::uint32_t base = 0;  // all samples before it are
+  };
+
+  std::uint32_t acknowledged(const GuidPrefix& participant, const EntityId& writer) const;
+
+  const std::uint32_t gaps_ahead_;
+  // By hash: of two writers in one place the one is known that was acknowledged last.
+  std::vector<Acknowledged> acknowledged_;
+  std::map<EntityId, std::map<std::uint32_t, std::uint32_t>>
+      fragments_;  // of the newest samples of each writer
+};
+
+}  // namespace swiftlet::comms
