@@ -58,6 +58,18 @@ rtps::GUID_t participant_guid(const rtps::GuidPrefix_t& participant) {
   return {participant, rtps::c_EntityId_RTPSParticipant};
 }
 
+rtps::GUID_t participant_guid(const GuidPrefix& participant) {
+  rtps::GuidPrefix_t prefix;
+  std::copy(participant.begin(), participant.end(), prefix.value);
+  return participant_guid(prefix);
+}
+
+GuidPrefix bytes_of(const rtps::GuidPrefix_t& participant) {
+  GuidPrefix bytes;
+  std::copy_n(participant.value, bytes.size(), bytes.begin());
+  return bytes;
+}
+
 }  // namespace
 
 Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& vehicles)
@@ -68,12 +80,18 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
   check(settings);
   if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
   if (!settings.security.empty()) refused_peers_.emplace();
+  joined_ns_ = Now::read().steady_ns;
   session_ = std::make_unique<ParticipantSession>(settings, announcement_, guard_, this);
   periodic_task_.emplace(kCheckPeriod, [this] {
     rejoin_if_rediscovery_failed();
+    {
+      const std::lock_guard<std::mutex> session_lock(session_mutex_);
+      announce_when_due();
+    }
     guard_->refusals().write_due(Clock::now());
+    const std::lock_guard<std::mutex> session_lock(session_mutex_);
     const std::lock_guard<std::mutex> lock(peers_mutex_);
-    refuse_silent_strangers();
+    if (session_ != nullptr) refuse_silent_strangers(session_->participant->guid());
     if (refused_peers_) refused_peers_->write_due(Clock::now());
     conflict_log_.write_due(Clock::now());
   });
@@ -81,7 +99,7 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
 
 Participant::Impl::~Impl() {
   periodic_task_.reset();
-  session_.reset();
+  end_session();
   if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
 }
 
@@ -97,7 +115,8 @@ void Participant::Impl::serve(const std::string& vehicle) {
     }
     announcement_.vehicles += (announcement_.vehicles.empty() ? "" : ",") + vehicle;
   }
-  if (session_ != nullptr) session_->announce(announcement_);
+  announcement_changed_ = true;
+  announce_when_due();
 }
 
 void Participant::Impl::stop_serving(const std::string& vehicle) {
@@ -112,7 +131,13 @@ void Participant::Impl::stop_serving(const std::string& vehicle) {
       if (!is_own(peer)) rediscovery_.gone(guid.guidPrefix);
     }
   }
-  if (session_ != nullptr) session_->announce(announcement_);
+  announcement_changed_ = true;
+}
+
+void Participant::Impl::announce_when_due() {
+  if (session_ == nullptr || !announcement_changed_ || session_->next_announcement() > Clock::now()) return;
+  session_->announce(announcement_);
+  announcement_changed_ = false;
 }
 
 void Participant::Impl::add(Endpoint* endpoint) {
@@ -144,6 +169,7 @@ bool Participant::Impl::rejoin() {
   leave();
   try {
     session_ = std::make_unique<ParticipantSession>(settings, announcement_, guard_, this);
+    announcement_changed_ = false;
     for (Endpoint* const endpoint : endpoints_) endpoint->join(*session_);
     return !away_.exchange(false);
   } catch (const std::runtime_error& error) {
@@ -154,13 +180,19 @@ bool Participant::Impl::rejoin() {
   }
 }
 
+void Participant::Impl::end_session() {
+  if (session_ != nullptr) std::this_thread::sleep_until(session_->next_announcement());
+  session_.reset();
+}
+
 void Participant::Impl::leave() {
   if (session_ == nullptr) return;
   for (Endpoint* const endpoint : endpoints_) endpoint->leave(*session_);
-  session_.reset();
+  end_session();
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   peers_.clear();
   strangers_.clear();
+  joined_ns_ = Now::read().steady_ns;
   authenticated_.clear();
   writers_.clear();
   readers_.clear();
@@ -228,7 +260,7 @@ void Participant::Impl::on_participant(const Guid& guid, const std::string& name
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   const Peer peer{name, from_user_data(user_data)};
   if (is_authenticated(guid)) return update_peer(guid, peer);
-  strangers_.emplace(guid, Stranger{peer, Clock::now()}).first->second.peer = peer;
+  strangers_[guid] = peer;
 }
 
 void Participant::Impl::on_participant_gone(const Guid& guid, bool said_goodbye) {
@@ -249,10 +281,14 @@ void Participant::Impl::on_authentication(const Guid& guid, bool authenticated) 
   if (authenticated) {
     authenticated_.insert(guid);
     if (stranger == strangers_.end()) return;
-    update_peer(guid, stranger->second.peer);
+    update_peer(guid, stranger->second);
     strangers_.erase(stranger);
   } else {
-    refuse(guid, stranger == strangers_.end() ? Peer{} : stranger->second.peer, "");
+    const auto heard = guard_->announcements(Now::read());
+    const auto said = heard.find(bytes_of(guid.guidPrefix));
+    refuse(guid,
+           said == heard.end() ? Peer{} : Peer{said->second.name, from_user_data(said->second.user_data)},
+           "");
   }
 }
 
@@ -266,10 +302,15 @@ void Participant::Impl::refuse(const Guid& guid, const Peer& peer, const char* r
 }
 
 // Who refuses this process does not answer it. Neither is told why.
-void Participant::Impl::refuse_silent_strangers() {
-  for (const auto& [guid, stranger] : strangers_) {
-    if (Clock::now() - stranger.since > kHandshakePatience)
-      refuse(guid, stranger.peer, ": it does not complete the handshake");
+void Participant::Impl::refuse_silent_strangers(const Guid& own) {
+  if (!refused_peers_) return;
+  const Now now = Now::read();
+  for (const auto& [participant, said] : guard_->announcements(now)) {
+    const Guid guid = participant_guid(participant);
+    if (guid == own || is_authenticated(guid)) continue;
+    if (now.steady_ns - std::max(said.since_ns, joined_ns_) >
+        kHandshakePatience / std::chrono::nanoseconds(1))
+      refuse(guid, {said.name, from_user_data(said.user_data)}, ": it does not complete the handshake");
   }
 }
 
@@ -387,7 +428,8 @@ std::optional<std::string> Participant::Impl::become_source(const std::vector<st
     established_at_ = Clock::now();
     on_lost_source_ = std::move(on_lost);
   }
-  if (session_ != nullptr) session_->announce(announcement_);
+  announcement_changed_ = true;
+  announce_when_due();
   return std::nullopt;
 }
 

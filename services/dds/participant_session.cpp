@@ -82,13 +82,17 @@ std::shared_ptr<DatagramGuard> guard_of(const NodeSettings& settings) {
 
 ParticipantSession::ParticipantSession(const NodeSettings& settings, const Announcement& announcement,
                                        const std::shared_ptr<DatagramGuard>& guard,
-                                       dds::DomainParticipantListener* listener) {
+                                       dds::DomainParticipantListener* listener)
+    : spacing_(settings.network.discovery_servers.empty() ? std::chrono::milliseconds(0)
+                                                          : kAnnouncementSpacing) {
   set_up_fast_dds();
   participant = join(settings, announcement, guard, listener);
   if (participant == nullptr) {
     throw std::runtime_error("cannot join DDS domain " + std::to_string(settings.domain) +
                              ": no port could be opened or the transport could not be set up");
   }
+  // Fast DDS 3 remembers the addresses of the host from the first participant of the process on; this lets it read them again.
+  participant->set_qos(participant->get_qos());
   publisher = participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
   subscriber = participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
   if (publisher == nullptr || subscriber == nullptr) {
@@ -103,6 +107,7 @@ void ParticipantSession::announce(const Announcement& announcement) {
   dds::DomainParticipantQos qos = participant->get_qos();
   qos.user_data().data_vec(to_user_data(announcement));
   participant->set_qos(qos);
+  next_announcement_ = std::chrono::steady_clock::now() + spacing_;
 }
 
 dds::Topic* ParticipantSession::topic(const std::string& wire_name, const dds::TypeSupport& type) {

@@ -90,7 +90,7 @@ class FailingFlight {
     start(FlightProcess::kGround);
     require(
         [this] {
-          const auto& v = truth().velocity_ned();
+          const auto v = truth().velocity_ned();
           return height_m() > kHeight_m - 0.05 && std::hypot(v[0], v[1]) > 0.4;
         },
         "it flies the mission");

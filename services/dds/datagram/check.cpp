@@ -292,10 +292,14 @@ const char* DatagramCheck::check_payload(Submessage& submessage, const ListConte
     HiddenParameters hidden;
     std::uint64_t digest = 0xcbf29ce484222325U;
     const bool key_only = submessage.has(kKeyFlag);
-    if (const char* const fault = check_discovery_payload(payload, context, key_only, hidden, digest))
+    Announced announced;
+    if (const char* const fault =
+            check_discovery_payload(payload, context, key_only, hidden, digest, announced))
       return fault;
-    if (context.topic == BuiltinTopic::kParticipant && !key_only && !context.relays)
+    if (context.topic == BuiltinTopic::kParticipant && !key_only && !context.relays) {
       result_.announcement_digest = digest;
+      result_.announced = announced;
+    }
     if (result_.hidden_count + hidden.count > CheckedDatagram::kMostHidden)
       return "discovery data with more than 8 type descriptions (9.6.3.2)";
     for (std::size_t i = 0; i < hidden.count; ++i)

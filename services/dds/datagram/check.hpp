@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "swiftlet/services/dds/datagram/parameter_list.hpp"
 #include "swiftlet/services/dds/datagram/rtps_ids.hpp"
 
 namespace swiftlet::comms {
@@ -47,6 +48,7 @@ struct CheckedDatagram {
   bool about_participant = false;  // holds a DATA in which a participant announces itself, or says goodbye
   // Of its lease and built-in endpoints in an announcement; 0 for others, and if another announces it.
   std::uint64_t announcement_digest = 0;
+  Announced announced;  // in that announcement; in the datagram that was checked
 
   static constexpr std::size_t kMostWriters = 32;
   std::array<NumberedWriter, kMostWriters> writers{};

@@ -1,9 +1,15 @@
 #include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <mutex>
 
 namespace swiftlet::comms {
+namespace {
+
+constexpr std::int64_t kLately_ns = 1'000'000'000;  // half the lease of a process
+
+}  // namespace
 
 Now Now::read() {
   return {std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1),
@@ -42,7 +48,39 @@ const char* DatagramGuard::fault_of(const CheckedDatagram& checked, const Sender
   }
   if (const char* const fault = replies_.fault_of(checked)) return fault;
   if (!checked.about_participant) return nullptr;
-  return participants_.admit(checked.source, checked.announcement_digest, sender, now.steady_ns);
+  const char* const fault =
+      participants_.admit(checked.source, checked.announcement_digest, sender, now.steady_ns);
+  if (fault == nullptr && limits_.security) note_announcement(checked, now);
+  return fault;
+}
+
+void DatagramGuard::note_announcement(const CheckedDatagram& checked, const Now& now) {
+  if (checked.announcement_digest == 0) {
+    announcements_.erase(checked.source);
+    return;
+  }
+  if (announcements_.size() >= kMostAnnouncements && announcements_.count(checked.source) == 0)
+    announcements_.erase(
+        std::min_element(announcements_.begin(), announcements_.end(),
+                         [](const auto& a, const auto& b) { return a.second.heard_ns < b.second.heard_ns; }));
+  const Announced& said = checked.announced;
+  Announcement& known = announcements_[checked.source];
+  if (known.heard_ns == 0 || now.steady_ns - known.heard_ns > kLately_ns) known.since_ns = now.steady_ns;
+  known.heard_ns = now.steady_ns;
+  known.name.clear();
+  if (said.name_size > 0)
+    known.name.assign(said.name, std::find(said.name, said.name + said.name_size - 1, 0));
+  known.user_data.clear();
+  if (said.user_data != nullptr) known.user_data.assign(said.user_data, said.user_data + said.user_data_size);
+}
+
+std::map<GuidPrefix, DatagramGuard::Announcement> DatagramGuard::announcements(const Now& now) {
+  const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
+  std::map<GuidPrefix, Announcement> lately;
+  for (const auto& [participant, said] : announcements_) {
+    if (now.steady_ns - said.heard_ns < kLately_ns) lately.emplace(participant, said);
+  }
+  return lately;
 }
 
 std::size_t DatagramGuard::participants_heard(const Now& now) {

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "swiftlet/services/dds/datagram/check.hpp"
@@ -23,9 +25,19 @@ struct Now {
   static Now read();
 };
 
-// Thread-safe: shared by the transports of a participant and their receiving threads. Allocates only when constructed, and for fragments that are sent.
+// Thread-safe: shared by the transports of a participant and their receiving threads. Allocates only when constructed, for
+// fragments that are sent, and with security for announcements.
 class DatagramGuard {
  public:
+  // What a participant said last about itself. Nothing proves it.
+  struct Announcement {
+    std::string name;
+    std::vector<std::uint8_t> user_data;
+    std::int64_t since_ns = 0;  // of a monotonic clock
+    std::int64_t heard_ns = 0;
+  };
+  static constexpr std::size_t kMostAnnouncements = 64;
+
   // keys: of the network; empty: datagrams are not sealed.
   explicit DatagramGuard(const runtime::NetworkKeys& keys = {}, const DatagramLimits& limits = {});
 
@@ -36,6 +48,9 @@ class DatagramGuard {
 
   // Participants that have announced themselves to this one within the last seconds.
   std::size_t participants_heard(const Now& now);
+
+  // With security: of the participants that have announced themselves within the last second, and not said goodbye.
+  std::map<GuidPrefix, Announcement> announcements(const Now& now);
 
   bool seals() const { return sealer_.has_value(); }
   // Turns a datagram of the middleware into a sealed one. Requires seals().
@@ -49,6 +64,8 @@ class DatagramGuard {
  private:
   const char* fault_of(const CheckedDatagram& checked, const SenderAddress& sender, const Now& now);
 
+  void note_announcement(const CheckedDatagram& checked, const Now& now);
+
   const DatagramLimits limits_;
   std::optional<DatagramSealer> sealer_;
   RefusalLog refusals_;
@@ -58,6 +75,7 @@ class DatagramGuard {
   SequenceWindow sequences_;
   ReplyCheck replies_;
   ParticipantAdmission participants_;
+  std::map<GuidPrefix, Announcement> announcements_;  // the longest silent one is replaced
 };
 
 }  // namespace swiftlet::comms

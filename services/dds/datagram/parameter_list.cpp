@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::uint16_t kSentinel = 0x0001;
 constexpr std::uint16_t kKeyHash = 0x0070;
+constexpr std::uint16_t kUserData = 0x002c;
+constexpr std::uint16_t kEntityName = 0x0062;
 constexpr int kMostParameters = 256;      // of a list
 constexpr std::uint32_t kMostTokens = 8;  // of a handshake
 // A shorter lease of a participant would end between two of its announcements.
@@ -55,7 +57,7 @@ constexpr ParameterRule kRules[] = {
     {0x0027, Shape::kFixed, 8},        // PID_LATENCY_BUDGET
     {0x0029, Shape::kStrings, 0},      // PID_PARTITION
     {0x002b, Shape::kFixed, 8},        // PID_LIFESPAN
-    {0x002c, Shape::kSequence, 1},     // PID_USER_DATA
+    {kUserData, Shape::kSequence, 1},  // PID_USER_DATA
     {0x002d, Shape::kSequence, 1},     // PID_GROUP_DATA
     {0x002e, Shape::kSequence, 1},     // PID_TOPIC_DATA
     {0x002f, Shape::kFixed, 24},       // PID_UNICAST_LOCATOR
@@ -72,7 +74,7 @@ constexpr ParameterRule kRules[] = {
     {0x0059, Shape::kStringPairs, 0},  // PID_PROPERTY_LIST
     {0x005a, Shape::kGuid, 16},        // PID_ENDPOINT_GUID
     {0x0060, Shape::kFixed, 4},        // PID_TYPE_MAX_SIZE_SERIALIZED
-    {0x0062, Shape::kString, 0},       // PID_ENTITY_NAME
+    {kEntityName, Shape::kString, 0},  // PID_ENTITY_NAME
     {0x0069, Shape::kHidden, 0},       // PID_TYPE_IDV1
     {kKeyHash, Shape::kGuid, 16},      // PID_KEY_HASH
     {0x0071, Shape::kFixed, 4},        // PID_STATUS_INFO
@@ -192,6 +194,7 @@ struct Parameter {
   const std::uint8_t* begin = nullptr;
   std::size_t size = 0;  // with its header
   const ParameterRule* rule = nullptr;
+  ByteReader value{nullptr, 0, true};
 };
 
 // The lease of a participant and its built-in endpoints. Locators change with the interfaces of its host.
@@ -221,6 +224,7 @@ const char* check_list(ByteReader& list, const ListContext& context, const Found
     if (const char* const fault = check_value(*rule, value, context)) return fault;
     parameter.rule = rule;
     parameter.size = std::size_t{4} + length;
+    parameter.value = value;
     if (const char* const fault = found(parameter)) return fault;
   }
   return "parameter list of more than 256 parameters (9.4.2.11)";
@@ -236,7 +240,7 @@ const char* check_inline_qos(ByteReader& body, const ListContext& context, bool&
 }
 
 const char* check_discovery_payload(ByteReader payload, const ListContext& context, bool key_only,
-                                    HiddenParameters& hidden, std::uint64_t& digest) {
+                                    HiddenParameters& hidden, std::uint64_t& digest, Announced& announced) {
   const std::uint8_t* const encapsulation = payload.take(4);  // 10.2: PL_CDR_BE or PL_CDR_LE, and two options
   if (encapsulation == nullptr || encapsulation[0] != 0 || (encapsulation[1] != 2 && encapsulation[1] != 3))
     return "discovery data that is not a parameter list (9.6.3)";
@@ -246,6 +250,14 @@ const char* check_discovery_payload(ByteReader payload, const ListContext& conte
   const char* const fault = check_list(list, context, [&](const Parameter& parameter) -> const char* {
     names_key = names_key || parameter.id == key || (key_only && parameter.id == kKeyHash);
     if (never_changes(parameter.id)) add_to(digest, parameter);
+    ByteReader value = parameter.value;
+    if (parameter.id == kEntityName) {
+      announced.name_size = value.u32();
+      announced.name = value.take(announced.name_size);
+    } else if (parameter.id == kUserData) {
+      announced.user_data_size = value.u32();
+      announced.user_data = value.take(announced.user_data_size);
+    }
     if (parameter.rule->shape != Shape::kHidden) return nullptr;
     if (hidden.count == HiddenParameters::kMost)
       return "discovery data with more than 8 type descriptions (9.6.3.2)";

@@ -21,6 +21,14 @@ struct HiddenParameters {
   std::size_t count = 0;
 };
 
+// What a participant announces itself as: its name and its user data; null if it announces none.
+struct Announced {
+  const std::uint8_t* name = nullptr;
+  std::size_t name_size = 0;  // with the terminating 0
+  const std::uint8_t* user_data = nullptr;
+  std::size_t user_data_size = 0;
+};
+
 // Of the DATA that holds the list.
 struct ListContext {
   GuidPrefix source{};  // of the datagram
@@ -36,7 +44,7 @@ const char* check_inline_qos(ByteReader& body, const ListContext& context, bool&
 // Of the topics kParticipant and kEndpoint. key_only: the payload names what is gone, and holds no more.
 // digest: of the parameters that a participant never changes.
 const char* check_discovery_payload(ByteReader payload, const ListContext& context, bool key_only,
-                                    HiddenParameters& hidden, std::uint64_t& digest);
+                                    HiddenParameters& hidden, std::uint64_t& digest, Announced& announced);
 // Of the topic kLiveliness.
 const char* check_liveliness_payload(ByteReader payload, const ListContext& context);
 // Of the topic kHandshake: ParticipantGenericMessage of DDS Security 1.1, 7.4.4.

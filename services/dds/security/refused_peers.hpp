@@ -10,7 +10,7 @@
 
 namespace swiftlet::comms {
 
-// Fast DDS 2.9 reports whom it refuses by GUID only, several times for one participant, and writes the reason to its own
+// Fast DDS reports whom it refuses by GUID only, several times for one participant, and writes the reason to its own
 // log, from another thread. Thread-safe.
 class RefusedPeers {
  public:

@@ -185,6 +185,36 @@ TEST(DatagramGuard, HoldsAParticipantToWhatItAnnounced) {
   EXPECT_FALSE(admits(guard, real, kSecond_ns));
 }
 
+TEST(DatagramGuard, KnowsWithSecurityWhatParticipantsSaidAboutThemselves) {
+  const auto now = [](std::int64_t now_ns) { return Now{now_ns, now_ns}; };
+  const RtpsMessage message =
+      announcement(kAlice, participant_parameters(kAlice)
+                               .parameter(0x0062, ByteWriter().string("control"))
+                               .parameter(0x002c, ByteWriter().u32(4).bytes(std::string("p=1;"))));
+  DatagramGuard open;
+  ASSERT_TRUE(admits(open, message, kSecond_ns));
+  EXPECT_TRUE(open.announcements(now(kSecond_ns)).empty()) << "without security";
+
+  DatagramLimits limits;
+  limits.security = true;
+  DatagramGuard guard({}, limits);
+  ASSERT_TRUE(admits(guard, message, kSecond_ns));
+  ASSERT_TRUE(admits(guard, message, kSecond_ns * 3 / 2));
+  auto heard = guard.announcements(now(2 * kSecond_ns));
+  ASSERT_EQ(heard.count(kAlice), 1U);
+  EXPECT_EQ(heard[kAlice].name, "control");
+  EXPECT_EQ(heard[kAlice].user_data, (std::vector<std::uint8_t>{'p', '=', '1', ';'}));
+  EXPECT_EQ(heard[kAlice].since_ns, kSecond_ns);
+  EXPECT_TRUE(guard.announcements(now(3 * kSecond_ns)).empty()) << "silent";
+  ASSERT_TRUE(admits(guard, message, 4 * kSecond_ns));
+  EXPECT_EQ(guard.announcements(now(4 * kSecond_ns))[kAlice].since_ns, 4 * kSecond_ns) << "came back";
+
+  for (std::uint32_t number = 0; number < 2 * DatagramGuard::kMostAnnouncements; ++number)
+    ASSERT_TRUE(admits(guard, newcomer(number), 4 * kSecond_ns + number));
+  EXPECT_EQ(guard.announcements(now(4 * kSecond_ns + 200)).size(), DatagramGuard::kMostAnnouncements);
+  EXPECT_EQ(guard.announcements(now(4 * kSecond_ns + 200)).count(kAlice), 0U) << "the longest silent one";
+}
+
 TEST(DatagramGuard, BoundsTheParticipantsThatAHostAnnounces) {
   DatagramGuard guard;
   std::uint32_t admitted = 0;
