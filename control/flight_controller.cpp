@@ -70,6 +70,8 @@ void FlightController::set_vehicle_fault(const VehicleFault& fault) {
 
 void FlightController::set_rotors_running(bool running) { impl_->rotors_running = running; }
 
+void FlightController::set_obeyed(const plant::ObeyedCommand& obeyed) { impl_->obeyed = obeyed; }
+
 void FlightController::set_levels(plant::ControlLevels accepted, std::optional<plant::ControlLevel> wanted) {
   Impl& c = *impl_;
   const bool obeyed = c.command.rotor_state == plant::RotorState::kRunning && accepted.has(c.level);

@@ -70,6 +70,10 @@ class FlightController {
   // when they run: a vehicle with an arming of its own starts them later than it is told to. Without a call they run when told to.
   void set_rotors_running(bool running);
 
+  // The command that the vehicle obeyed when it took the next sample, as it reports with it. Without a call, or without that report, it
+  // is taken to obey the newest one: over a link with delay the lift that is learnt is then wrong.
+  void set_obeyed(const plant::ObeyedCommand& obeyed);
+
   void on_pose(const plant::PoseSample& sample);
   void on_battery(const plant::BatterySample& sample);
   void on_rotor_speeds(const plant::RotorSpeedSample& sample);

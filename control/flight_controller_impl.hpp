@@ -15,6 +15,7 @@
 #include "swiftlet/control/estimation/odometry_motion.hpp"
 #include "swiftlet/control/estimation/poses_ahead.hpp"
 #include "swiftlet/control/estimation/rotor_observer.hpp"
+#include "swiftlet/control/estimation/sent_commands.hpp"
 #include "swiftlet/control/estimation/supply_observer.hpp"
 #include "swiftlet/control/estimation/takeoff_consistency.hpp"
 #include "swiftlet/control/flight_controller.hpp"
@@ -126,7 +127,9 @@ struct FlightController::Impl {
   plant::ControlLevels accepted_levels = plant::ControlLevel::kActuators;
   plant::ActuatorCommand command;  // at other levels without throttles
   double thrust_n = 0.0;           // collective thrust of the command, at other levels
-  plant::VehicleCommand sent;      // the command at the level
+  plant::ObeyedCommand obeyed;     // as the vehicle reports
+  SentCommands sent_commands;
+  plant::VehicleCommand sent;  // the command at the level
   Reference reference;
   Heading heading;  // of the reference's yaw
   AttitudeSetpoint attitude_setpoint;

@@ -23,7 +23,8 @@ constexpr int kUnusableToFault = 200;  // unusable IMU samples in a row to a fau
 constexpr double kDescentGain = 4.0;   // 1/s, vertical speed error to acceleration, level descent
 constexpr double kBrakeGain = 2.0;     // 1/s, the same for the horizontal speed
 constexpr double kDescentLimit = 2.0;  // m/s^2, of that acceleration
-// Of the lag of the attitude loop, by which the law kLead leads. A longer lead helps little more in gusts, and passes on more noise.
+// Of the lag of the attitude loop, by which the law kLead leads. A longer lead helps little more in gusts, and passes
+// on more noise.
 constexpr double kLeadShare = 2.0 / 3.0;
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
@@ -72,6 +73,7 @@ void FlightController::Impl::restart_if_clock_went_back(std::int64_t stamp_ns) {
   estimate_source = EstimateSource(settings.estimator.odometry, settings.failsafe.mocap_timeout_s);
   poses_ahead.clear();
   rotors = RotorObserver(vehicle, settings.estimator.rotor_speed_bandwidth);
+  sent_commands = SentCommands();
   resets_seen = 0;
   last_stamp_ns = 0;
   vehicle_fault_since_ns = 0;
@@ -127,6 +129,7 @@ SupervisorInputs FlightController::Impl::inputs() const {
   inputs.vertical_specific_force_residual =
       -(specific_force_frd.z() - estimate.accelerometer_bias.z()) - lift_now();
   if (observes_lift_off()) inputs.lift_off_ns = lift.lifted_off() ? lift_off_ns : kNoLiftOffYet;
+  inputs.command_delay_s = sent_commands.delay_s();
   inputs.takeoff_inconsistent = takeoff_monitor.contradicted();
   inputs.specific_force_frd = specific_force_frd;
   inputs.rotor_speed = *std::max_element(rotors.speeds().begin(), rotors.speeds().end());
@@ -153,12 +156,13 @@ double FlightController::Impl::store_sample(const plant::ImuSample& sample) {
   const double dt_s = std::min(imu_gap_s, kMaxStep_s);
   last_stamp_ns = sample.stamp_ns;
   specific_force_frd = sample.specific_force_frd;
+  sent_commands.sample(sample.stamp_ns, dt_s, obeyed);
   if (level == plant::ControlLevel::kActuators) {
     supply_observer.step(dt_s, command, rotors.speeds());
     supply = allocator.supply_at(supply_observer.voltage_v());
     rotors.step(dt_s, command, supply_observer.voltage_v());
   } else {
-    rotors.step(dt_s, thrust_n);
+    rotors.step(dt_s, sent_commands.obeyed_thrust_n());
   }
   return dt_s;
 }
@@ -260,8 +264,8 @@ double FlightController::Impl::ground_effect_now() const {
   return plant::ground_effect(of.rotor_radius_m, of.rotor_height_m + above_m);
 }
 
-// The disturbance, horizontally nearer to the time at which the tilt that is commanded now will have been reached. Slowly changing angles
-// follow with the lag k_rate / k_angle.
+// The disturbance, horizontally nearer to the time at which the tilt that is commanded now will have been reached.
+// Slowly changing angles follow with the lag k_rate / k_angle.
 Vector3d FlightController::Impl::expected_disturbance() const {
   Vector3d expected = disturbance.acceleration_ned();
   if (settings.rough_air.law != DisturbanceLaw::kLead) return expected;
@@ -430,6 +434,7 @@ const plant::VehicleCommand& FlightController::Impl::stamp_command(const plant::
   } else {
     plant::header_of(sent) = command;
   }
+  sent_commands.sent(sample.stamp_ns, thrust_n);
   return sent;
 }
 

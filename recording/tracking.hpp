@@ -26,8 +26,8 @@ enum class TruthSource {
 };
 constexpr double kLongestInterpolationS = 0.05;  // at a snap of 1000 m/s^4 the error is below 20 um
 
-// The truth of a stamp; nullopt if it is not known. Interpolated are the position by the cubic Hermite polynomial, all else linearly.
-// after: the first row that is not older, or the end.
+// The truth of a stamp; nullopt if it is not known. Interpolated are the position by the cubic Hermite polynomial,
+// all else linearly. after: the first row that is not older, or the end.
 std::optional<TruthRow> truth_at(const Track<TruthRow>& truth, const TruthRow* after, std::int64_t stamp_ns,
                                  TruthSource source);
 

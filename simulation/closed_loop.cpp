@@ -67,6 +67,7 @@ void ClosedLoop::answer(const plant::TelemetryPacket& packet) {
   if (pose_) controller.on_pose(*pose_);
   if (packet.battery) controller.on_battery(*packet.battery);
   if (packet.rotor_speeds) controller.on_rotor_speeds(*packet.rotor_speeds);
+  controller.set_obeyed(packet.obeyed);
   sent = packet.odometry ? controller.on_odometry(*packet.odometry) : controller.on_imu(packet.imu);
   answered = packet.imu;
   answered_odometry = packet.odometry;

@@ -32,7 +32,9 @@ struct GuidanceContext {
   std::int64_t now_ns;
   GuidanceState& state;
   std::int64_t lift_off_ns = 0;  // of the present take-off; 0: not observed; or kNoLiftOffYet
-  bool rotors_running = true;    // false: the vehicle has not yet obeyed the command to start them
+  double command_delay_s =
+      0.0;  // from a sample to the vehicle that obeys the command that answers it; 0: not known
+  bool rotors_running = true;  // false: the vehicle has not yet obeyed the command to start them
 };
 
 inline double elapsed_s(std::int64_t from_ns, std::int64_t to_ns) {

@@ -16,6 +16,8 @@ constexpr double kContactTime_s = 0.2;
 constexpr double kContactLift = 1.0;  // m/s^2, vertical specific-force residual for kBlindContactTime_s
 constexpr double kBlindContactTime_s = 0.3;
 constexpr double kVehicleFaultTime_s = 0.5;
+constexpr double kRotorsStartTime_s =
+    10.0;  // PX4 disarms after this time without a take-off (COM_DISARM_PRFLT)
 
 // True once `condition` has held for `duration_s`. `since` is when it began, or 0 if it does not hold.
 bool held(bool condition, std::int64_t& since, std::int64_t now_ns, double duration_s) {
@@ -105,6 +107,8 @@ EventSet observe(SupervisorContext& context, double tip_over_cosine) {
   events.add(Event::kImuGap, inputs.imu_gap_s > failsafe.imu_gap_s);
   events.add(Event::kTippedOver, cosine_of_tilt(context.estimate().q_ned_from_frd) < tip_over_cosine);
   events.add(Event::kVehicleFault, inputs.vehicle_fault_s >= kVehicleFaultTime_s);
+  events.add(Event::kRotorsNotRunning,
+             !inputs.rotors_running && elapsed_s(state.mode_since_ns, state.now_ns) > kRotorsStartTime_s);
   events.add(Event::kImpact, state.guidance.phase != Phase::kGround &&
                                  inputs.specific_force_frd.norm() > failsafe.impact_acceleration);
   events.add(Event::kTakeoffInconsistent,

@@ -12,6 +12,8 @@ const char* to_string(Event event) {
       return "tipped over";
     case Event::kVehicleFault:
       return "vehicle fault";
+    case Event::kRotorsNotRunning:
+      return "rotors not running";
     case Event::kImpact:
       return "impact";
     case Event::kTakeoffInconsistent:

@@ -13,6 +13,7 @@ enum class Event : std::uint8_t {
   kImuGap,
   kTippedOver,
   kVehicleFault,
+  kRotorsNotRunning,
   kImpact,
   kTakeoffInconsistent,
   kPoseJumped,

@@ -32,8 +32,16 @@ struct SupervisorContext {
   bool flying() const { return state.guidance.flying(); }
   bool paused() const { return state.guidance.mission_paused(); }
   GuidanceContext guidance() const {
-    return {limits,         settings.failsafe,  estimate(),           plan, state.mode, state.now_ns,
-            state.guidance, inputs.lift_off_ns, inputs.rotors_running};
+    return {limits,
+            settings.failsafe,
+            estimate(),
+            plan,
+            state.mode,
+            state.now_ns,
+            state.guidance,
+            inputs.lift_off_ns,
+            inputs.command_delay_s,
+            inputs.rotors_running};
   }
 };
 

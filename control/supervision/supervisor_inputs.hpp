@@ -21,6 +21,8 @@ struct SupervisorInputs {
   bool pose_jumped = false;  // the estimate was reset to poses that disagreed for long, since the last step
   // Stamp at which the vehicle lifted off, as the accelerometer shows it; 0: not observed; or kNoLiftOffYet.
   std::int64_t lift_off_ns = 0;
+  double command_delay_s =
+      0.0;  // from a sample to the vehicle that obeys the command that answers it; 0: not known
   bool takeoff_inconsistent =
       false;  // after lift-off the poses do not follow the motion (estimation/takeoff_consistency.hpp)
   bool has_battery = false;  // the supply voltage was measured

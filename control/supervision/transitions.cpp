@@ -42,6 +42,7 @@ const Transition kTransitions[] = {
   // Still on the ground: it stays there.
   {{M::kArmed}, E::kPoseLost, guards::kAlways, preconditions::kNone, M::kDisarmed, R::kNoPose, actions::kNothing},
   {{M::kArmed}, E::kGroundLinkLost, guards::kLinkMatters, preconditions::kNone, M::kDisarmed, R::kGroundLinkLost, actions::kNothing},
+  {kLeavingGround, E::kRotorsNotRunning, guards::kSpoolingUp, preconditions::kNone, M::kDisarmed, R::kRotorsNotRunning, actions::kNothing},
   {kLeavingGround, E::kPoseLost, guards::kSpoolingUp, preconditions::kNone, M::kDisarmed, R::kNoPose, actions::kNothing},
   {kLeavingGround, E::kBatteryCritical, guards::kSpoolingUp, preconditions::kNone, M::kDisarmed, R::kBatteryCritical, actions::kNothing},
   {kLeavingGround, E::kOutsideFence, guards::kSpoolingUp, preconditions::kNone, M::kDisarmed, R::kOutsideFence, actions::kNothing},

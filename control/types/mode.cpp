@@ -86,6 +86,8 @@ const char* to_string(Reason reason) {
       return "mission paused";
     case Reason::kVehicleFault:
       return "the vehicle reports a fault";
+    case Reason::kRotorsNotRunning:
+      return "the vehicle does not report rotors_running in vehicle_info";
   }
   return "unknown";
 }

@@ -53,9 +53,10 @@ enum class Reason : std::uint8_t {
   kEngagedInFlight,         // the controller started while its vehicle was in the air
   kSetpointsViolatedFence,  // a stream of attitudes or body rates violated the fence
   kMissionPaused,
-  kVehicleFault,  // the vehicle reported a fault, such as that another flies it
+  kVehicleFault,      // the vehicle reported a fault, such as that another flies it
+  kRotorsNotRunning,  // the vehicle did not report that its rotors run, and so did not take off
 };
-constexpr int kReasonCount = static_cast<int>(Reason::kVehicleFault) + 1;
+constexpr int kReasonCount = static_cast<int>(Reason::kRotorsNotRunning) + 1;
 const char* to_string(Reason reason);
 
 // What the vehicle reports as fault: a sentence with its terminating 0; empty: none.

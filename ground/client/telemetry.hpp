@@ -5,7 +5,7 @@ namespace swiftlet::ground {
 
 enum class Telemetry {
   kReceived,     // all
-  kNotReceived,  // those at 10 Hz at most: enough to send requests, at a tenth of the processor time
+  kNotReceived,  // those at 10 Hz at most: enough to send requests, at less processor time
 };
 
 }  // namespace swiftlet::ground

@@ -339,6 +339,14 @@ std::optional<Eigen::Vector3d> FleetMonitor::place_beside(std::size_t i, std::si
   return best;
 }
 
+// To the next one that is aside. Each searches in its turn, which bounds the work of a step.
+void FleetMonitor::pass_turn() {
+  for (std::size_t k = 0; k < vehicles_.size(); ++k) {
+    turn_ = (turn_ + 1) % vehicles_.size();
+    if (way_[turn_] == Way::kAside) return;
+  }
+}
+
 // Of a vehicle that the monitor has sent aside.
 void FleetMonitor::send_back(std::size_t i, const Scene& scene, std::vector<Order>& orders) {
   const Eigen::Vector3d& here = scene.news[i].position_ned;
@@ -355,7 +363,7 @@ void FleetMonitor::send_back(std::size_t i, const Scene& scene, std::vector<Orde
   }
   way_[i] = Way::kAside;
   orders[i] = {Order::Kind::kPause, Eigen::Vector3d::Zero(), *in_the_way};
-  if (paused_s_[i] < vehicles_[i].stop_s || !stands(*in_the_way, scene)) return;
+  if (i != turn_ || paused_s_[i] < vehicles_[i].stop_s || !stands(*in_the_way, scene)) return;
   if (const auto place = place_beside(i, *in_the_way, scene, orders)) {
     way_[i] = Way::kAround;
     aside_ned_[i] = *place;
@@ -395,6 +403,7 @@ std::vector<Order> FleetMonitor::step(double now_s, const std::vector<VehicleNew
     if (scene.status[of] == Status::kOffPath || scene.status[of] == Status::kLost)
       keep_away(of, scene, orders);
   }
+  pass_turn();
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     if (orders[i].kind == Order::Kind::kStepAside) {
       if (way_[i] == Way::kPath) {

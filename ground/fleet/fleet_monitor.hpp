@@ -8,7 +8,7 @@
 // Of two vehicles off their paths the one of lower priority steps aside. Nobody waits for good: places on paths that vehicles
 // have reached are apart (right_of_way.hpp), so that each can go back to its own past others that stand, if not straight then by
 // a place beside them; one that was sent aside and stands in another's way back is sent on. Pure logic: it is told what is
-// known, and says what each vehicle should do.
+// known, and says what each vehicle should do. In a step only one vehicle searches for such a place.
 #pragma once
 
 #include <cstddef>
@@ -102,6 +102,7 @@ class FleetMonitor {
                                      const std::vector<Order>& orders) const;
   std::optional<Eigen::Vector3d> place_beside(std::size_t i, std::size_t of, const Scene& scene,
                                               const std::vector<Order>& orders) const;
+  void pass_turn();
   void send_back(std::size_t i, const Scene& scene, std::vector<Order>& orders);
   void make_way_back(std::size_t i, const Scene& scene, std::vector<Order>& orders);
 
@@ -116,6 +117,8 @@ class FleetMonitor {
   std::vector<double> left_s_;              // path time at which they were sent aside
   std::vector<double> leaving_s_;           // path time that they may have flown on after that
   std::vector<Eigen::Vector3d> aside_ned_;  // where those that are aside, or on a way around, were sent
+  std::size_t turn_ =
+      0;  // the one of those aside that may search for a place beside another one in this step
   double now_s_ = 0.0;
 };
 

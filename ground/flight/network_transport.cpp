@@ -259,7 +259,8 @@ void NetworkTransport::advance() {
   }
   if (control_silence_.lasts(view.control.count)) fail_silent("control");
   if (vehicle_silence_.lasts(view.truth.count)) fail_silent("the vehicle");
-  // Another process may publish the truth (swiftlet-plant --truth-only): control repeats its status with the stamp of the last sample.
+  // Another process may publish the truth (swiftlet-plant --truth-only): control repeats its status with the stamp of
+  // the last sample.
   const auto answered_ns = static_cast<std::uint64_t>(view.control.message.stamp_ns());
   if (sample_silence_.lasts(answered_ns)) fail_silent("the vehicle");
 }

@@ -125,6 +125,29 @@ CheckResult check_timeout(const VehicleRecording& recording, const CommandPhase&
   return judged(kName, figure(timeout_s, "s", 2, " until the rotors slow down"), limit, finding);
 }
 
+std::optional<bool> last_report(const VehicleRecording& recording, const CommandPhase& phase) {
+  std::optional<bool> running;
+  for (const Received<bool>& report : recording.rotors_running) {
+    if (report.received_ns <= phase.end_ns) running = report.sample;
+  }
+  return running;
+}
+
+// Above level actuators the take-off waits for this report.
+CheckResult check_running_report(const VehicleRecording& recording, const CommandPhase& idle,
+                                 const CommandPhase& stopped) {
+  constexpr const char* kName = "commands.rotors_running";
+  const bool started = last_report(recording, idle).value_or(false);
+  const bool stands = !last_report(recording, stopped).value_or(false);
+  std::string finding;
+  if (!stands) finding = "rotors_running of vehicle_info stays true after ROTORS_OFF";
+  if (!started)
+    finding = "rotors_running of vehicle_info does not become true: control waits for it with each take-off";
+  return judged(kName,
+                {started ? 1.0 : 0.0, "", fmt::format("{} after start, {} after stop", started, !stands)},
+                "true, then false", finding);
+}
+
 }  // namespace
 
 const CommandPhase* phase_of(const CommandPhases& phases, CommandStage stage) {
@@ -141,15 +164,19 @@ CheckResults check_commands(const VehicleRecording& recording, const CommandPhas
   const CommandPhase* const stopped = phase_of(phases, CommandStage::kStopped);
   if (off == nullptr || idle == nullptr || lower == nullptr || silence == nullptr || stopped == nullptr)
     return {missing("commands.steps", "missing: the steps with commands were not completed")};
-  return {check_turning("commands.off", recording, *off, false,
-                        "rotors turn while off: ROTORS_OFF is a state of its own, not throttle 0"),
-          check_obeyed(recording, *idle),
-          check_turning("commands.idle", recording, *idle, true,
-                        "the rotors do not start: ROTORS_RUNNING at throttle 0 turns them slowly"),
-          check_lower_term(recording, *lower),
-          check_timeout(recording, *silence),
-          check_turning("commands.stop", recording, *stopped, false,
-                        "rotors turn while off: they do not stop on ROTORS_OFF")};
+  CheckResults results = {
+      check_turning("commands.off", recording, *off, false,
+                    "rotors turn while off: ROTORS_OFF is a state of its own, not throttle 0"),
+      check_obeyed(recording, *idle),
+      check_turning("commands.idle", recording, *idle, true,
+                    "the rotors do not start: ROTORS_RUNNING at throttle 0 turns them slowly"),
+      check_lower_term(recording, *lower),
+      check_timeout(recording, *silence),
+      check_turning("commands.stop", recording, *stopped, false,
+                    "rotors turn while off: they do not stop on ROTORS_OFF")};
+  if (recording.description && closes_inner_loops(recording.description->levels))
+    results.push_back(check_running_report(recording, *idle, *stopped));
+  return results;
 }
 
 }  // namespace swiftlet::ground

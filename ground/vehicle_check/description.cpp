@@ -20,6 +20,14 @@ CheckResults check_description(const VehicleRecording& recording, const plant::V
           ? ""
           : fmt::format("another vehicle: {} has {} rotors, the vehicle file {} has {}", info.name,
                         info.rotor_count, vehicle.name, vehicle.rotor_count()))};
+  if (closes_inner_loops(info.levels) && !recording.rotors_running.empty()) {
+    const bool running = recording.rotors_running.back().sample;
+    results.push_back(
+        judged("vehicle_info.rotors_running", {running ? 1.0 : 0.0, "", running ? "true" : "false"}, "false",
+               running ? "rotors_running is true while the rotors are off: control waits for it with a "
+                         "take-off, and would not wait for the rotors"
+                       : ""));
+  }
   if (info.mass_kg <= 0.0) return results;
   results.push_back(
       judged("vehicle_info.mass", figure(info.mass_kg, "kg", 4),

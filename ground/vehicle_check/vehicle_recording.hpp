@@ -49,6 +49,11 @@ struct VehicleDescription {
   plant::ControlLevels levels = plant::ControlLevel::kActuators;
 };
 
+// The vehicle accepts a level at which it closes its inner loops itself.
+inline bool closes_inner_loops(plant::ControlLevels levels) {
+  return levels != plant::ControlLevel::kActuators;
+}
+
 // A request for the vehicle's clock and its answer.
 struct ClockExchange {
   std::int64_t sent_ns = 0;      // computer's clock

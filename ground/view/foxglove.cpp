@@ -16,7 +16,7 @@ constexpr std::uint8_t kServiceCallRequest = 2;
 constexpr std::uint8_t kServiceCallResponse = 3;
 constexpr const char* kEncoding = "cdr";
 constexpr const char* kSchemaEncoding = "ros2msg";
-constexpr int kMostDepth = 4;           // of JSON: a message has a list of objects
+constexpr std::size_t kMostDepth = 4;   // of JSON: a message has a list of objects
 constexpr std::size_t kMostShown = 40;  // characters of what is refused
 
 template <class Number, class Out>
@@ -138,9 +138,21 @@ mcap::Bytes service_response(std::uint32_t service, std::uint32_t call, const mc
 }
 
 ClientMessage parse_text(std::string_view text) {
-  // What is nested deeper is left out: to destroy it would take the stack.
-  const auto is_shallow = [](int depth, Json::parse_event_t, const Json&) { return depth <= kMostDepth; };
-  const Json json = Json::parse(text, is_shallow, false);
+  // What is nested deeper is left out: to destroy it would take the stack. So are more keys: each is compared with
+  // all before it.
+  std::array<std::size_t, kMostDepth + 2> keys{};  // of the object that is read, by depth
+  bool has_too_many_keys = false;
+  const auto is_kept = [&](int of, Json::parse_event_t event, const Json&) {
+    const auto depth = static_cast<std::size_t>(of);
+    if (depth > kMostDepth) return false;
+    if (event == Json::parse_event_t::object_start) keys[depth + 1] = 0;
+    if (event != Json::parse_event_t::key || ++keys[depth] <= kMostKeys) return true;
+    has_too_many_keys = true;
+    return false;
+  };
+  const Json json = Json::parse(text, is_kept, false);
+  if (has_too_many_keys)
+    return Fault{"an object of the message has more than " + std::to_string(kMostKeys) + " keys"};
   if (!json.is_object()) return Fault{"the message is not a JSON object"};
   const std::string op = text_of(json.value("op", Json()));
   if (op == "\"subscribe\"") return subscribe_of(json);

@@ -73,6 +73,8 @@ struct Fault {
 };
 using ClientMessage = std::variant<Subscribe, Unsubscribe, ServiceCall, Fault>;
 
+// Takes time in proportion to the size of the text, whatever is in it.
+constexpr std::size_t kMostKeys = 16;  // of an object of a text; those that are known have two
 ClientMessage parse_text(std::string_view text);
 ClientMessage parse_binary(const std::uint8_t* data, std::size_t size);
 

@@ -19,9 +19,10 @@ constexpr std::size_t kLogLines = 50;  // of a vehicle, for viewers that come la
 }  // namespace
 
 struct LiveTopics::Vehicle {
-  Vehicle(const comms::Participant& participant, const std::string& name)
-      : node(participant, name), standard(name) {}
+  Vehicle(const comms::Participant& participant, const std::string& its_name)
+      : name(its_name), node(participant, its_name), standard(its_name) {}
 
+  const std::string name;
   comms::Node node;
   StandardMessages standard;
 };
@@ -72,33 +73,41 @@ void LiveTopics::add_topic(Vehicle& vehicle, const comms::Topic<T>& topic) {
 }
 
 void LiveTopics::add_vehicle(const std::string& name) {
-  Vehicle& vehicle = vehicles_.emplace_back(participant_, name);
-  const std::size_t first = sources_.size();
+  const auto known = std::find_if(vehicles_.begin(), vehicles_.end(),
+                                  [&](const Vehicle& vehicle) { return vehicle.name == name; });
+  const bool is_new = known == vehicles_.end();
+  Vehicle& vehicle = is_new ? vehicles_.emplace_back(participant_, name) : *known;
+  if (is_new) add_topics(vehicle);
+  for (const StandardTopic& standard : vehicle.standard.topics()) {
+    const std::uint32_t channel = add_channel(standard.topic, *standard.schema);
+    State& state = states_[channel];
+    for (Source& source : sources_) {
+      const bool follows =
+          source.vehicle == &vehicle &&
+          std::find(standard.sources.begin(), standard.sources.end(), source.topic) != standard.sources.end();
+      if (!follows) continue;
+      if (std::find(state.sources.begin(), state.sources.end(), &source) == state.sources.end()) {
+        state.sources.push_back(&source);
+        source.users += state.users;
+      }
+      if (source.users > 0 && !source.subscription) source.subscription = source.subscribe(source);
+    }
+    if (!standard.is_log || state.kept == kLogLines) continue;
+    state.is_event = true;
+    use(channel);
+    state.kept = kLogLines;
+  }
+}
+
+void LiveTopics::add_topics(Vehicle& vehicle) {
   comms::for_each_topic([&](const auto& topic) {
     using Message = typename std::decay_t<decltype(topic)>::Message;
     add_topic(vehicle, topic);
     Source& source = sources_.back();
-    source.channel = add_channel("/" + name + "/" + source.topic, comms::schema_of<Message>());
+    source.channel = add_channel("/" + vehicle.name + "/" + source.topic, comms::schema_of<Message>());
     states_[source.channel].sources.push_back(&source);
     states_[source.channel].is_event = topic.qos == comms::Qos::kRequest || topic.qos == comms::Qos::kReply;
   });
-  for (const StandardTopic& standard : vehicle.standard.topics()) {
-    const std::uint32_t channel = add_channel(standard.topic, *standard.schema);
-    State& state = states_[channel];
-    for (std::size_t i = first; i < sources_.size(); ++i) {
-      const bool follows = std::find(standard.sources.begin(), standard.sources.end(), sources_[i].topic) !=
-                           standard.sources.end();
-      if (!follows) continue;
-      state.sources.push_back(&sources_[i]);
-      for (std::size_t user = 0; user < state.users; ++user) ++sources_[i].users;
-      if (sources_[i].users > 0 && !sources_[i].subscription)
-        sources_[i].subscription = sources_[i].subscribe(sources_[i]);
-    }
-    if (!standard.is_log) continue;
-    state.is_event = true;
-    state.kept = kLogLines;
-    use(channel);
-  }
 }
 
 std::vector<LiveTopics::Live> LiveTopics::use(std::uint32_t channel) {

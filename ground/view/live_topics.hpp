@@ -29,7 +29,7 @@ class LiveTopics {
   LiveTopics(const LiveTopics&) = delete;
   LiveTopics& operator=(const LiveTopics&) = delete;
 
-  // Adds the channels of a vehicle. Throws std::runtime_error.
+  // Adds the channels of a vehicle. Throws std::runtime_error; called again, it adds what is missing.
   void add_vehicle(const std::string& name);
   // With ids from 0 in this order.
   const std::vector<foxglove::Channel>& channels() const { return channels_; }
@@ -62,6 +62,7 @@ class LiveTopics {
   };
 
   std::uint32_t add_channel(const std::string& topic, const comms::MessageSchema& schema);
+  void add_topics(Vehicle& vehicle);
   template <class T>
   void add_topic(Vehicle& vehicle, const comms::Topic<T>& topic);
 

@@ -26,6 +26,7 @@
 
 #include "swiftlet/ground/pages/live_page.hpp"
 #include "swiftlet/ground/view/access.hpp"
+#include "swiftlet/ground/view/found_vehicles.hpp"
 #include "swiftlet/ground/view/live_topics.hpp"
 #include "swiftlet/ground/view/vehicle_requests.hpp"
 #include "swiftlet/ground/view/viewer.hpp"
@@ -52,6 +53,8 @@ constexpr auto kIdleTime = 30s;       // without an answer to a ping
 constexpr int kSendBuffer = 256 * 1024;
 constexpr double kConnectionBurst = 100.0;
 constexpr double kMessageBurst = 1000.0;
+constexpr std::size_t kKilobyte = 1024;
+constexpr double kKilobyteBurst = 1024.0;
 
 using Request = http::request<http::empty_body>;
 
@@ -119,9 +122,9 @@ class ViewServer::Impl {
   std::atomic<std::uint64_t> refused_{0};
   std::atomic<std::uint64_t> dropped_{0};
   std::atomic<std::uint64_t> unreceived_{0};
-  std::set<std::string> vehicles_;
   LiveTopics topics_;
   VehicleRequests requests_;
+  FoundVehicles found_;
   std::set<std::shared_ptr<Session>> sessions_;
   std::thread thread_;
 };
@@ -196,11 +199,23 @@ class ViewServer::Impl::Session : public std::enable_shared_from_this<Session> {
   void read() {
     socket_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
       if (error || !self->is_open_) return self->end();
-      if (!self->messages_.take(runtime::monotonic_ns())) return self->close("it sends too many messages");
+      if (!self->may_send_more()) return;
       self->take_message();
       self->pump();
       if (self->is_open_) self->read();
     });
+  }
+
+  // Disconnects a viewer that may not.
+  bool may_send_more() {
+    const std::int64_t now_ns = runtime::monotonic_ns();
+    bool may = messages_.take(now_ns);
+    if (!may) close("it sends too many messages");
+    for (std::size_t begun = 0; may && begun < buffer_.size(); begun += kKilobyte) {
+      may = kilobytes_.take(now_ns);
+      if (!may) close("it sends too much");
+    }
+    return may;
   }
 
   void take_message() {
@@ -260,6 +275,7 @@ class ViewServer::Impl::Session : public std::enable_shared_from_this<Session> {
   websocket::stream<beast::tcp_stream, false> socket_;
   beast::flat_buffer buffer_{kMostMessageBytes};
   comms::TokenBucket messages_{kMessageBurst, kMessagesPerSecond};
+  comms::TokenBucket kilobytes_{kKilobyteBurst, kKilobytesPerSecond};
   std::optional<Viewer> viewer_;
   std::optional<Outgoing> sending_;
   bool is_open_ = false;
@@ -359,7 +375,10 @@ ViewServer::Impl::Impl(const Context& context, const ViewSettings& settings,
       say_(std::move(say)),
       page_(pages::live_page()),
       topics_(context),
-      requests_(context) {
+      requests_(context),
+      found_({[this](const std::string& name) { requests_.add_vehicle(name); },
+              [this](const std::string& name) { topics_.add_vehicle(name); }},
+             say_) {
   listen(settings);
   for (const std::string& name : settings_.vehicles) add_vehicle(name);
   accept();
@@ -455,21 +474,17 @@ void ViewServer::Impl::look_regularly() {
     unreceived_ = topics_.dropped();
     const auto sessions = sessions_;
     for (const auto& session : sessions) session->count_dropped();
-    if (!settings_.vehicles.empty()) return;
-    for (const std::string& name : context_.discovered_vehicles()) add_vehicle(name);
+    const std::vector<std::string> names =
+        settings_.vehicles.empty() ? context_.discovered_vehicles() : settings_.vehicles;
+    for (const std::string& name : names) add_vehicle(name);
   });
 }
 
 void ViewServer::Impl::add_vehicle(const std::string& name) {
-  if (!vehicles_.insert(name).second) return;
   const std::size_t channels = topics_.channels().size();
   const std::size_t services = requests_.services().size();
-  try {
-    topics_.add_vehicle(name);
-    requests_.add_vehicle(name);
-  } catch (const std::exception& error) {  // what it has nevertheless is served
-    say_(fmt::format("vehicle {}: {}", name, error.what()));
-  }
+  if (!found_.add(name)) return;
+  if (topics_.channels().size() == channels && requests_.services().size() == services) return;
   const std::string new_channels = foxglove::advertise(
       std::vector<foxglove::Channel>(topics_.channels().begin() + channels, topics_.channels().end()));
   const std::string new_services = foxglove::advertise(

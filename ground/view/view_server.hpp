@@ -41,6 +41,7 @@ class ViewServer {
   static constexpr std::size_t kMostMessageBytes = 65536;  // of a message of a viewer
   static constexpr double kConnectionsPerSecond = 20.0;    // and a burst of 100
   static constexpr double kMessagesPerSecond = 100.0;      // of a viewer, and a burst of 1000
+  static constexpr double kKilobytesPerSecond = 64.0;      // of a viewer, of 1024 bytes, and a burst of 1024
 
   // context must outlive it. say: receives sentences about what fails meanwhile, in the thread of the server. Throws
   // std::runtime_error if the port cannot be used, or the vehicles' topics cannot.

@@ -274,6 +274,7 @@ void ControlService::on_ground_link(const msg::GroundLink& message) {
 
 void ControlService::answer(const VehicleSample& sample, Role role) {
   const std::int64_t arrived_ns = runtime::monotonic_ns();
+  loop_.set_obeyed(sample.obeyed);
   last_answer_ = std::visit(
       [&](const auto& motion) { return loop_.step(motion, arrived_ns, role, failover_.followed_term()); },
       sample.motion);

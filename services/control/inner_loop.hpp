@@ -85,6 +85,9 @@ class InnerLoop {
   boost::lockfree::spsc_queue<PendingRequest*, boost::lockfree::capacity<kMaxPendingRequests>> evaluated;
   boost::lockfree::spsc_queue<Snapshot, boost::lockfree::capacity<256>> snapshots;
 
+  // What the vehicle reports with the sample of the next step; from the IMU thread.
+  void set_obeyed(const plant::ObeyedCommand& obeyed) { controller_.set_obeyed(obeyed); }
+
   // Call both from the IMU thread. step() returns the command. finish() does the rest of the step after the
   // command is sent, and returns true if there is new output. now_ns, monotonic: arrival of the sample for
   // step(), departure of the command for finish(). A standby steps too and adopts the active controller's

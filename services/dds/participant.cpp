@@ -84,6 +84,10 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
   session_ = std::make_unique<ParticipantSession>(settings, announcement_, guard_, this);
   periodic_task_.emplace(kCheckPeriod, [this] {
     rejoin_if_rediscovery_failed();
+    {
+      const std::lock_guard<std::mutex> session_lock(session_mutex_);
+      announce_when_due();
+    }
     guard_->refusals().write_due(Clock::now());
     const std::lock_guard<std::mutex> session_lock(session_mutex_);
     const std::lock_guard<std::mutex> lock(peers_mutex_);
@@ -95,7 +99,7 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
 
 Participant::Impl::~Impl() {
   periodic_task_.reset();
-  session_.reset();
+  end_session();
   if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
 }
 
@@ -111,7 +115,8 @@ void Participant::Impl::serve(const std::string& vehicle) {
     }
     announcement_.vehicles += (announcement_.vehicles.empty() ? "" : ",") + vehicle;
   }
-  if (session_ != nullptr) session_->announce(announcement_);
+  announcement_changed_ = true;
+  announce_when_due();
 }
 
 void Participant::Impl::stop_serving(const std::string& vehicle) {
@@ -126,7 +131,13 @@ void Participant::Impl::stop_serving(const std::string& vehicle) {
       if (!is_own(peer)) rediscovery_.gone(guid.guidPrefix);
     }
   }
-  if (session_ != nullptr) session_->announce(announcement_);
+  announcement_changed_ = true;
+}
+
+void Participant::Impl::announce_when_due() {
+  if (session_ == nullptr || !announcement_changed_ || session_->next_announcement() > Clock::now()) return;
+  session_->announce(announcement_);
+  announcement_changed_ = false;
 }
 
 void Participant::Impl::add(Endpoint* endpoint) {
@@ -158,6 +169,7 @@ bool Participant::Impl::rejoin() {
   leave();
   try {
     session_ = std::make_unique<ParticipantSession>(settings, announcement_, guard_, this);
+    announcement_changed_ = false;
     for (Endpoint* const endpoint : endpoints_) endpoint->join(*session_);
     return !away_.exchange(false);
   } catch (const std::runtime_error& error) {
@@ -168,10 +180,15 @@ bool Participant::Impl::rejoin() {
   }
 }
 
+void Participant::Impl::end_session() {
+  if (session_ != nullptr) std::this_thread::sleep_until(session_->next_announcement());
+  session_.reset();
+}
+
 void Participant::Impl::leave() {
   if (session_ == nullptr) return;
   for (Endpoint* const endpoint : endpoints_) endpoint->leave(*session_);
-  session_.reset();
+  end_session();
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   peers_.clear();
   strangers_.clear();
@@ -411,7 +428,8 @@ std::optional<std::string> Participant::Impl::become_source(const std::vector<st
     established_at_ = Clock::now();
     on_lost_source_ = std::move(on_lost);
   }
-  if (session_ != nullptr) session_->announce(announcement_);
+  announcement_changed_ = true;
+  announce_when_due();
   return std::nullopt;
 }
 

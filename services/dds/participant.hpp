@@ -36,7 +36,8 @@ struct Participant::Impl final : public DiscoveryListener {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  // Call for each node of a vehicle that this process serves, and for each of them that ends.
+  // Call for each node of a vehicle that this process serves, and for each of them that ends: which is announced within
+  // kCheckPeriod, not at all if the participant ends.
   void serve(const std::string& vehicle);
   void stop_serving(const std::string& vehicle);
   std::optional<std::string> become_source(const std::vector<std::string>& excluded,
@@ -72,7 +73,9 @@ struct Participant::Impl final : public DiscoveryListener {
 
   // If a peer was rediscovered without its endpoints, rejoins the domain. The peers then discover a new process.
   void rejoin_if_rediscovery_failed();
-  void leave();  // requires session_mutex_
+  void leave();              // requires session_mutex_
+  void end_session();        // requires session_mutex_; waits until what it announced last is that long ago
+  void announce_when_due();  // a change of announcement_; requires session_mutex_
 
   void on_participant(const Guid& guid, const std::string& name,
                       const std::vector<std::uint8_t>& user_data) override;
@@ -112,8 +115,9 @@ struct Participant::Impl final : public DiscoveryListener {
   std::string in_use_by(const std::string& vehicle, const std::string& topic, const Peer& source) const;
 
   const std::shared_ptr<DatagramGuard> guard_;
-  std::mutex session_mutex_;  // guards session_, endpoints_ and nodes_of_
+  std::mutex session_mutex_;  // guards session_, announcement_changed_, endpoints_ and nodes_of_
   std::unique_ptr<ParticipantSession> session_;
+  bool announcement_changed_ = false;  // since session_ announced it
   std::vector<Endpoint*> endpoints_;
   std::map<std::string, int> nodes_of_;  // number of the nodes that serve a vehicle
 

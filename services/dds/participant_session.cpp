@@ -82,7 +82,9 @@ std::shared_ptr<DatagramGuard> guard_of(const NodeSettings& settings) {
 
 ParticipantSession::ParticipantSession(const NodeSettings& settings, const Announcement& announcement,
                                        const std::shared_ptr<DatagramGuard>& guard,
-                                       dds::DomainParticipantListener* listener) {
+                                       dds::DomainParticipantListener* listener)
+    : spacing_(settings.network.discovery_servers.empty() ? std::chrono::milliseconds(0)
+                                                          : kAnnouncementSpacing) {
   set_up_fast_dds();
   participant = join(settings, announcement, guard, listener);
   if (participant == nullptr) {
@@ -105,6 +107,7 @@ void ParticipantSession::announce(const Announcement& announcement) {
   dds::DomainParticipantQos qos = participant->get_qos();
   qos.user_data().data_vec(to_user_data(announcement));
   participant->set_qos(qos);
+  next_announcement_ = std::chrono::steady_clock::now() + spacing_;
 }
 
 dds::Topic* ParticipantSession::topic(const std::string& wire_name, const dds::TypeSupport& type) {

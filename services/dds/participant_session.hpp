@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -25,8 +26,12 @@ namespace swiftlet::comms {
 // What checks the datagrams of a session with these settings. Throws runtime::ConfigError for a bad key file.
 std::shared_ptr<DatagramGuard> guard_of(const NodeSettings& settings);
 
+// Between two changes that a participant announces to a discovery server, and before it leaves: a server of Fast DDS that
+// has to take in two at once may end (spaced_changes.hpp).
+constexpr std::chrono::milliseconds kAnnouncementSpacing{200};
+
 // A participant with its publisher, subscriber and topics. Its destructor announces to the peers that it
-// leaves.
+// leaves; it does not wait until next_announcement().
 class ParticipantSession {
  public:
   // Throws std::runtime_error if the participant cannot be created.
@@ -41,14 +46,18 @@ class ParticipantSession {
   eprosima::fastdds::dds::Topic* topic(const std::string& wire_name,
                                        const eprosima::fastdds::dds::TypeSupport& type);
 
-  // Announces a change to the peers.
+  // Announces a change to the peers. Does not wait until next_announcement().
   void announce(const Announcement& announcement);
+  // When the next change may be announced: with a discovery server kAnnouncementSpacing after the last one.
+  std::chrono::steady_clock::time_point next_announcement() const { return next_announcement_; }
 
   eprosima::fastdds::dds::DomainParticipant* participant = nullptr;
   eprosima::fastdds::dds::Publisher* publisher = nullptr;
   eprosima::fastdds::dds::Subscriber* subscriber = nullptr;
 
  private:
+  const std::chrono::milliseconds spacing_;
+  std::chrono::steady_clock::time_point next_announcement_{};
   std::map<std::string, eprosima::fastdds::dds::Topic*> topics_;
 };
 

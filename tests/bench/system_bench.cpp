@@ -549,7 +549,8 @@ void fleets(Table& table, const Options& options) {
                              (realtime ? "" : ", no real-time priority");
     try {
       fleet(table, options, vehicles, realtime, name);
-    } catch (const std::runtime_error& error) {  // they are more than the computer carries
+    } catch (const std::runtime_error& error) {
+      if (realtime) throw;  // else they may be more than the computer carries
       table.add({name + ": flown", 0.0, "", "", 0.0, error.what()});
     }
   }

@@ -157,8 +157,8 @@ TEST_P(Px4Square, IsFlown) {
 INSTANTIATE_TEST_SUITE_P(Levels, Px4Square, testing::Values("rates", "attitude", "trajectory"),
                          [](const auto& level) { return std::string(level.param); });
 
-// GIVEN a take-off that is commanded together with arming, as `swiftlet fly` does THEN no thrust is commanded before PX4 has armed, a
-// second later: it would start its rotors with that thrust.
+// GIVEN a take-off that is commanded together with arming, as `swiftlet fly` does THEN no thrust is commanded before
+// PX4 has armed, a second later: it would start its rotors with that thrust.
 class Px4Arming : public Px4Square {};
 
 TEST_P(Px4Arming, IsAwaitedByTheTakeOff) {
@@ -356,8 +356,8 @@ TEST_F(Px4Odometry, IsStampedByItsSample) {
   EXPECT_LT(off_us[100], 1500.0);
 }
 
-// GIVEN control that is flown by PX4's own estimate, which is made from the poses of motion capture WHEN these end THEN it descends
-// without position, although PX4 still sends one.
+// GIVEN control that is flown by PX4's own estimate, which is made from the poses of motion capture WHEN these end
+// THEN it descends without position, although PX4 still sends one.
 TEST_F(Px4Odometry, MadeFromMotionCaptureIsLostWithIt) {
   std::string settings = runtime::read_text_file(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
   const std::string mocap = "odometry: {estimate: mocap";
@@ -373,8 +373,8 @@ TEST_F(Px4Odometry, MadeFromMotionCaptureIsLostWithIt) {
   EXPECT_TRUE(wait_for(Mode::kDescent)) << reason() << errors();
 }
 
-// GIVEN two instances of PX4 WHEN `swiftlet fly --vehicle px4` flies a mission with both THEN it starts mocap, bridge and control,
-// both fly the mission beside each other and land, and the report has both.
+// GIVEN two instances of PX4 WHEN `swiftlet fly --vehicle px4` flies a mission with both THEN it starts mocap, bridge
+// and control, both fly the mission beside each other and land, and the report has both.
 class Px4Fly : public Px4Flight {};
 
 TEST_F(Px4Fly, FliesTwoInstances) {

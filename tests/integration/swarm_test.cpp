@@ -83,8 +83,9 @@ Start on_common_clock(Start start) {
   return start;
 }
 
-// The time at which the climb begins, ns since the start. Its reference is a quintic that begins and ends without acceleration, so
-// that the vertical acceleration is a cubic: this is its root before the samples from which it is found.
+// The time at which the climb begins, ns since the start. Its reference is a quintic that begins and ends without
+// acceleration, so that the vertical acceleration is a cubic: this is its root before the samples from which it is
+// found.
 double climb_begin_after(const Table& reference, double start_ns) {
   const std::vector<double>&stamps = reference.at("stamp_ns"), &up = reference.at("acceleration_ned[2]");
   constexpr std::size_t kSamples = 4, kApart = 4;
@@ -400,7 +401,8 @@ TEST_F(RunningSwarm, LandsNobodyOnAnother) {
   EXPECT_EQ(mode("b"), "disarmed");
 }
 
-// GIVEN a vehicle that is powered, but has no control WHEN all are to land THEN it is named, and the others land.
+// GIVEN a vehicle that is powered, but has no control WHEN all are to land THEN the others land at once, and it is
+// named unless it is known in time.
 TEST_F(RunningSwarm, LandsTheOthersBesideAnUnknownOne) {
   hover("a,b");
   const Program powered("swiftlet-plant", on_this_domain({"--vehicle-name", "d", "--clock", "lockstep"}),
@@ -410,11 +412,20 @@ TEST_F(RunningSwarm, LandsTheOthersBesideAnUnknownOne) {
   EXPECT_EQ(moved.exit_code, 1);
   EXPECT_NE(moved.errors.find("d: mode and position are not known: nothing was sent"), std::string::npos)
       << moved.errors;
+  Program patient("swiftlet", on_this_domain({"fleet", "land", "--timeout", "600"}), folder_.path());
+  for (const char* const name : {"a", "b"})
+    EXPECT_TRUE(eventually([&] { return mode(name) == "disarmed"; }, kStuck)) << name;
+  EXPECT_EQ(patient.errors().find("d: was not landed"), std::string::npos)
+      << "it has not waited for d, and looks on for it";
   const ProgramResult landed = swiftlet({"fleet", "land"});
   EXPECT_EQ(landed.exit_code, 1);
   EXPECT_NE(landed.errors.find("d: was not landed: mode and position are not known"), std::string::npos)
       << landed.errors;
-  for (const char* const name : {"a", "b"}) EXPECT_EQ(mode(name), "disarmed") << name;
+
+  const std::vector<std::string> of_d = on_this_domain({"--vehicle-name", "d", "--clock", "lockstep"});
+  const Program mocap("swiftlet-mocap", of_d, folder_.path());
+  const Program control("swiftlet-control", of_d, folder_.path());
+  EXPECT_EQ(patient.wait(kStuck), 0) << patient.errors();
 }
 
 TEST_F(RunningSwarm, IsStoppedAtOnce) {

@@ -32,6 +32,9 @@ namespace {
 
 using control::Mode;
 
+// For how long those that are to land wait for those that are not known yet.
+constexpr std::chrono::milliseconds kPatience{1000};
+
 struct Options : RequestOptions {
   std::string names;  // empty: all that are seen
   double look_s = 1.5;
@@ -93,31 +96,42 @@ struct Sight {
   std::vector<std::string> unknown;  // names of those whose mode and position are not known
 };
 
-Sight look(const Context& context, const Options& options) {
-  std::vector<std::unique_ptr<Vehicle>> vehicles;
-  for (const std::string& name : names_in(context, options))
-    vehicles.push_back(std::make_unique<Vehicle>(context, name));
-  const auto deadline = std::chrono::steady_clock::now() + options.timeout();
+// Looks until all are known, at most for the time-out, and no longer than `patience` after the first one is known.
+Sight look(const Context& context, const std::vector<std::string>& names, const Options& options,
+           std::chrono::milliseconds patience) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds kLook{20};
+  const auto is_known = [](const VehicleState& state) {
+    return state.age_s < 1.0 && state.reference_position_ned_m.allFinite() &&
+           state.position_ned_m.allFinite();
+  };
+  const auto end = Clock::now() + options.timeout();
+  std::vector<std::unique_ptr<Vehicle>> unknown;
+  for (const std::string& name : names) unknown.push_back(std::make_unique<Vehicle>(context, name));
   Sight sight;
-  for (const std::unique_ptr<Vehicle>& vehicle : vehicles) {
-    const auto is_known = [](const VehicleState& state) {
-      return state.age_s < 1.0 && state.reference_position_ned_m.allFinite() &&
-             state.position_ned_m.allFinite();
-    };
-    const auto rest =
-        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
-    if (vehicle->wait_until(is_known, std::max(rest, std::chrono::milliseconds(0)))) {
-      sight.seen.push_back({vehicle->name(), vehicle->state(), is_wanted(vehicle->name(), options)});
-    } else {
-      sight.unknown.push_back(vehicle->name());
+  std::optional<Clock::time_point> first;
+  while (!unknown.empty() && Clock::now() < (first ? std::min(end, *first + patience) : end)) {
+    unknown.front()->wait_until(is_known, kLook);
+    for (auto vehicle = unknown.begin(); vehicle != unknown.end();) {
+      const VehicleState state = (*vehicle)->state();
+      if (!is_known(state)) {
+        ++vehicle;
+        continue;
+      }
+      if (!first) first = Clock::now();
+      sight.seen.push_back({(*vehicle)->name(), state, is_wanted((*vehicle)->name(), options)});
+      vehicle = unknown.erase(vehicle);
     }
   }
+  std::sort(sight.seen.begin(), sight.seen.end(),
+            [](const Seen& a, const Seen& b) { return a.name < b.name; });
+  for (const std::unique_ptr<Vehicle>& vehicle : unknown) sight.unknown.push_back(vehicle->name());
   return sight;
 }
 
 // Throws std::runtime_error if the place of one is not known: it may be in the way.
 std::vector<Seen> look_at_all(const Context& context, const Options& options) {
-  Sight sight = look(context, options);
+  Sight sight = look(context, names_in(context, options), options, options.timeout());
   if (!sight.unknown.empty())
     throw std::runtime_error(
         fmt::format("{}: mode and position are not known: nothing was sent", fmt::join(sight.unknown, ",")));
@@ -206,39 +220,69 @@ int go_to(const GotoOptions& given) {
   return run_request(request_to(members, options), request);
 }
 
-int land(const LandOptions& given) {
-  const LandOptions options = with_fleet(given);
-  Sight sight;
-  {
-    const Context context(options.network);
-    sight = look(context, options);
-  }
-  const bool all_known = sight.unknown.empty();
-  for (const std::string& name : sight.unknown)
-    std::fprintf(stderr, "swiftlet: land: %s: was not landed: mode and position are not known\n",
-                 name.c_str());
+struct Landing {
+  std::size_t sent = 0;  // requests
+  bool failed = false;   // one that flies and is wanted has not landed
+};
+
+// Lands the wanted ones that fly, but none on another one.
+Landing land(const std::vector<Seen>& seen, const LandOptions& options) {
   std::vector<FormationVehicle> vehicles;
-  for (const Seen& vehicle : sight.seen) vehicles.push_back(formation_vehicle(vehicle));
+  for (const Seen& vehicle : seen) vehicles.push_back(formation_vehicle(vehicle));
   const auto obstacles = landing_obstacles(vehicles, options.safety);
-  std::vector<std::string> landing;
-  int kept = 0;
+  std::vector<std::string> names;
+  Landing landing;
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     if (!vehicles[i].is_member) continue;
     if (!obstacles[i]) {
-      landing.push_back(vehicles[i].name);
+      names.push_back(vehicles[i].name);
       continue;
     }
-    ++kept;
+    landing.failed = true;
     std::fprintf(stderr,
                  "swiftlet: land: %s: was not landed: it would come down on %s; move it aside first\n",
                  vehicles[i].name.c_str(), vehicles[*obstacles[i]].name.c_str());
   }
-  if (landing.empty() && kept == 0 && all_known) throw InputError("no vehicle flies: nothing was sent");
-  if (landing.empty()) return kFailed;
+  landing.sent = names.size();
+  if (names.empty()) return landing;
   const int code =
-      run_request(request_to(landing, options),
+      run_request(request_to(names, options),
                   {"land", [&](Vehicle& vehicle) { return vehicle.land(options.speed, options.timeout()); }});
-  return kept == 0 && all_known ? code : kFailed;
+  if (code != kDone) landing.failed = true;
+  return landing;
+}
+
+// Those that are known do not wait for those that are not: these are looked for again when the others have landed.
+int land(const LandOptions& given) {
+  const LandOptions options = with_fleet(given);
+  const auto look_for = [&](std::vector<std::string> names, std::chrono::milliseconds patience) {
+    const Context context(options.network);
+    if (names.empty()) names = names_in(context, options);
+    return look(context, names, options, patience);
+  };
+  const Sight first = look_for({}, kPatience);
+  std::vector<std::string> missing;
+  for (const std::string& name : first.unknown) {
+    if (is_wanted(name, options)) missing.push_back(name);
+  }
+  Landing landing = land(first.seen, options);
+  if (missing.empty() && landing.sent == 0 && !landing.failed)
+    throw InputError("no vehicle flies: nothing was sent");
+  if (!missing.empty() && !first.seen.empty()) {
+    std::vector<std::string> names = missing;
+    for (const Seen& vehicle : first.seen) names.push_back(vehicle.name);
+    Sight later = look_for(names, options.timeout());
+    for (Seen& vehicle : later.seen) {
+      const auto found = std::find(missing.begin(), missing.end(), vehicle.name);
+      vehicle.is_wanted = found != missing.end();
+      if (vehicle.is_wanted) missing.erase(found);
+    }
+    if (land(later.seen, options).failed) landing.failed = true;
+  }
+  for (const std::string& name : missing)
+    std::fprintf(stderr, "swiftlet: land: %s: was not landed: mode and position are not known\n",
+                 name.c_str());
+  return landing.failed || !missing.empty() ? kFailed : kDone;
 }
 
 int stop(const StopOptions& options) {

@@ -1,5 +1,6 @@
 #include "swiftlet/services/dds/discovery/discovery_server.hpp"
 
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -8,6 +9,7 @@
 #include <netinet/in.h>
 #include <stdexcept>
 #include <sys/socket.h>
+#include <thread>
 #include <unistd.h>
 #include <utility>
 
@@ -15,6 +17,7 @@
 #include "swiftlet/services/dds/datagram/guarded_transport.hpp"
 #include "swiftlet/services/dds/discovery/announcement.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/services/dds/discovery/spaced_changes.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/fast_dds_library.hpp"
 #include "swiftlet/services/dds/node.hpp"
@@ -29,6 +32,8 @@ using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 
 constexpr const char* kName = "discovery-server";
 constexpr std::chrono::milliseconds kLogPeriod{250};
+// Fast DDS 3.1 fails an assertion if it hears of a client before a thread of it has taken in its own announcement.
+constexpr std::chrono::milliseconds kStartTime{250};
 
 // Fast DDS does not say why it fails.
 void require_free(int port) {
@@ -45,7 +50,8 @@ void require_free(int port) {
 }
 
 dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings,
-                                     const std::shared_ptr<DatagramGuard>& guard) {
+                                     const std::shared_ptr<DatagramGuard>& guard,
+                                     const std::shared_ptr<const std::atomic<bool>>& open) {
   dds::DomainParticipantQos qos;
   qos.name(kName);
   auto& protocol = qos.wire_protocol();
@@ -63,7 +69,7 @@ dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings,
   if (!settings.interfaces.empty())
     udp.interfaceWhiteList.emplace_back("127.0.0.1");  // for clients of this host
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(guarded(udp, guard));
+  qos.transport().user_transports.push_back(space_changes(guarded(udp, guard), open));
   qos.allocation().participants = {0, kMostParticipants, 1};
   return qos;
 }
@@ -101,6 +107,7 @@ struct DiscoveryServer::Impl final : public DiscoveryListener {
   }
 
   const std::shared_ptr<DatagramGuard> guard;
+  const std::shared_ptr<std::atomic<bool>> open = std::make_shared<std::atomic<bool>>(false);
   std::mutex mutex;
   std::map<rtps::GUID_t, std::string> processes;
   std::function<void(const DiscoveryServerEvent&)> on_event;
@@ -115,11 +122,13 @@ DiscoveryServer::DiscoveryServer(const DiscoveryServerSettings& settings,
   set_up_fast_dds();
   require_free(settings.port);
   impl_->participant = dds::DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<std::uint32_t>(settings.domain), server_qos(settings, impl_->guard), impl_.get(),
-      dds::StatusMask::none());
+      static_cast<std::uint32_t>(settings.domain), server_qos(settings, impl_->guard, impl_->open),
+      impl_.get(), dds::StatusMask::none());
   if (impl_->participant == nullptr)
     throw std::runtime_error("cannot start the discovery server on UDP port " +
                              std::to_string(settings.port));
+  std::this_thread::sleep_for(kStartTime);
+  *impl_->open = true;
 }
 
 DiscoveryServer::~DiscoveryServer() {

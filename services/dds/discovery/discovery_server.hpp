@@ -26,7 +26,7 @@ struct DiscoveryServerEvent {
 
 class DiscoveryServer {
  public:
-  // on_event runs in a middleware thread. Throws std::runtime_error if the port cannot be opened, or
+  // Takes 0.25 s until it serves. on_event runs in a middleware thread. Throws std::runtime_error if the port cannot be opened, or
   // the key file is not valid.
   DiscoveryServer(const DiscoveryServerSettings& settings,
                   std::function<void(const DiscoveryServerEvent&)> on_event);

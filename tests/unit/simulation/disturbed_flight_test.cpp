@@ -107,8 +107,8 @@ TEST(DisturbedFlight, LearnsTheMassAtTakeOff) {
   }
 }
 
-// GIVEN a vehicle whose accelerometer is shaken by 0.5 m/s^2 RMS WHEN it takes off THEN the shaking is not taken for lift-off: the
-// ratio of the lift would be learnt on the ground.
+// GIVEN a vehicle whose accelerometer is shaken by 0.5 m/s^2 RMS WHEN it takes off THEN the shaking is not taken for
+// lift-off: the ratio of the lift would be learnt on the ground.
 TEST(DisturbedFlight, DoesNotTakeVibrationForLiftOff) {
   FlightSetup setup;
   setup.simulation.imu.accelerometer_noise_density = 0.5 / std::sqrt(0.5 * setup.simulation.imu.rate_hz);

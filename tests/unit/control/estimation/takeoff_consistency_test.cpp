@@ -76,8 +76,8 @@ INSTANTIATE_TEST_SUITE_P(Seconds, TakeoffClimb, testing::Values(1.0, 1.5, 2.5), 
   return std::to_string(static_cast<int>(param.param * 10)) + "Tenths";
 });
 
-// GIVEN samples at 100 Hz, some of which are followed by another after 1 us, as after a step of PX4's clock, when a pose has corrected
-// the estimate by 1 mm THEN the height is not taken for a jump of the speed.
+// GIVEN samples at 100 Hz, some of which are followed by another after 1 us, as after a step of PX4's clock, when a
+// pose has corrected the estimate by 1 mm THEN the height is not taken for a jump of the speed.
 TEST(TakeoffConsistencyMonitor, StandsSamplesThatFollowEachOtherAtOnce) {
   TakeoffConsistencyMonitor monitor;
   monitor.begin(Vector3d::Zero(), 0.0);

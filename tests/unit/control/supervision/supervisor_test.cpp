@@ -369,7 +369,8 @@ TEST_F(Flight, RequestTakesEffectInItsStep) {
   EXPECT_EQ(control_setpoint_.control_mode, ControlMode::kSpoolUp);
 }
 
-// GIVEN a take-off whose lift-off is observed WHEN the vehicle has left the ground THEN nothing stops its rotors as on the ground.
+// GIVEN a take-off whose lift-off is observed WHEN the vehicle has left the ground THEN nothing stops its rotors as
+// on the ground.
 TEST_F(Flight, IsInTheAirFromItsLiftOffOn) {
   const auto lift_off = [&](bool observed) {
     ASSERT_TRUE(ask(RequestKind::kStop).accepted);
@@ -425,6 +426,52 @@ TEST_F(Flight, PausesNoMissionThatRisesFromTheGround) {
   EXPECT_STREQ(ask(RequestKind::kMissionPause).reason, "the mission has not taken off yet");
   EXPECT_TRUE(step_until(Mode::kDisarmed, 20.0));
   EXPECT_EQ(supervisor_.mission().state, MissionState::kCompleted);
+}
+
+// GIVEN a vehicle that never reports that its rotors run WHEN it is to take off THEN the take-off ends after 10 s with that reason, and one
+// that reports it after 9 s takes off.
+TEST_F(Flight, TakeOffEndsIfTheRotorsAreNotReportedToRun) {
+  inputs_.rotors_running = false;
+  ASSERT_TRUE(ask(RequestKind::kArm).accepted);
+  ASSERT_TRUE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
+  EXPECT_FALSE(step_until(Mode::kDisarmed, 9.9));
+  EXPECT_TRUE(step_until(Mode::kDisarmed, 0.2));
+  EXPECT_EQ(supervisor_.reason(), Reason::kRotorsNotRunning);
+
+  ASSERT_TRUE(ask(RequestKind::kArm).accepted);
+  ASSERT_TRUE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
+  EXPECT_FALSE(step_until(Mode::kDisarmed, 9.0));
+  inputs_.rotors_running = true;
+  EXPECT_TRUE(step_until(Mode::kHolding, 10.0));
+}
+
+// GIVEN commands that the vehicle obeys late WHEN it spools up THEN the lift rises by no more than 0.08 of the weight in that time.
+TEST_F(Flight, LiftRisesSlowerOverALinkWithDelay) {
+  const auto steepest_rise = [&](double delay_s) {
+    inputs_.command_delay_s = delay_s;
+    inputs_.lift_off_ns = kNoLiftOffYet;
+    EXPECT_TRUE(ask(RequestKind::kArm).accepted);
+    EXPECT_TRUE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
+    step();
+    double steepest = 0.0;
+    double before = 1.0;
+    std::int64_t before_ns = inputs_.stamp_ns;
+    step_until(
+        [&] {
+          const double lift = control_setpoint_.lift_fraction;
+          if (before > 0.8 && before < 1.0 && lift > before)
+            steepest = std::max(steepest, (lift - before) / elapsed_s(before_ns, inputs_.stamp_ns));
+          before = lift;
+          before_ns = inputs_.stamp_ns;
+          return lift > 1.2;
+        },
+        3.0);
+    EXPECT_TRUE(ask(RequestKind::kDisarm).accepted);
+    return steepest;
+  };
+  EXPECT_NEAR(steepest_rise(0.002), 3.0, 1e-6);
+  EXPECT_NEAR(steepest_rise(0.08), 1.0, 1e-6);
+  EXPECT_NEAR(steepest_rise(0.16), 0.5, 1e-6);
 }
 
 TEST_F(Flight, StepAnswersRequestsByItsOwnInputs) {

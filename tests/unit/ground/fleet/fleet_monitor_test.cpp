@@ -89,7 +89,8 @@ TEST_F(Column, EndsAboveTheVehicle) {
   EXPECT_GT(fly_until_stopped({at({0, 0, -0.1}, false)}), 9.9) << "it may fly over one that is 0.9 m lower";
 }
 
-// GIVEN a vehicle in the column of one that is off its path THEN it steps aside, and stays there until the way back is free of it.
+// GIVEN a vehicle in the column of one that is off its path THEN it steps aside, and stays there until the way back
+// is free of it.
 TEST_F(Column, IsLeftAndNotEnteredAgain) {
   monitor_.emplace(std::vector<MonitoredVehicle>{crossing(), vehicle({{0.3, 0, -2}, {0.3, 0, -2}})});
   const FlightPath path = crossing().path;
@@ -141,7 +142,8 @@ TEST_F(Column, IsNotFlownThroughOnTheWayBack) {
   EXPECT_EQ(step({at({0, -0.6, -1}), above})[0].kind, Kind::kPause);
 }
 
-// GIVEN one that is to fly back over the path of a third one THEN either that waits, or it waits itself, and both go on in the end.
+// GIVEN one that is to fly back over the path of a third one THEN either that waits, or it waits itself, and both go
+// on in the end.
 TEST_F(Column, OthersStayOutOfTheWayBack) {
   const FlightPath below = vehicle({{-1, 0.4, -0.3}, {1, 0.4, -0.3}}).path;
   for (const double starts_s : {0.0, 1.5, 2.5}) {
@@ -211,6 +213,52 @@ TEST_F(Column, TwoThatWouldWaitForEachOtherGoOn) {
     EXPECT_GE(first_s, 10.0) << east;
     EXPECT_GE(second_s, 20.0) << east;
   }
+}
+
+// GIVEN several that wait aside, each behind one that stands in its way back THEN in a step only one of them searches
+// for a way around, and in the end each has one.
+TEST_F(Column, OneInAStepSearchesForAWayAround) {
+  constexpr std::size_t kGroups = 4;
+  constexpr double kApart_m = 20.0;
+  const auto there = [](std::size_t group, const Vector3d& place) {
+    return Vector3d(place + Vector3d(kApart_m * static_cast<double>(group), 0, 0));
+  };
+  std::vector<MonitoredVehicle> vehicles;
+  for (std::size_t g = 0; g < kGroups; ++g) {
+    vehicles.push_back(vehicle({there(g, {-1, 0, -0.6}), there(g, {1, 0, -0.6})}));
+    vehicles.push_back(vehicle({there(g, {3, 3, -2}), there(g, {3, 3, -2})}));
+    vehicles.push_back(vehicle({there(g, {3, -3, 0}), there(g, {3, -3, 0})}));
+  }
+  monitor_.emplace(vehicles);
+  const auto fly = [&](const Vector3d& first, const Vector3d& above, const Vector3d& standing) {
+    std::vector<VehicleNews> news;
+    for (std::size_t g = 0; g < kGroups; ++g) {
+      news.push_back(at(there(g, first)));
+      news.push_back(at(there(g, above), above.y() > 1.0));
+      news.push_back(at(there(g, standing)));
+      news.back().rotors_off = true;
+    }
+    return step(news);
+  };
+  const Vector3d away(3, 3, -2), above(0, 0.001, -1.5), far(3, -3, 0), between(0, -0.3, 0);
+  for (double s = 0.0; s < 5.0; s += kStep_s) fly({-1.0 + 0.2 * s, 0, -0.6}, away, far);
+  orders_ = fly({0, 0, -0.6}, above, far);
+  for (std::size_t g = 0; g < kGroups; ++g) ASSERT_EQ(orders_[3 * g].kind, Kind::kStepAside) << g;
+  const Vector3d aside = orders_[0].place_ned;
+  std::vector<bool> is_sent(kGroups);
+  for (int k = 0; k < 50; ++k) {
+    orders_ = fly(aside, k < 5 ? above : away, k < 5 ? far : between);
+    int sent_now = 0;
+    for (std::size_t g = 0; g < kGroups; ++g) {
+      ASSERT_NE(orders_[3 * g].kind, Kind::kFly) << "the way back is not free";
+      const bool is_new = k >= 5 && orders_[3 * g].kind == Kind::kStepAside && !is_sent[g];
+      if (!is_new) continue;
+      is_sent[g] = true;
+      ++sent_now;
+    }
+    ASSERT_LE(sent_now, 1) << "in step " << k;
+  }
+  EXPECT_EQ(is_sent, std::vector<bool>(kGroups, true));
 }
 
 TEST_F(Column, TheWayAsideIsFreeOfOthersAndInTheRoom) {

@@ -91,7 +91,8 @@ void add(Tally& tally, const ParameterEstimate& estimate, double truth) {
 
 using Tallies = std::map<Log, std::map<std::string, Tally>>;
 
-// In a soak the intervals of each parameter are also counted over all conditions: that bound is tighter, 182 of 200 against 43 of 50.
+// In a soak the intervals of each parameter are also counted over all conditions: that bound is tighter, 182 of 200
+// against 43 of 50.
 class IntervalCoverage : public testing::Test {
  protected:
   static void SetUpTestSuite() { of_all().clear(); }

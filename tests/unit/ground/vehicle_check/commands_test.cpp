@@ -89,6 +89,21 @@ TEST(Commands, ReportsOfVehicleInfoTellWhetherRotorsTurn) {
                "ignored time-out");
 }
 
+// Control waits with a take-off for the report of a vehicle that closes its inner loops itself.
+TEST(Commands, AVehicleOfLevelsReportsThatItsRotorsRun) {
+  RecordedCommands record = record_commands({});
+  record.recording.description->levels.add(plant::ControlLevel::kRates);
+  expect_names(ground::check_commands(record.recording, record.phases), "commands.rotors_running",
+               "does not become true");
+  const auto idle = ground::phase_of(record.phases, CommandStage::kIdle)->begin_ns;
+  const auto stopped = ground::phase_of(record.phases, CommandStage::kStopped)->begin_ns;
+  record.recording.rotors_running = {{false, record.recording.begin_ns}, {true, idle + 5'000'000}};
+  expect_names(ground::check_commands(record.recording, record.phases), "commands.rotors_running",
+               "stays true after ROTORS_OFF");
+  record.recording.rotors_running.push_back({false, stopped + 5'000'000});
+  expect_sound(ground::check_commands(record.recording, record.phases));
+}
+
 TEST(Commands, MissingStepsFail) {
   RecordedCommands record = record_commands({});
   record.phases.resize(3);

@@ -65,6 +65,28 @@ TEST(Foxglove, LeavesOutWhatIsNestedDeep) {
       "subscribe: id and channelId must be whole numbers from 0 to 4294967295");
 }
 
+// Each key of an object is compared with those before it.
+TEST(Foxglove, RefusesObjectsWithManyKeys) {
+  const auto with = [](std::size_t more) {
+    std::string keys;
+    for (std::size_t i = 0; i < more; ++i) keys += ",\"" + std::to_string(i) + "\":1";
+    return keys;
+  };
+  const auto top = [&](std::size_t keys) {
+    return parse_text(R"({"op":"subscribe","subscriptions":[])" + with(keys - 2) + "}");
+  };
+  const auto inner = [&](std::size_t keys) {
+    const std::string one = R"({"id":1,"channelId":1)" + with(keys - 2) + "}";
+    return parse_text(R"({"op":"subscribe","subscriptions":[)" + one + "," + one + "]}");
+  };
+  const std::string refusal = "an object of the message has more than 16 keys";
+  EXPECT_EQ(fault_of(top(kMostKeys)), "");
+  EXPECT_EQ(fault_of(inner(kMostKeys)), "") << "of each of two";
+  EXPECT_EQ(fault_of(top(kMostKeys + 1)), refusal);
+  EXPECT_EQ(fault_of(inner(kMostKeys + 1)), refusal);
+  EXPECT_EQ(fault_of(top(7200)), refusal);
+}
+
 TEST(Foxglove, ReadsSubscriptions) {
   const auto subscribe = std::get<Subscribe>(parse_text(
       R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":7},{"id":4294967295,"channelId":8}]})"));

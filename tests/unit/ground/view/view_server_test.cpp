@@ -203,6 +203,16 @@ TEST_F(Server, DisconnectsWhoSendsTooMuch) {
   EXPECT_EQ(calm->read_text()->at("message"), "op null is not served: only subscribe and unsubscribe are");
 }
 
+// GIVEN a viewer of few large messages THEN it is disconnected long before it has sent as many as it may send small ones.
+TEST_F(Server, DisconnectsWhoSendsTooManyBytes) {
+  const auto viewer = client();
+  const std::string large(ViewServer::kMostMessageBytes, ' ');
+  for (int i = 0; i < 500 && viewer->send(large); ++i) {
+  }
+  ASSERT_TRUE(eventually([&] { return server_->totals().viewers == 0; }));
+  EXPECT_EQ(said_.items(), std::vector<std::string>{"a viewer is disconnected: it sends too much"});
+}
+
 // GIVEN a viewer that reads nothing WHEN its messages ask for more answers than are on their way to it at once THEN it is
 // disconnected before they fill the memory.
 TEST_F(Server, DisconnectsWhoDoesNotReadItsAnswers) {

@@ -117,7 +117,8 @@ TEST_F(NatNet, FramesArriveByMulticast) {
   EXPECT_EQ(source_->description().find("unicast"), std::string::npos);
 }
 
-// GIVEN a server whose clock is an hour ahead THEN the exposure is known by this host's clock, from the middle of the exposure on.
+// GIVEN a server whose clock is an hour ahead THEN the exposure is known by this host's clock, from the middle of the
+// exposure on.
 TEST_F(NatNet, StampsAreTranslatedFromTheServersClock) {
   start(settings_of({4, 1}));
   ASSERT_NO_FATAL_FAILURE(connect());

@@ -1,0 +1,119 @@
+#include "swiftlet/services/dds/discovery/spaced_changes.hpp"
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include "swiftlet/io/byte_reader.hpp"
+#include "swiftlet/services/dds/datagram/submessage.hpp"
+
+namespace swiftlet::comms {
+
+using runtime::ByteReader;
+
+namespace {
+
+constexpr std::size_t kBytesBeforePrefix = 8;  // of a message
+constexpr std::size_t kBytesBeforeIds = 4;     // of DATA: flags, and the distance to its inline QoS
+
+EntityId entity_id(ByteReader& data) {
+  EntityId id{};
+  const std::uint8_t* const bytes = data.take(id.size());
+  if (bytes != nullptr) std::copy_n(bytes, id.size(), id.begin());
+  return id;
+}
+
+}  // namespace
+
+std::optional<ParticipantChange> participant_change(const std::uint8_t* message, std::size_t size) {
+  ByteReader rest(message, size, true);
+  ParticipantChange change;
+  rest.skip(kBytesBeforePrefix);
+  const std::uint8_t* const prefix = rest.take(change.participant.size());
+  if (prefix == nullptr) return std::nullopt;
+  std::copy_n(prefix, change.participant.size(), change.participant.begin());
+  bool found = false;
+  while (rest.ok() && rest.rest() > 0) {
+    const std::uint8_t kind = rest.u8();
+    const bool little_endian = (rest.u8() & kLittleEndianFlag) != 0;
+    const std::uint8_t* const length = rest.take(2);
+    if (length == nullptr) break;
+    const std::size_t bytes = ByteReader(length, 2, little_endian).u16();
+    // 0: the last submessage, of all bytes that follow.
+    const ByteReader body = rest.part(bytes == 0 ? rest.rest() : bytes);
+    if (kind != kData || !body.ok()) continue;
+    ByteReader data(body.data(), body.rest(), little_endian);
+    data.skip(kBytesBeforeIds);
+    const EntityId reader = entity_id(data);
+    const EntityId writer = entity_id(data);
+    const auto high = static_cast<std::uint64_t>(data.u32());
+    const std::uint64_t low = data.u32();
+    if (!data.ok() || topic_of(reader, writer) != BuiltinTopic::kParticipant) continue;
+    change.sequence_number = static_cast<std::int64_t>(high << 32U | low);
+    found = true;
+  }
+  return found ? std::optional(change) : std::nullopt;
+}
+
+ChangeSpacing::Time ChangeSpacing::due(const ParticipantChange& change, Time now) {
+  for (auto it = last_.begin(); it != last_.end();)
+    it = it->second.time + kChangeSpacing <= now ? last_.erase(it) : std::next(it);
+  const auto [it, is_first] = last_.try_emplace(change.participant, Last{change.sequence_number, now});
+  if (is_first || it->second.sequence_number == change.sequence_number) return now;
+  it->second = {change.sequence_number, it->second.time + kChangeSpacing};
+  return it->second.time;
+}
+
+namespace {
+
+namespace transport = eprosima::fastdds::rtps;
+
+class SpacingTransport final : public ChainedTransport {
+ public:
+  SpacingTransport(const transport::ChainingTransportDescriptor& descriptor,
+                   std::shared_ptr<const std::atomic<bool>> open)
+      : ChainedTransport(descriptor), open_(std::move(open)) {}
+
+  // The transport below recognizes the channels that it opened before only if they are not wrapped.
+  bool OpenOutputChannel(transport::SendResourceList& channels, const rtps::Locator_t& locator) override {
+    return low_level_transport_->OpenOutputChannel(channels, locator);
+  }
+
+  void receive(transport::TransportReceiverInterface* next, const rtps::octet* data, std::uint32_t size,
+               const rtps::Locator_t& local, const rtps::Locator_t& remote) override {
+    if (!*open_) return;
+    if (const auto change = participant_change(data, size)) std::this_thread::sleep_until(due(*change));
+    next->OnDataReceived(data, size, local, remote);
+  }
+
+ private:
+  ChangeSpacing::Time due(const ParticipantChange& change) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return spacing_.due(change, std::chrono::steady_clock::now());
+  }
+
+  const std::shared_ptr<const std::atomic<bool>> open_;
+  std::mutex mutex_;
+  ChangeSpacing spacing_;
+};
+
+struct SpacingDescriptor final : transport::ChainingTransportDescriptor {
+  SpacingDescriptor(std::shared_ptr<transport::TransportDescriptorInterface> below,
+                    std::shared_ptr<const std::atomic<bool>> opened)
+      : ChainingTransportDescriptor(std::move(below)), open(std::move(opened)) {}
+  transport::TransportInterface* create_transport() const override {
+    return new SpacingTransport(*this, open);
+  }
+
+  std::shared_ptr<const std::atomic<bool>> open;
+};
+
+}  // namespace
+
+std::shared_ptr<transport::TransportDescriptorInterface> space_changes(
+    std::shared_ptr<transport::TransportDescriptorInterface> below,
+    std::shared_ptr<const std::atomic<bool>> open) {
+  return std::make_shared<SpacingDescriptor>(std::move(below), std::move(open));
+}
+
+}  // namespace swiftlet::comms
