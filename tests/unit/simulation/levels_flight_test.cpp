@@ -45,10 +45,8 @@ TEST_P(Levels, FliesWithoutMeasuredRotorsAndWithAWrongMass) {
   EXPECT_TRUE(loop.plant.on_ground());
 }
 
-// GIVEN a vehicle that starts its rotors 3 s later than it is told to THEN control commands no thrust until then, and
-// flies as from there on; at level actuators, whose vehicle does as it is told, it does not wait.
-TEST_P(Levels, TheTakeOffBeginsWhenTheRotorsRun) {
-  ClosedLoop loop(vehicle_, world_, settings_, 1);
+// Requests a take-off to 1 m of a vehicle that reports that its rotors stand.
+void take_off_before_the_rotors_run(ClosedLoop& loop) {
   ASSERT_TRUE(loop.step_until([&] { return loop.time_s() > 1.0; }, 2.0));
   loop.controller.set_rotors_running(false);
   control::Request request;
@@ -57,6 +55,13 @@ TEST_P(Levels, TheTakeOffBeginsWhenTheRotorsRun) {
   request.kind = control::RequestKind::kTakeoff;
   request.position_ned.z() = -1.0;
   ASSERT_TRUE(loop.controller.request(request).accepted);
+}
+
+// GIVEN a vehicle that starts its rotors 3 s later than it is told to THEN control commands no thrust until then, and
+// flies as from there on; at level actuators, whose vehicle does as it is told, it does not wait.
+TEST_P(Levels, TheTakeOffBeginsWhenTheRotorsRun) {
+  ClosedLoop loop(vehicle_, world_, settings_, 1);
+  take_off_before_the_rotors_run(loop);
   run(loop, 3.0);
   const bool is_free = GetParam() == ControlLevel::kActuators;
   EXPECT_EQ(loop.plant.on_ground(), !is_free);
@@ -70,14 +75,7 @@ TEST_P(Levels, TheTakeOffBeginsWhenTheRotorsRun) {
 TEST_P(Levels, TheTakeOffEndsIfTheRotorsNeverRun) {
   if (GetParam() == ControlLevel::kActuators) return;
   ClosedLoop loop(vehicle_, world_, settings_, 1);
-  ASSERT_TRUE(loop.step_until([&] { return loop.time_s() > 1.0; }, 2.0));
-  loop.controller.set_rotors_running(false);
-  control::Request request;
-  request.kind = control::RequestKind::kArm;
-  ASSERT_TRUE(loop.controller.request(request).accepted);
-  request.kind = control::RequestKind::kTakeoff;
-  request.position_ned.z() = -1.0;
-  ASSERT_TRUE(loop.controller.request(request).accepted);
+  take_off_before_the_rotors_run(loop);
   run(loop, 0.1);
   ASSERT_EQ(mode(loop), control::Mode::kTakingOff);
   ASSERT_TRUE(loop.step_until([&] { return mode(loop) == control::Mode::kDisarmed; }, 10.5));
@@ -86,8 +84,8 @@ TEST_P(Levels, TheTakeOffEndsIfTheRotorsNeverRun) {
   EXPECT_TRUE(loop.plant.on_ground());
 }
 
-// GIVEN a radio with 40 ms each way THEN the take-off is as calm as the rest of the flight, also with a mass that is not known. At level
-// rates the gains of the settings are not made for that delay.
+// GIVEN a radio with 40 ms each way THEN the take-off is as calm as the rest of the flight, also with a mass that is not
+// known. At level rates the gains of the settings are not made for that delay.
 TEST_P(Levels, TakesOffCalmlyOverARadio) {
   if (GetParam() != ControlLevel::kAttitude) return;
   world_.radio = {0.04, 0.004, 0.02};
