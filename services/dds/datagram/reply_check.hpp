@@ -20,8 +20,9 @@ class ReplyCheck {
   // gaps_ahead: of writers of the middleware itself; kGapsAhead unless discovery servers skip announcements.
   explicit ReplyCheck(std::uint32_t gaps_ahead);
 
-  // Notes the acknowledgements and fragments in a message that is sent. Ignores what it cannot read.
+  // Whether a message that is sent holds acknowledgements or fragments.
   static bool concerns_replies(const std::uint8_t* message, std::size_t size);
+  // Notes them. Ignores what it cannot read.
   void note_sent(const std::uint8_t* message, std::size_t size);
 
   // Returns the broken rule, or nullptr.
