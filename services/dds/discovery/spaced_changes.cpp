@@ -1,10 +1,11 @@
 #include "swiftlet/services/dds/discovery/spaced_changes.hpp"
 
 #include <algorithm>
-#include <thread>
+#include <iterator>
 #include <utility>
 
 #include "swiftlet/io/byte_reader.hpp"
+#include "swiftlet/services/dds/datagram/participant_admission.hpp"
 #include "swiftlet/services/dds/datagram/submessage.hpp"
 
 namespace swiftlet::comms {
@@ -55,13 +56,35 @@ std::optional<ParticipantChange> participant_change(const std::uint8_t* message,
   return found ? std::optional(change) : std::nullopt;
 }
 
-ChangeSpacing::Time ChangeSpacing::due(const ParticipantChange& change, Time now) {
+bool ChangeSpacing::admit(const ParticipantChange& change, Time now) {
   for (auto it = last_.begin(); it != last_.end();)
     it = it->second.time + kChangeSpacing <= now ? last_.erase(it) : std::next(it);
-  const auto [it, is_first] = last_.try_emplace(change.participant, Last{change.sequence_number, now});
-  if (is_first || it->second.sequence_number == change.sequence_number) return now;
-  it->second = {change.sequence_number, it->second.time + kChangeSpacing};
-  return it->second.time;
+  const auto known = last_.find(change.participant);
+  if (known != last_.end()) return known->second.sequence_number == change.sequence_number;
+  if (last_.size() >= kMostParticipants) return false;
+  last_[change.participant] = {change.sequence_number, now};
+  return true;
+}
+
+void EarlyChanges::keep(Datagram datagram) {
+  const ParticipantChange& change = datagram.change;
+  const auto of_participant = std::count_if(kept_.begin(), kept_.end(), [&](const auto& kept) {
+    return kept.second.change.participant == change.participant;
+  });
+  if (kept_.size() >= kMost || static_cast<std::size_t>(of_participant) >= kMostOfParticipant) return;
+  const std::pair key(change.participant, change.sequence_number);
+  kept_.try_emplace(key, std::move(datagram));
+}
+
+std::optional<EarlyChanges::Datagram> EarlyChanges::take(const void* receiver, ChangeSpacing& spacing,
+                                                         ChangeSpacing::Time now) {
+  const auto due = std::find_if(kept_.begin(), kept_.end(), [&](const auto& kept) {
+    return kept.second.receiver == receiver && spacing.admit(kept.second.change, now);
+  });
+  if (due == kept_.end()) return std::nullopt;
+  Datagram datagram = std::move(due->second);
+  kept_.erase(due);
+  return datagram;
 }
 
 namespace {
@@ -82,19 +105,32 @@ class SpacingTransport final : public ChainedTransport {
   void receive(transport::TransportReceiverInterface* next, const rtps::octet* data, std::uint32_t size,
                const rtps::Locator_t& local, const rtps::Locator_t& remote) override {
     if (!*open_) return;
-    if (const auto change = participant_change(data, size)) std::this_thread::sleep_until(due(*change));
-    next->OnDataReceived(data, size, local, remote);
+    while (const auto early = take_early(next)) {
+      const std::vector<rtps::octet>& bytes = early->bytes;
+      next->OnDataReceived(bytes.data(), static_cast<std::uint32_t>(bytes.size()), local, early->sender);
+    }
+    const auto change = participant_change(data, size);
+    if (!change || admit_or_keep(*change, next, data, size, remote))
+      next->OnDataReceived(data, size, local, remote);
   }
 
  private:
-  ChangeSpacing::Time due(const ParticipantChange& change) {
+  std::optional<EarlyChanges::Datagram> take_early(const void* receiver) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return spacing_.due(change, std::chrono::steady_clock::now());
+    return early_.take(receiver, spacing_, std::chrono::steady_clock::now());
+  }
+  bool admit_or_keep(const ParticipantChange& change, const void* receiver, const rtps::octet* data,
+                     std::uint32_t size, const rtps::Locator_t& sender) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (spacing_.admit(change, std::chrono::steady_clock::now())) return true;
+    early_.keep({change, {data, data + size}, receiver, sender});
+    return false;
   }
 
   const std::shared_ptr<const std::atomic<bool>> open_;
-  std::mutex mutex_;
+  std::mutex mutex_;  // guards the rest
   ChangeSpacing spacing_;
+  EarlyChanges early_;
 };
 
 struct SpacingDescriptor final : transport::ChainingTransportDescriptor {

@@ -12,6 +12,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "swiftlet/services/dds/datagram/rtps_ids.hpp"
@@ -29,13 +30,13 @@ struct ParticipantChange {
 // Of a message of RTPS: the last announcement or goodbye of a participant in it. nullopt if there is none.
 std::optional<ParticipantChange> participant_change(const std::uint8_t* message, std::size_t size);
 
-// When the changes of participants are due. Not thread-safe.
+// Which changes may be handed on. Remembers at most kMostParticipants. Not thread-safe.
 class ChangeSpacing {
  public:
   using Time = std::chrono::steady_clock::time_point;
-  // Returns the time from which on the change may be handed on, and takes it as handed on then. `now` if the last change of
-  // the participant is longer than kChangeSpacing ago, and for repetitions of it.
-  Time due(const ParticipantChange& change, Time now);
+  // Returns whether the change may be handed on now, and takes it as handed on if so: repetitions of the last change of the
+  // participant, and the first one that comes kChangeSpacing after it.
+  bool admit(const ParticipantChange& change, Time now);
 
  private:
   struct Last {
@@ -45,8 +46,31 @@ class ChangeSpacing {
   std::map<GuidPrefix, Last> last_;  // younger than kChangeSpacing
 };
 
-// Descriptor of the transport below, of which the thread that receives waits until a change is due. Drops what it receives
-// until `open` is true.
+// Changes that came too early. Not thread-safe.
+class EarlyChanges {
+ public:
+  // Each is a datagram of 64 KiB at most.
+  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMostOfParticipant = 4;
+  struct Datagram {
+    ParticipantChange change;
+    std::vector<std::uint8_t> bytes;
+    const void* receiver = nullptr;  // for which it came
+    rtps::Locator_t sender;
+  };
+  // Drops it if there are too many: clients repeat an announcement until the server acknowledges it, and the lease of a
+  // participant ends whose goodbye is lost.
+  void keep(Datagram datagram);
+  // Takes one that `spacing` admits now, in the order of their participant: a reliable reader waits for the one that is
+  // missing. nullopt if there is none.
+  std::optional<Datagram> take(const void* receiver, ChangeSpacing& spacing, ChangeSpacing::Time now);
+
+ private:
+  std::map<std::pair<GuidPrefix, std::int64_t>, Datagram> kept_;  // by participant and sequence number
+};
+
+// Descriptor of a transport in front of the one below. It never waits: a change that comes too early is handed on before the
+// first datagram after it is due. Drops what it receives until `open` is true.
 std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> space_changes(
     std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> below,
     std::shared_ptr<const std::atomic<bool>> open);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/services/dds/datagram/participant_admission.hpp"
 #include "tests/support/rtps_message.hpp"
 
 namespace swiftlet::comms {
@@ -10,6 +11,9 @@ namespace {
 using tests::ByteWriter;
 using tests::RtpsMessage;
 using Time = ChangeSpacing::Time;
+
+const Time kStart{std::chrono::seconds(10)};
+constexpr std::chrono::microseconds kTick{1};
 
 std::optional<ParticipantChange> change_in(const RtpsMessage& message) {
   return participant_change(message.bytes().data(), message.bytes().size());
@@ -43,15 +47,87 @@ TEST(ParticipantChange, IsOnlyThatOfAParticipant) {
 
 TEST(ChangeSpacing, KeepsTheChangesOfAParticipantApart) {
   ChangeSpacing spacing;
-  const Time start{std::chrono::seconds(10)};
-  EXPECT_EQ(spacing.due({tests::kAlice, 1}, start), start);
-  EXPECT_EQ(spacing.due({tests::kAlice, 1}, start), start) << "a repetition";
-  EXPECT_EQ(spacing.due({tests::kBob, 1}, start), start) << "another participant";
-  EXPECT_EQ(spacing.due({tests::kAlice, 2}, start), start + kChangeSpacing);
-  const Time then = start + kChangeSpacing;
-  EXPECT_EQ(spacing.due({tests::kAlice, 3}, then), then + kChangeSpacing) << "measured from when 2 was due";
-  const Time later = start + 5 * kChangeSpacing;
-  EXPECT_EQ(spacing.due({tests::kAlice, 4}, later), later);
+  EXPECT_TRUE(spacing.admit({tests::kAlice, 1}, kStart));
+  EXPECT_TRUE(spacing.admit({tests::kAlice, 1}, kStart)) << "a repetition";
+  EXPECT_TRUE(spacing.admit({tests::kBob, 1}, kStart)) << "another participant";
+  EXPECT_FALSE(spacing.admit({tests::kAlice, 2}, kStart + kChangeSpacing - kTick));
+  EXPECT_TRUE(spacing.admit({tests::kAlice, 3}, kStart + kChangeSpacing))
+      << "measured from the change that was handed on";
+  EXPECT_FALSE(spacing.admit({tests::kAlice, 4}, kStart + 2 * kChangeSpacing - kTick));
+  EXPECT_TRUE(spacing.admit({tests::kAlice, 4}, kStart + 2 * kChangeSpacing));
+}
+
+comms::GuidPrefix participant(std::size_t number) {
+  comms::GuidPrefix prefix = tests::kAlice;
+  prefix[10] = static_cast<std::uint8_t>(number >> 8U);
+  prefix[11] = static_cast<std::uint8_t>(number);
+  return prefix;
+}
+
+TEST(ChangeSpacing, RemembersABoundedNumberOfParticipants) {
+  ChangeSpacing spacing;
+  for (std::size_t i = 0; i < kMostParticipants; ++i)
+    ASSERT_TRUE(spacing.admit({participant(i), 1}, kStart)) << i;
+  EXPECT_FALSE(spacing.admit({participant(kMostParticipants), 1}, kStart));
+  EXPECT_TRUE(spacing.admit({participant(0), 1}, kStart)) << "one that it remembers";
+  EXPECT_TRUE(spacing.admit({participant(kMostParticipants), 1}, kStart + kChangeSpacing));
+}
+
+// GIVEN a participant that has just joined.
+class TooEarly : public testing::Test {
+ protected:
+  void SetUp() override { ASSERT_TRUE(spacing_.admit({tests::kAlice, 1}, kStart)); }
+  void keep(std::int64_t number) { changes_.keep({{tests::kAlice, number}, {}, &receiver_, {}}); }
+  // The number of the change that is taken at the time; 0 if none is.
+  std::int64_t taken(Time now) {
+    const auto datagram = changes_.take(&receiver_, spacing_, now);
+    return datagram ? datagram->change.sequence_number : 0;
+  }
+
+  ChangeSpacing spacing_;
+  EarlyChanges changes_;
+  const int receiver_ = 0;
+};
+
+TEST_F(TooEarly, ChangesAreHandedOnWhenTheyAreDue) {
+  keep(2);
+  EXPECT_EQ(taken(kStart + kChangeSpacing - kTick), 0);
+  EXPECT_EQ(taken(kStart + kChangeSpacing), 2);
+  EXPECT_EQ(taken(kStart + kChangeSpacing), 0) << "once";
+  keep(3);
+  EXPECT_EQ(taken(kStart + 2 * kChangeSpacing - kTick), 0) << "measured from the one before";
+  EXPECT_EQ(taken(kStart + 2 * kChangeSpacing), 3);
+}
+
+TEST_F(TooEarly, TheChangesOfAParticipantAreHandedOnInOrder) {
+  keep(3);
+  keep(2);
+  keep(3);
+  EXPECT_EQ(taken(kStart + kChangeSpacing), 2);
+  EXPECT_EQ(taken(kStart + 2 * kChangeSpacing - kTick), 0);
+  EXPECT_EQ(taken(kStart + 2 * kChangeSpacing), 3);
+  EXPECT_EQ(taken(kStart + 9 * kChangeSpacing), 0);
+}
+
+TEST_F(TooEarly, ChangesAreHandedOnToTheirReceiver) {
+  const int other = 0;
+  keep(2);
+  EXPECT_FALSE(changes_.take(&other, spacing_, kStart + kChangeSpacing));
+  EXPECT_EQ(taken(kStart + kChangeSpacing), 2);
+}
+
+TEST_F(TooEarly, ABoundedNumberOfChangesIsKept) {
+  for (std::size_t number = 2; number < 9; ++number) keep(static_cast<std::int64_t>(number));
+  Time now = kStart;
+  std::size_t of_one = 0;
+  while (taken(now += kChangeSpacing) != 0) ++of_one;
+  EXPECT_EQ(of_one, EarlyChanges::kMostOfParticipant);
+
+  for (std::size_t i = 0; i < 2 * EarlyChanges::kMost; ++i)
+    changes_.keep({{participant(i), 1}, {}, &receiver_, {}});
+  std::size_t of_all = 0;
+  while (taken(now + kChangeSpacing) != 0) ++of_all;
+  EXPECT_EQ(of_all, EarlyChanges::kMost);
 }
 
 }  // namespace
