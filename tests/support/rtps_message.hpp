@@ -115,11 +115,11 @@ inline ByteWriter lease(std::uint32_t seconds) {
 }
 
 // The parameters of an announcement that every participant sends, without the end of the list.
-inline ByteWriter participant_parameters(const comms::GuidPrefix& participant) {
+inline ByteWriter participant_parameters(const comms::GuidPrefix& participant, std::uint32_t lease_s = 20) {
   ByteWriter out;
   out.u16(0x0300).u16(0);  // PL_CDR_LE
   out.parameter(0x0015, ByteWriter().u32(0x0302)).parameter(0x0016, ByteWriter().u32(0x0f01));
-  out.parameter(0x0050, guid(participant, comms::kParticipantEntity)).parameter(0x0002, lease(20));
+  out.parameter(0x0050, guid(participant, comms::kParticipantEntity)).parameter(0x0002, lease(lease_s));
   return out;
 }
 
