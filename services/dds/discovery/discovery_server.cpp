@@ -33,9 +33,9 @@ using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 constexpr const char* kName = "discovery-server";
 constexpr std::chrono::milliseconds kLogPeriod{250};
 // A server that was killed leaves clients that take the next one for it, and ignore what that numbers anew. They forget it
-// when its lease has ended. Besides, Fast DDS 3.1 fails an assertion if it hears of a client before a thread of it has taken
-// in its own announcement.
-constexpr auto kStartTime = kLivelinessLease + std::chrono::milliseconds(250);
+// when its lease has ended, on a busy host later. Besides, Fast DDS 3.1 fails an assertion if it hears of a client before a
+// thread of it has taken in its own announcement.
+constexpr auto kStartTime = 2 * kLivelinessLease;
 
 // Fast DDS does not say why it fails.
 void require_free(int port) {
