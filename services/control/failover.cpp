@@ -35,7 +35,8 @@ void Failover::heard(const Heartbeat& beat) {
   newest_term_ = std::max(newest_term_, beat.term);
   if (beat.role != Role::kActive) return;
   if (role_ == Role::kActive) {
-    const bool overtaken = beat.term > own_term_ || (beat.term == own_term_ && beat.controller > controller_);
+    const bool overtaken = beat.term == own_term_ ? beat.controller > controller_
+                                                  : beat.term > own_term_ && !flies(beat.heard_ns);
     if (!overtaken) return;
     step_down(beat.term);
   }
@@ -68,14 +69,26 @@ Role Failover::sample(std::int64_t stamp_ns, const plant::ObeyedCommand& obeyed,
   obeyed_term_ = obeyed.any ? obeyed.term : 0;
   newest_term_ = std::max(newest_term_, obeyed_term_);
   if (role_ == Role::kActive) {
-    const bool another_flies =
-        obeyed.any && obeyed.term > own_term_ && silence_ns_ <= least_patience_ns(obeyed);
-    if (another_flies) step_down(obeyed.term);
+    if (another_flies(obeyed)) step_down(obeyed.term);
   } else if (silence_ns_ > patience_ns(obeyed, now_ns) && !is_on_trial()) {
     take_over(stamp_ns, obeyed, now_ns);
   }
   watch_takeover(stamp_ns, obeyed);
   return role_;
+}
+
+// By the samples up to now the vehicle obeyed this controller last, and not long ago. If it hears another one, the next
+// samples say so.
+bool Failover::flies(std::int64_t now_ns) const {
+  return obeyed_term_ == own_term_ && silence_ns_ <= kTrialNs && now_ns - last_now_ns_ <= kTrialNs;
+}
+
+// Another one took over, or the one that was taken for dead goes on and the vehicle has not heard this one.
+bool Failover::another_flies(const plant::ObeyedCommand& obeyed) const {
+  if (!obeyed.any || silence_ns_ > least_patience_ns(obeyed)) return false;
+  const bool unheard = takeover_state_ == TakeoverState::kWatched && obeyed.term != own_term_ &&
+                       obeyed.stamp_ns - taken_over_ns_ > kPatienceNs;
+  return obeyed.term > own_term_ || unheard;
 }
 
 void Failover::take_over(std::int64_t stamp_ns, const plant::ObeyedCommand& obeyed, std::int64_t now_ns) {

@@ -81,6 +81,8 @@ class Failover {
 
   void note(const Heartbeat& beat);
   void step_down(std::uint32_t to_term);
+  bool flies(std::int64_t now_ns) const;
+  bool another_flies(const plant::ObeyedCommand& obeyed) const;
   void pass_time(std::int64_t stamp_ns, const plant::ObeyedCommand& obeyed, std::int64_t now_ns);
   bool knows_flight(std::int64_t now_ns) const;
   bool is_on_trial() const;

@@ -18,6 +18,7 @@
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/private_domain.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -36,19 +37,11 @@ class FakeVehicleFlight : public testing::Test {
   FakeVehicleFlight()
       : control_("swiftlet-control", {"--domain", std::to_string(lock_.domain()), "--localhost-only"},
                  folder_.path()),
-        client_(network("ground")) {}
+        client_(settings_of("ground", lock_)) {}
 
-  comms::NodeSettings network(const std::string& name) const {
-    comms::NodeSettings settings;
-    settings.name = name;
-    settings.domain = lock_.domain();
-    settings.localhost_only = true;
-    return settings;
-  }
-
-  void start_vehicle() {
+  void start_vehicle(plant::ControlLevel level = plant::ControlLevel::kActuators) {
     const auto parameters = runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
-    vehicle_ = std::make_unique<FakeVehicle>(parameters, network("plant"));
+    vehicle_ = std::make_unique<FakeVehicle>(parameters, settings_of("plant", lock_), level);
     ASSERT_TRUE(client_.wait(kTimeout, [](const View& view) { return view.control.message.has_pose(); }))
         << control_.errors();
   }
@@ -67,12 +60,15 @@ class FakeVehicleFlight : public testing::Test {
     });
   }
 
-  void hover() {
-    start_vehicle();
+  void take_off() {
     const ground::Result armed = ask(msg::Command_Constants::ARM);
     ASSERT_TRUE(armed.accepted()) << armed.reason;
     const ground::Result off = ask(msg::Command_Constants::TAKEOFF);
     ASSERT_TRUE(off.accepted()) << off.reason;
+  }
+  void hover() {
+    start_vehicle();
+    take_off();
     ASSERT_TRUE(wait_for(Mode::kHolding)) << control_.errors();
   }
 
@@ -207,6 +203,29 @@ TEST_F(FakeVehicleFlight, UploadsTheLongestMission) {
   }));
 }
 
+// GIVEN a vehicle above level actuators that never says that its rotors run WHEN it is to take off THEN control waits for
+// 10 s of its time, disarms and says so, and once it does say so it takes off.
+TEST_F(FakeVehicleFlight, DoesNotTakeOffBeforeTheVehicleReportsItsRotors) {
+  start_vehicle(plant::ControlLevel::kAttitude);
+  ASSERT_TRUE(client_.wait(kTimeout, [](const View& view) { return view.vehicle.seen(); }));
+  vehicle_->reports_rotors = false;
+  const std::uint64_t before = vehicle_->samples();
+  take_off();
+  ASSERT_TRUE(wait_for(Mode::kTakingOff)) << control_.errors();
+  ASSERT_TRUE(wait_for(Mode::kDisarmed)) << control_.errors();
+  EXPECT_STREQ(client_.view().control.message.reason().c_str(),
+               "the vehicle does not report rotors_running in vehicle_info");
+  const double waited_s =
+      1e-9 * static_cast<double>(FakeVehicle::kPeriodNs) * static_cast<double>(vehicle_->samples() - before);
+  EXPECT_GE(waited_s, 10.0);
+  EXPECT_EQ(vehicle_->highest_m(), 0.0);
+
+  vehicle_->reports_rotors = true;
+  take_off();
+  EXPECT_TRUE(wait_for(Mode::kHolding)) << control_.errors();
+  EXPECT_NEAR(vehicle_->height_m(), 0.6, 0.1);
+}
+
 // `./dev bench --only missions` measures the target of 1 s; the bound here allows for a busy machine.
 TEST_F(FakeVehicleFlight, StartsAMissionOf1000WaypointsQuickly) {
   hover();
@@ -230,11 +249,7 @@ TEST_F(FakeVehicleFlight, RefusesADifferentMissionOfTheSameId) {
   mission.items.resize(2);
   for (control::MissionItem& item : mission.items) item.position_ned = {0.0, 0.0, -0.7};
   ASSERT_TRUE(client_.upload(mission, kTimeout).accepted());
-  comms::NodeSettings settings;
-  settings.name = "stranger";
-  settings.domain = lock_.domain();
-  settings.localhost_only = true;
-  comms::Node node(settings);
+  comms::Node node(settings_of("stranger", lock_));
   auto missions = node.publish(comms::topics::kMission);
   std::mutex mutex;
   std::optional<msg::CommandAck> ack;

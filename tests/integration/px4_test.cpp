@@ -18,6 +18,7 @@
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/private_domain.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/px4/scripted_px4.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -40,13 +41,6 @@ class Px4Flight : public testing::Test {
       : vehicle_(runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml")),
         settings_(std::move(settings)) {}
 
-  comms::NodeSettings network(const std::string& name) const {
-    comms::NodeSettings settings;
-    settings.name = name;
-    settings.domain = lock_.domain();
-    settings.localhost_only = true;
-    return settings;
-  }
   std::unique_ptr<Program> start(const std::string& program, std::vector<std::string> arguments = {}) const {
     const std::vector<std::string> common{"--domain", std::to_string(lock_.domain()), "--localhost-only"};
     arguments.insert(arguments.end(), common.begin(), common.end());
@@ -54,14 +48,14 @@ class Px4Flight : public testing::Test {
   }
   // A busy machine must not look like a control that is dead.
   void start_all(const std::string& level, const std::string& silence_s = "1") {
-    px4_ = std::make_unique<ScriptedPx4>(vehicle_, network("scripted"), settings_);
+    px4_ = std::make_unique<ScriptedPx4>(vehicle_, settings_of("scripted", lock_), settings_);
     std::vector<std::string> of_bridge{"--control-silence", silence_s, "--instance",
                                        std::to_string(settings_.instance)};
     of_bridge.insert(of_bridge.end(), extra_bridge_.begin(), extra_bridge_.end());
     bridge_ = start("swiftlet-px4", of_bridge);
     mocap_ = start("swiftlet-mocap");
     control_ = start("swiftlet-control", {"--level", level, "--control", control_file_});
-    client_ = std::make_unique<ground::Client>(network("ground"));
+    client_ = std::make_unique<ground::Client>(settings_of("ground", lock_));
   }
   void wait_until_ready() {
     ASSERT_TRUE(client_->wait(kStuck, [](const View& view) {
@@ -164,7 +158,7 @@ class Px4Arming : public Px4Square {};
 TEST_P(Px4Arming, IsAwaitedByTheTakeOff) {
   std::mutex mutex;
   double before_n = 0.0, after_n = 0.0;  // greatest commanded thrust
-  comms::Node node(network("listener"));
+  comms::Node node(settings_of("listener", lock_));
   const auto note = [&](double thrust_n) {
     const std::lock_guard<std::mutex> lock(mutex);
     double& greatest_n = px4_->armed() ? after_n : before_n;
@@ -338,7 +332,7 @@ TEST_F(Px4Odometry, IsStampedByItsSample) {
   std::mutex mutex;
   std::vector<double> off_us;  // of the interval
   std::int64_t last_ns = 0;
-  comms::Node node(network("listener"));
+  comms::Node node(settings_of("listener", lock_));
   const comms::Subscription subscription =
       node.subscribe<msg::VehicleOdometry>(comms::topics::kVehicleOdometry, [&](const auto& message) {
         const std::lock_guard<std::mutex> lock(mutex);
@@ -381,9 +375,9 @@ TEST_F(Px4Fly, FliesTwoInstances) {
   ScriptedPx4Settings second;
   second.instance = 1;
   second.east_m = 1.0;
-  comms::NodeSettings of_second = network("scripted2");
+  comms::NodeSettings of_second = settings_of("scripted2", lock_);
   of_second.vehicle = "kl2";
-  px4_ = std::make_unique<ScriptedPx4>(vehicle_, network("scripted1"), settings_);
+  px4_ = std::make_unique<ScriptedPx4>(vehicle_, settings_of("scripted1", lock_), settings_);
   const ScriptedPx4 other(vehicle_, of_second, second);
   const std::string mission =
       folder_.write("hop.yaml",

@@ -12,22 +12,34 @@ constexpr double kPeriodS = static_cast<double>(FakeVehicle::kPeriodNs) * 1e-9;
 constexpr double kBraking_s = 0.02;
 constexpr std::uint64_t kImuPerFrame = 5;
 constexpr std::uint64_t kImuPerBattery = 50;
+constexpr std::uint64_t kImuPerInfo = 25;
 
 }  // namespace
 
-FakeVehicle::FakeVehicle(const plant::Vehicle& parameters, const comms::NodeSettings& network)
+FakeVehicle::FakeVehicle(const plant::Vehicle& parameters, const comms::NodeSettings& network,
+                         plant::ControlLevel level)
     : parameters_(parameters),
+      level_(level),
       node_(network),
       imu_(node_.publish(comms::topics::kImu)),
       mocap_(node_.publish(comms::topics::kMocapPose)),
-      battery_(node_.publish(comms::topics::kBattery)),
-      subscription_(
-          node_.subscribe<comms::msg::ActuatorCommand>(comms::topics::kActuatorCommand,
-                                                       [this](const comms::msg::ActuatorCommand& command) {
-                                                         const std::lock_guard lock(mutex_);
-                                                         commands_.push_back(command);
-                                                       })),
-      thread_([this] { run(); }) {}
+      battery_(node_.publish(comms::topics::kBattery)) {
+  if (level_ == plant::ControlLevel::kAttitude) {
+    info_ = node_.publish(comms::topics::kVehicleInfo);
+    subscription_ = node_.subscribe<comms::msg::AttitudeSetpoint>(
+        comms::topics::kAttitudeSetpoint, [this](const comms::msg::AttitudeSetpoint& setpoint) {
+          const std::lock_guard lock(mutex_);
+          attitude_ = setpoint;
+        });
+  } else {
+    subscription_ = node_.subscribe<comms::msg::ActuatorCommand>(
+        comms::topics::kActuatorCommand, [this](const comms::msg::ActuatorCommand& command) {
+          const std::lock_guard lock(mutex_);
+          commands_.push_back(command);
+        });
+  }
+  thread_ = std::thread([this] { run(); });
+}
 
 FakeVehicle::~FakeVehicle() {
   stop_ = true;
@@ -37,6 +49,11 @@ FakeVehicle::~FakeVehicle() {
 std::vector<comms::msg::ActuatorCommand> FakeVehicle::commands() const {
   const std::lock_guard lock(mutex_);
   return commands_;
+}
+
+bool FakeVehicle::attitude_commanded() const {
+  const std::lock_guard lock(mutex_);
+  return attitude_.rotor_state() == comms::msg::ActuatorCommand_Constants::ROTORS_RUNNING;
 }
 
 void FakeVehicle::run() {
@@ -52,15 +69,19 @@ void FakeVehicle::run() {
 // Vertical motion only; the floor is at height 0.
 void FakeVehicle::move() {
   double wanted_speed = 0.0;
+  double thrust_n = 0.0;
   {
     const std::lock_guard lock(mutex_);
     const bool running = !commands_.empty() && commands_.back().rotor_state() ==
                                                    comms::msg::ActuatorCommand_Constants::ROTORS_RUNNING;
     if (running)
       wanted_speed = plant::steady_speed_from_throttle(parameters_, kSupplyV, commands_.back().throttle()[0]);
+    if (attitude_.rotor_state() == comms::msg::ActuatorCommand_Constants::ROTORS_RUNNING)
+      thrust_n = attitude_.thrust_n();
   }
   rotor_speed_ += (wanted_speed - rotor_speed_) * kPeriodS / parameters_.motor.time_constant_s;
-  const double lift = parameters_.rotor_count() * plant::thrust_from_speed(parameters_.rotor, rotor_speed_);
+  const double lift =
+      thrust_n + parameters_.rotor_count() * plant::thrust_from_speed(parameters_.rotor, rotor_speed_);
   up_acceleration_ = lift / parameters_.mass_kg - plant::kGravity;
   // The floor brakes the vehicle with a time constant of 20 ms, which its accelerometer measures.
   if (height_m_ <= 0.0) up_acceleration_ = std::max(up_acceleration_, -up_speed_ / kBraking_s);
@@ -94,6 +115,20 @@ void FakeVehicle::publish() {
   imu.sequence_number(sequence);
   imu.specific_force_frd({0.0, 0.0, -(up_acceleration_ + plant::kGravity)});
   if (sends_imu) imu_.publish(imu);
+  if (level_ == plant::ControlLevel::kAttitude && sequence % kImuPerInfo == 0) publish_info();
+}
+
+void FakeVehicle::publish_info() {
+  comms::msg::VehicleInfo info;
+  info.stamp_ns(static_cast<std::int64_t>(samples()) * kPeriodNs);
+  info.sequence_number(samples() / kImuPerInfo);
+  info.name("rail");
+  info.rotor_count(static_cast<std::uint8_t>(parameters_.rotor_count()));
+  info.mass_kg(parameters_.mass_kg);
+  info.imu_rate_hz(1e9 / static_cast<double>(kPeriodNs));
+  info.rotors_running(reports_rotors && attitude_commanded());
+  info.control_levels(comms::msg::VehicleInfo_Constants::LEVEL_ATTITUDE);
+  info_.publish(info);
 }
 
 }  // namespace swiftlet::tests

@@ -1,5 +1,5 @@
 // A vehicle other than the plant: a mass on a vertical rail with sensors and motion capture that obeys
-// actuator commands over the network. It depends on the topics only.
+// actuator commands, or the thrust of attitude setpoints, over the network. It depends on the topics only.
 #pragma once
 
 #include <atomic>
@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "swiftlet/plant/model/control_level.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
@@ -16,7 +17,9 @@ namespace swiftlet::tests {
 
 class FakeVehicle {
  public:
-  FakeVehicle(const plant::Vehicle& parameters, const comms::NodeSettings& network);
+  // level: actuators or attitude. At actuators it publishes no vehicle_info, so that control assumes that level.
+  FakeVehicle(const plant::Vehicle& parameters, const comms::NodeSettings& network,
+              plant::ControlLevel level = plant::ControlLevel::kActuators);
   ~FakeVehicle();
   FakeVehicle(const FakeVehicle&) = delete;
   FakeVehicle& operator=(const FakeVehicle&) = delete;
@@ -25,8 +28,9 @@ class FakeVehicle {
   std::atomic<bool> seen_by_mocap{true};  // poses are published
   std::atomic<bool> tracked{true};        // poses are valid
   std::atomic<bool> sends_imu{true};
+  std::atomic<bool> reports_rotors{true};  // in vehicle_info, when they run
 
-  // Commands received, in order.
+  // Actuator commands received, in order.
   std::vector<comms::msg::ActuatorCommand> commands() const;
   double height_m() const { return height_m_; }
   double highest_m() const { return highest_m_; }
@@ -39,8 +43,11 @@ class FakeVehicle {
   void run();
   void move();
   void publish();
+  void publish_info();
+  bool attitude_commanded() const;  // with rotors running
 
   const plant::Vehicle parameters_;
+  const plant::ControlLevel level_;
   double up_speed_ = 0.0;
   double up_acceleration_ = 0.0;
   double rotor_speed_ = 0.0;
@@ -50,13 +57,15 @@ class FakeVehicle {
   std::uint64_t mocap_sequence_ = 0;
   std::uint64_t battery_sequence_ = 0;
 
-  mutable std::mutex mutex_;  // guards commands_
+  mutable std::mutex mutex_;  // guards commands_ and attitude_
   std::vector<comms::msg::ActuatorCommand> commands_;
+  comms::msg::AttitudeSetpoint attitude_;  // the last one received
 
   comms::Node node_;
   comms::Publisher<comms::msg::Imu> imu_;
   comms::Publisher<comms::msg::MocapPose> mocap_;
   comms::Publisher<comms::msg::Battery> battery_;
+  comms::Publisher<comms::msg::VehicleInfo> info_;
   comms::Subscription subscription_;
   std::atomic<bool> stop_{false};
   std::thread thread_;

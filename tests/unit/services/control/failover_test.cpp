@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <initializer_list>
 #include <memory>
 #include <vector>
 
@@ -29,6 +30,7 @@ class Vehicle {
     Failover failover;
     bool runs = true;  // false: dead or stopped
     bool receives_heartbeats = true;
+    bool is_heard = true;       // by the vehicle
     std::int64_t delay_ns = 0;  // of its network, from sample to command
     struct Command {
       std::int64_t arrival_ns, stamp_ns;
@@ -41,6 +43,15 @@ class Vehicle {
   Controller& add(std::uint64_t id, int failover_priority) {
     controllers_.push_back(std::make_unique<Controller>(id, failover_priority));
     return *controllers_.back();
+  }
+
+  // One that flies, number 7, and its standbys of these priorities, numbers 8 and up.
+  std::vector<Controller*> fly_with_standbys(std::initializer_list<int> priorities) {
+    std::vector<Controller*> all{&add(7, 5)};
+    run(300);
+    for (const int priority : priorities) all.push_back(&add(7 + all.size(), priority));
+    run(1000);
+    return all;
   }
 
   void run(std::int64_t duration_ms) {
@@ -76,7 +87,7 @@ class Vehicle {
 
   // As in the vehicle's watchdog.
   void command(const Controller& c, const Controller::Command& command) {
-    if (!obeys_ || (obeyed_.any && command.stamp_ns < obeyed_.stamp_ns)) return;
+    if (!obeys_ || !c.is_heard || (obeyed_.any && command.stamp_ns < obeyed_.stamp_ns)) return;
     if (obeyed_.any && command.term < obeyed_.term && stamp_ns_ - obeyed_.stamp_ns < ms(200)) {
       ++refused_;
       return;
@@ -143,31 +154,25 @@ TEST(Failover, LaterControllerIsStandbyAtAnyPriority) {
 
 TEST(Failover, StandbyTakesOverWithinItsPatience) {
   Vehicle vehicle;
-  auto& first = vehicle.add(7, 5);
-  vehicle.run(300);
-  const auto& standby = vehicle.add(8, 5);
-  vehicle.run(1000);
-  first.runs = false;
+  const auto controllers = vehicle.fly_with_standbys({5});
+  controllers[0]->runs = false;
   vehicle.run(100);
   EXPECT_EQ(vehicle.commander(), 8U);
-  EXPECT_TRUE(standby.failover.continues());
+  EXPECT_TRUE(controllers[1]->failover.continues());
   EXPECT_LE(vehicle.longest_gap_ns(), Failover::kPatienceNs + 2 * kPeriodNs);
-  EXPECT_GT(standby.failover.term(), first.failover.term());
+  EXPECT_GT(controllers[1]->failover.term(), controllers[0]->failover.term());
 }
 
 TEST(Failover, TellsHowItTookOver) {
   Vehicle vehicle;
-  auto& first = vehicle.add(7, 5);
-  vehicle.run(300);
-  auto& standby = vehicle.add(8, 2);
-  vehicle.add(9, 3);
-  vehicle.run(1000);
+  const auto controllers = vehicle.fly_with_standbys({2, 3});
+  Failover& standby = controllers[1]->failover;
   Takeover takeover;
-  EXPECT_FALSE(first.failover.take_takeover(takeover)) << "from no other controller";
-  for (const auto& controller : vehicle.controllers()) controller->runs = controller.get() == &standby;
+  EXPECT_FALSE(controllers[0]->failover.take_takeover(takeover)) << "from no other controller";
+  controllers[0]->runs = controllers[2]->runs = false;
   vehicle.run(100);
 
-  ASSERT_TRUE(standby.failover.take_takeover(takeover));
+  ASSERT_TRUE(standby.take_takeover(takeover));
   EXPECT_EQ(takeover.delay_p95_ns, kPeriodNs);
   EXPECT_EQ(takeover.rank, 1);
   EXPECT_EQ(takeover.patience_ns, Failover::kPatienceNs + Failover::kPerRankNs);
@@ -177,7 +182,7 @@ TEST(Failover, TellsHowItTookOver) {
   EXPECT_EQ(takeover.longest_silence_ns, vehicle.longest_gap_ns());
   EXPECT_EQ(takeover.longest_pause_ns, kPeriodNs);
   EXPECT_TRUE(takeover.continues);
-  EXPECT_FALSE(standby.failover.take_takeover(takeover)) << "once";
+  EXPECT_FALSE(standby.take_takeover(takeover)) << "once";
   EXPECT_EQ(to_string({ms(42), ms(40), ms(2), 1, true, ms(42), ms(3), true}),
             "takes over: 42 ms without a new command, waited for 40 ms (95 % of the commands need up to 2 "
             "ms, 1 standby before "
@@ -187,16 +192,13 @@ TEST(Failover, TellsHowItTookOver) {
 // The samples of 80 ms come at once, and the vehicle obeys only what answers the last of them.
 TEST(Failover, TellsThatSamplesPaused) {
   Vehicle vehicle;
-  auto& first = vehicle.add(7, 5);
-  vehicle.run(300);
-  auto& standby = vehicle.add(8, 2);
-  vehicle.run(1000);
-  first.runs = standby.runs = false;
+  const auto controllers = vehicle.fly_with_standbys({2});
+  controllers[0]->runs = controllers[1]->runs = false;
   vehicle.run(80);
-  standby.runs = true;
+  controllers[1]->runs = true;
   vehicle.run(20);
   Takeover takeover;
-  ASSERT_TRUE(standby.failover.take_takeover(takeover));
+  ASSERT_TRUE(controllers[1]->failover.take_takeover(takeover));
   EXPECT_LE(takeover.silence_ns, takeover.patience_ns + kPeriodNs);
   EXPECT_EQ(takeover.longest_silence_ns, vehicle.longest_gap_ns());
   EXPECT_EQ(takeover.longest_pause_ns, ms(80) + kPeriodNs);
@@ -204,17 +206,15 @@ TEST(Failover, TellsThatSamplesPaused) {
 
 TEST(Failover, TellsThatTheVehicleDoesNotObey) {
   Vehicle vehicle;
-  auto& first = vehicle.add(7, 5);
-  vehicle.run(300);
-  auto& standby = vehicle.add(8, 2);
-  vehicle.run(1000);
-  first.runs = false;
+  const auto controllers = vehicle.fly_with_standbys({2});
+  Failover& standby = controllers[1]->failover;
+  controllers[0]->runs = false;
   vehicle.obey(false);
   vehicle.run(100);
   Takeover takeover;
-  EXPECT_FALSE(standby.failover.take_takeover(takeover)) << "it still may";
+  EXPECT_FALSE(standby.take_takeover(takeover)) << "it still may";
   vehicle.run(500);
-  ASSERT_TRUE(standby.failover.take_takeover(takeover));
+  ASSERT_TRUE(standby.take_takeover(takeover));
   EXPECT_FALSE(takeover.obeyed);
   EXPECT_GT(takeover.longest_silence_ns, Failover::kTrialNs);
 }
@@ -238,28 +238,19 @@ TEST(Failover, StandbyBesideTheVehicleWaitsForAControllerBehindASlowNetwork) {
 
 TEST(Failover, StandbyOfHigherPriorityTakesOver) {
   Vehicle vehicle;
-  auto& first = vehicle.add(7, 5);
-  vehicle.run(300);
-  const auto& low_priority = vehicle.add(8, 2);
-  const auto& high_priority = vehicle.add(9, 3);
-  vehicle.run(1000);
-  first.runs = false;
+  const auto controllers = vehicle.fly_with_standbys({2, 3});
+  controllers[0]->runs = false;
   vehicle.run(1000);
   EXPECT_EQ(vehicle.commander(), 9U);
-  EXPECT_EQ(high_priority.failover.role(), Role::kActive);
-  EXPECT_EQ(low_priority.failover.role(), Role::kStandby);
+  EXPECT_EQ(controllers[2]->failover.role(), Role::kActive);
+  EXPECT_EQ(controllers[1]->failover.role(), Role::kStandby);
   EXPECT_EQ(vehicle.changes(), 2);
 }
 
 TEST(Failover, SecondStandbyTakesOverWhenTheFirstDiesToo) {
   Vehicle vehicle;
-  auto& first = vehicle.add(7, 5);
-  vehicle.run(300);
-  auto& high_priority = vehicle.add(9, 3);
-  vehicle.add(8, 2);
-  vehicle.run(1000);
-  first.runs = false;
-  high_priority.runs = false;
+  const auto controllers = vehicle.fly_with_standbys({2, 3});
+  controllers[0]->runs = controllers[2]->runs = false;
   vehicle.run(200);
   EXPECT_EQ(vehicle.commander(), 8U);
   EXPECT_LE(vehicle.longest_gap_ns(), Failover::kPatienceNs + Failover::kPerRankNs + 2 * kPeriodNs);
@@ -300,6 +291,49 @@ TEST(Failover, ResumedStandbyDoesNotTakeOver) {
     EXPECT_EQ(vehicle.changes(), 1) << (reported ? "reported" : "not reported");
     EXPECT_EQ(standby.failover.role(), Role::kStandby);
   }
+}
+
+// GIVEN a standby that the vehicle does not hear, because its ownership strength is not raised yet, WHEN the one that flies
+// stalls for longer than the standby waits THEN it flies on afterwards, and the standby is ready for the next time.
+TEST(Failover, StandbyThatIsNotHeardDoesNotEndTheFlightOfAnother) {
+  Vehicle vehicle;
+  const auto controllers = vehicle.fly_with_standbys({2});
+  controllers[1]->is_heard = false;
+  controllers[0]->runs = false;
+  vehicle.run(30);
+  ASSERT_EQ(controllers[1]->failover.role(), Role::kActive);
+  controllers[0]->runs = true;
+  vehicle.run(20);
+  EXPECT_EQ(controllers[0]->failover.role(), Role::kActive);
+  vehicle.run(80);
+  EXPECT_EQ(controllers[1]->failover.role(), Role::kStandby);
+  vehicle.run(2000);
+  EXPECT_EQ(vehicle.changes(), 1);
+  EXPECT_LE(vehicle.longest_gap_ns(), ms(30) + 2 * kPeriodNs);
+
+  controllers[1]->is_heard = true;
+  controllers[0]->runs = false;
+  vehicle.run(100);
+  EXPECT_EQ(vehicle.commander(), 8U);
+  EXPECT_TRUE(controllers[1]->failover.continues());
+  EXPECT_LE(vehicle.longest_gap_ns(), ms(30) + 2 * kPeriodNs);
+}
+
+// The vehicle begins to hear the standby while both send commands: the higher term flies, and the other one learns it.
+TEST(Failover, StandbyThatIsHeardLateEndsTheFlightOfAnother) {
+  Vehicle vehicle;
+  const auto controllers = vehicle.fly_with_standbys({2});
+  controllers[1]->is_heard = false;
+  controllers[0]->runs = false;
+  vehicle.run(30);
+  controllers[0]->runs = true;
+  vehicle.run(10);
+  controllers[1]->is_heard = true;
+  vehicle.run(1000);
+  EXPECT_EQ(controllers[0]->failover.role(), Role::kStandby);
+  EXPECT_EQ(controllers[1]->failover.role(), Role::kActive);
+  EXPECT_EQ(vehicle.changes(), 2);
+  EXPECT_LE(vehicle.longest_gap_ns(), ms(30) + 2 * kPeriodNs);
 }
 
 TEST(Failover, OneOfSeveralStartedTogetherBecomesActive) {
