@@ -120,9 +120,9 @@ endif()
 
 # What a test takes of the computer, in sixths of a core: PROCESSORS, with which `ctest --parallel` counts. What computes counts less than
 # the core that it may take: it can wait, and no core is idle while others start.
-set(SWIFTLET_TEST_IDLES 1)     # waits for time-outs, or runs one or two services: 0.1 to 0.2 of a core
+set(SWIFTLET_TEST_IDLES 1)     # waits for time-outs
 set(SWIFTLET_TEST_WAITS 2)     # flies in real time: 0.2 to 0.35 of a core
-set(SWIFTLET_TEST_COMPUTES 4)
+set(SWIFTLET_TEST_COMPUTES 4)  # or measures how quickly something happens: fewer flights beside it
 
 # swiftlet_add_test(NAME SOURCES ... LIBS ... [LABEL label] [SHARDS n] [CASES_APART] [WAITS | IDLES] [CALM filter] [ALONE filter]):
 # adds a GoogleTest program.
@@ -130,9 +130,8 @@ set(SWIFTLET_TEST_COMPUTES 4)
 #   SHARDS       number of CTest tests that share the test cases; the default is one test
 #   CASES_APART  each test case is a CTest test with its own process, for cases that take seconds
 #   WAITS, IDLES how much the program computes, see above; the default is SWIFTLET_TEST_COMPUTES
-#   CALM         GoogleTest filter of the cases that measure real time and repeat what a stall disturbed; fewer others run in
-#                parallel with them (needs CASES_APART)
-#   ALONE        the same of the cases with which nothing runs in parallel
+#   CALM         GoogleTest filter of the cases that measure how quickly something happens (needs CASES_APART)
+#   ALONE        GoogleTest filter of the cases with which nothing runs in parallel (needs CASES_APART)
 function(swiftlet_add_test name)
   cmake_parse_arguments(arg "CASES_APART;WAITS;IDLES" "LABEL;SHARDS;CALM;ALONE" "SOURCES;LIBS" ${ARGN})
   if(NOT arg_LABEL)
