@@ -118,14 +118,22 @@ if(SWIFTLET_SANITIZE)
   set(SWIFTLET_TEST_TIMEOUT 1000)
 endif()
 
-# swiftlet_add_test(NAME SOURCES ... LIBS ... [LABEL label] [SHARDS n] [CASES_APART] [WAITS] [ALONE filter]): adds a GoogleTest program.
+# What a test takes of the computer, in sixths of a core: PROCESSORS, with which `ctest --parallel` counts. What computes counts less than
+# the core that it may take: it can wait, and no core is idle while others start.
+set(SWIFTLET_TEST_IDLES 1)     # waits for time-outs
+set(SWIFTLET_TEST_WAITS 2)     # flies in real time: 0.2 to 0.35 of a core
+set(SWIFTLET_TEST_COMPUTES 4)  # or measures how quickly something happens: fewer flights beside it
+
+# swiftlet_add_test(NAME SOURCES ... LIBS ... [LABEL label] [SHARDS n] [CASES_APART] [WAITS | IDLES] [CALM filter] [ALONE filter]):
+# adds a GoogleTest program.
 #   LABEL        CTest label; the default `unit` also adds the program to the target unit_tests
 #   SHARDS       number of CTest tests that share the test cases; the default is one test
 #   CASES_APART  each test case is a CTest test with its own process, for cases that take seconds
-#   WAITS        the program mostly waits for clocks and counts as one process of `ctest --parallel`; the default is two
-#   ALONE        GoogleTest filter of the cases that measure real time; nothing runs in parallel with them (needs CASES_APART)
+#   WAITS, IDLES how much the program computes, see above; the default is SWIFTLET_TEST_COMPUTES
+#   CALM         GoogleTest filter of the cases that measure how quickly something happens (needs CASES_APART)
+#   ALONE        GoogleTest filter of the cases with which nothing runs in parallel (needs CASES_APART)
 function(swiftlet_add_test name)
-  cmake_parse_arguments(arg "CASES_APART;WAITS" "LABEL;SHARDS;ALONE" "SOURCES;LIBS" ${ARGN})
+  cmake_parse_arguments(arg "CASES_APART;WAITS;IDLES" "LABEL;SHARDS;CALM;ALONE" "SOURCES;LIBS" ${ARGN})
   if(NOT arg_LABEL)
     set(arg_LABEL unit)
   endif()
@@ -143,9 +151,13 @@ function(swiftlet_add_test name)
     SWIFTLET_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SWIFTLET_BIN_DIR="${PROJECT_BINARY_DIR}/bin")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
   set(properties LABELS ${arg_LABEL} TIMEOUT ${SWIFTLET_TEST_TIMEOUT} ENVIRONMENT_MODIFICATION "ROS_DOMAIN_ID=unset:")
-  if(NOT arg_WAITS)
-    list(APPEND properties PROCESSORS 2)
+  set(processors ${SWIFTLET_TEST_COMPUTES})
+  if(arg_WAITS)
+    set(processors ${SWIFTLET_TEST_WAITS})
+  elseif(arg_IDLES)
+    set(processors ${SWIFTLET_TEST_IDLES})
   endif()
+  list(APPEND properties PROCESSORS ${processors})
   if(arg_SHARDS)
     foreach(shard RANGE 1 ${arg_SHARDS})
       math(EXPR index "${shard} - 1")
@@ -161,7 +173,10 @@ function(swiftlet_add_test name)
     return()
   endif()
   set(cases TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST)
-  gtest_discover_tests(${name} ${cases} TEST_FILTER "-${arg_ALONE}" PROPERTIES ${properties})
+  gtest_discover_tests(${name} ${cases} TEST_FILTER "-${arg_CALM}:${arg_ALONE}" PROPERTIES ${properties})
+  if(arg_CALM)
+    gtest_discover_tests(${name} ${cases} TEST_FILTER "${arg_CALM}" PROPERTIES ${properties} PROCESSORS ${SWIFTLET_TEST_COMPUTES})
+  endif()
   if(arg_ALONE)
     gtest_discover_tests(${name} ${cases} TEST_FILTER "${arg_ALONE}" PROPERTIES ${properties} RUN_SERIAL ON)
   endif()

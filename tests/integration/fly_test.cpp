@@ -145,7 +145,7 @@ TEST_F(Fly, FliesOverSharedMemoryAndRemovesIt) {
         }
         return fly.errors().find("2/6 waypoint") != std::string::npos;
       },
-      kStartTimeout))
+      kStartTimeout, 20ms))
       << all_output(fly);
   EXPECT_FALSE(files.empty()) << "no process used shared memory";
   ASSERT_EQ(fly.wait(kStuck), 0) << all_output(fly);

@@ -12,6 +12,7 @@
 #include "swiftlet/services/microcontroller/firmware.hpp"
 #include "swiftlet/services/microcontroller/port.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
+#include "tests/support/hop_mission.hpp"
 #include "tests/support/separate_processes.hpp"
 #include "tests/support/serial_cable.hpp"
 
@@ -88,14 +89,14 @@ TEST_F(VehicleTemplate, FliesTheSquareThroughAPseudoTerminal) {
   ground::Result armed;
   ASSERT_TRUE(eventually([&] { return (armed = ask(msg::Command_Constants::ARM)).accepted(); }, kTimeout))
       << armed.reason;
-  const ProgramResult fly = run_program(
-      "swiftlet",
-      {"mission", "fly", "square", "--localhost-only", "--domain", std::to_string(lock_.domain())},
-      folder_.path(), kTimeout);
+  const ProgramResult fly = run_program("swiftlet",
+                                        {"mission", "fly", folder_.write("square.yaml", kSmallSquareMission),
+                                         "--localhost-only", "--domain", std::to_string(lock_.domain())},
+                                        folder_.path(), kTimeout);
   ASSERT_EQ(fly.exit_code, 0) << fly.errors << plant_->errors() << microcontroller_->errors();
   const auto errors = ground::tracking_errors(record_.truth, record_.reference, at_height(record_));
   EXPECT_LT(errors.rms_3d_m, 0.005);
-  EXPECT_GT(errors.matched, 1000U) << "of about 3000";
+  EXPECT_GT(errors.matched, 1000U) << "of about 1500";
   const msg::VehicleInfo info = client_->view().vehicle.message;
   EXPECT_TRUE(info.simulated()) << "as the microcontroller says";
   EXPECT_EQ(info.imu_rate_hz(), 500.0);

@@ -116,7 +116,9 @@ class IntervalCoverage : public testing::Test {
 
 void IntervalCoverage::study(const char* what, const Unmodelled& unmodelled) {
   const LaunchConfiguration nominal = plan_of("identification");
-  const int seeds = tests::draws(2, 50);
+  // One flight gives 16 intervals. If they were half as wide as they should be, one of them would fail with a probability of
+  // 56 %, and of the 64 of all conditions one with 96 % (if independent). A soak counts.
+  const int seeds = tests::draws(1, 50);
   Tallies tallies;
   for (int i = 1; i <= seeds; ++i) {
     const auto seed = static_cast<std::uint64_t>(i);
