@@ -81,6 +81,7 @@ void run(const Options& options) {
   settings.realtime = runtime::prepare_realtime(options.process.realtime, options.clock);
 
   comms::NodeSettings network = options.node;
+  network.hears_of_all = false;
   network.deadlines = options.clock == runtime::Clock::kRealtime;
   const comms::Participant participant(network, names);
   std::vector<std::unique_ptr<runtime::HostedVehicle>> vehicles;

@@ -36,13 +36,13 @@ bool is_own(const std::string& ipv4) {
   return std::any_of(own.begin(), own.end(), [&](const Interface& it) { return it.address == ipv4; });
 }
 
-// As a client that hears of all processes of the domain, not only of those with the same topics. Fast DDS 2.9 fails an
-// assertion if a server of this host has another address than that of the loopback interface.
-void add_servers(const std::string& list, rtps::DiscoverySettings& discovery,
+// Fast DDS 2.9 fails an assertion if a server of this host has another address than that of the loopback interface.
+void add_servers(const std::string& list, bool hears_of_all, rtps::DiscoverySettings& discovery,
                  eprosima::fastdds::rtps::UDPv4TransportDescriptor& udp) {
   if (const std::string fault = fault_of_discovery_servers(list); !fault.empty())
     throw runtime::ConfigError("discovery server " + fault);
-  discovery.discoveryProtocol = rtps::DiscoveryProtocol::SUPER_CLIENT;
+  discovery.discoveryProtocol =
+      hears_of_all ? rtps::DiscoveryProtocol::SUPER_CLIENT : rtps::DiscoveryProtocol::CLIENT;
   for (const DiscoveryServerAddress& server : parse_discovery_servers(list)) {
     std::vector<rtps::Locator_t> addresses;
     for (const std::string& address : ipv4_addresses_of(server.address.host)) {
@@ -67,7 +67,8 @@ void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
   const DiscoveryPorts ports = discovery_ports(settings.domain);
   // Instead of the multicast address, only this: the first free port of the domain.
   builtin.metatrafficUnicastLocatorList.push_back(locator_of(kAnyAddress, ports.first));
-  if (network.peers.empty()) return add_servers(network.discovery_servers, builtin.discovery_config, udp);
+  if (network.peers.empty())
+    return add_servers(network.discovery_servers, settings.hears_of_all, builtin.discovery_config, udp);
   // The processes of this host.
   if (own_addresses.empty()) add_host(kLoopback, ports, announced_ports, builtin.initialPeersList);
   for (const std::string& address : own_addresses)

@@ -30,6 +30,9 @@ struct NodeSettings {
   Transport transport = Transport::kUdp;
   bool localhost_only = false;  // loopback interface only, without multicast
   NetworkSettings network{};    // not with localhost_only
+  // With a discovery server: it tells of all processes of the domain. False: only of those that exchange topics with this
+  // one, which keeps the traffic of a fleet in proportion to its vehicles; on_peer() and topics_seen() miss the others.
+  bool hears_of_all = true;
   // File with the keys of the network (io/network_key.hpp): only datagrams of processes with one of them are
   // received. Empty: from everyone.
   std::string network_key_file{};
@@ -67,8 +70,9 @@ constexpr const char* kFlight = "flight";
 
 // How long become_source() looks for another source: an announcement is sent several times in that time.
 constexpr std::chrono::milliseconds kSourceSearchTime{250};
-// With security: Fast DDS repeats a lost handshake after 0.5 s.
-constexpr std::chrono::milliseconds kSecureSourceSearchTime{1000};
+// With security, where Fast DDS repeats a lost handshake after 0.5 s, and with a discovery server, which tells of a source only
+// after it has heard of what searches for it.
+constexpr std::chrono::milliseconds kLongSourceSearchTime{1000};
 // After become_source(), a source that turns out to be the later of two yields within this time only.
 constexpr std::chrono::milliseconds kSourceProbation{3000};
 // How long a SourceConflict is reported after the last ignored sample.
@@ -177,7 +181,7 @@ class Participant {
   std::vector<std::string> qos_conflicts_seen() const;
 
   // Checks that this process is the only source of settings.source_of for the vehicles that it serves, and that
-  // none of `excluded` has a source either. Blocks for kSourceSearchTime, with security for kSecureSourceSearchTime.
+  // none of `excluded` has a source either. Blocks for kSourceSearchTime, or kLongSourceSearchTime.
   // Returns a sentence that names the vehicle, the other process and its host, if there is one; then this process must
   // not publish the topic. A process that joined at the same time is refused on one side only. on_lost: called with such
   // a sentence if an earlier source is discovered only within kSourceProbation after; the process must end then. It runs

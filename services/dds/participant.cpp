@@ -84,6 +84,7 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
   session_ = std::make_unique<ParticipantSession>(settings, announcement_, guard_, this);
   periodic_task_.emplace(kCheckPeriod, [this] {
     rejoin_if_rediscovery_failed();
+    end_source_watch_when_due();
     {
       const std::lock_guard<std::mutex> session_lock(session_mutex_);
       announce_when_due();
@@ -99,6 +100,7 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
 
 Participant::Impl::~Impl() {
   periodic_task_.reset();
+  source_watch_.clear();
   end_session();
   if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
 }
@@ -418,8 +420,10 @@ void Participant::Impl::log_conflicts(const Guid& own, const std::string& topic,
 // ---- the only source of a topic
 
 std::optional<std::string> Participant::Impl::become_source(const std::vector<std::string>& excluded,
-                                                            std::function<void(const std::string&)> on_lost) {
-  std::this_thread::sleep_for(settings.security.empty() ? kSourceSearchTime : kSecureSourceSearchTime);
+                                                            std::function<void(const std::string&)> on_lost,
+                                                            std::vector<Subscription> watch) {
+  const bool finds_fast = settings.security.empty() && settings.network.discovery_servers.empty();
+  std::this_thread::sleep_for(finds_fast ? kSourceSearchTime : kLongSourceSearchTime);
   const std::lock_guard<std::mutex> lock(session_mutex_);
   {
     const std::lock_guard<std::mutex> peers_lock(peers_mutex_);
@@ -427,10 +431,23 @@ std::optional<std::string> Participant::Impl::become_source(const std::vector<st
     announcement_.is_established = true;
     established_at_ = Clock::now();
     on_lost_source_ = std::move(on_lost);
+    source_watch_ = std::move(watch);
   }
   announcement_changed_ = true;
   announce_when_due();
   return std::nullopt;
+}
+
+std::vector<std::string> Participant::Impl::watched_vehicles() const {
+  const std::lock_guard<std::mutex> lock(peers_mutex_);
+  const bool is_told_of_all = settings.network.discovery_servers.empty() || settings.hears_of_all;
+  return is_told_of_all ? std::vector<std::string>() : split_names(announcement_.vehicles);
+}
+
+void Participant::Impl::end_source_watch_when_due() {
+  std::vector<Subscription> ended;  // after the lock
+  const std::lock_guard<std::mutex> lock(peers_mutex_);
+  if (Clock::now() - established_at_ > kSourceProbation) ended.swap(source_watch_);
 }
 
 std::optional<std::string> Participant::Impl::other_source(const std::vector<std::string>& excluded) const {

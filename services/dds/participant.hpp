@@ -40,8 +40,13 @@ struct Participant::Impl final : public DiscoveryListener {
   // kCheckPeriod, not at all if the participant ends.
   void serve(const std::string& vehicle);
   void stop_serving(const std::string& vehicle);
+  // watch: readers of the excluded topics of the watched vehicles, which end after kSourceProbation.
   std::optional<std::string> become_source(const std::vector<std::string>& excluded,
-                                           std::function<void(const std::string&)> on_lost);
+                                           std::function<void(const std::string&)> on_lost,
+                                           std::vector<Subscription> watch);
+  // Of which this process has to read a topic to be told of its writers: a discovery server tells a client only of those with
+  // which it exchanges topics. Empty if it is told of all.
+  std::vector<std::string> watched_vehicles() const;
   void add(Endpoint* endpoint);
   void remove(Endpoint* endpoint);
   // Leaves the domain and joins it again. Returns false if joining failed this time or the previous time.
@@ -110,6 +115,7 @@ struct Participant::Impl final : public DiscoveryListener {
   // A sentence about another process to which this one must yield (become_source()); nullopt if there is none.
   std::optional<std::string> other_source(const std::vector<std::string>& excluded) const;
   std::optional<std::string> unannounced_source(const std::string& vehicle, const std::string& topic) const;
+  void end_source_watch_when_due();
   // Two sources that joined at the same time, and discovered each other late.
   void yield_source_to(const Peer& peer);
   std::string in_use_by(const std::string& vehicle, const std::string& topic, const Peer& source) const;
@@ -125,6 +131,7 @@ struct Participant::Impl final : public DiscoveryListener {
   Announcement announcement_;       // of this process; changed with both mutexes locked
   std::chrono::steady_clock::time_point established_at_;
   std::function<void(const std::string&)> on_lost_source_;
+  std::vector<Subscription> source_watch_;
   // Of any vehicle; with security only authenticated ones, whose announcements are not encrypted.
   std::map<Guid, Peer> peers_;
   // With security. Fast DDS 3 tells of participants only when they are authenticated; guard_ knows the others.

@@ -124,6 +124,7 @@ void run(const Options& options) {
   settings.realtime = runtime::prepare_realtime(options.process.realtime, runtime::Clock::kRealtime);
 
   comms::NodeSettings network = options.node;
+  network.hears_of_all = false;
   network.announcement_period = comms::kFixturePeriod;
   network.source_of = comms::topics::kGroundTruth.name;
   comms::Participant participant(network, {network.vehicle});

@@ -85,6 +85,7 @@ void check_simulation(const Options& options) {
 comms::NodeSettings network_of(const Options& options, runtime::Clock clock) {
   comms::NodeSettings network = options.node;
   network.announcement_period = comms::kFixturePeriod;
+  network.hears_of_all = false;
   network.deadlines = clock == runtime::Clock::kRealtime;
   network.source_of = comms::topics::kMocapPose.name;
   return network;

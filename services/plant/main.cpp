@@ -306,6 +306,7 @@ void run(const Options& options) {
 
   comms::NodeSettings network = options.node;
   network.announcement_period = comms::kFixturePeriod;
+  network.hears_of_all = false;
   network.deadlines = false;  // it tells the active controller by its term, and each deadline wakes a thread
   network.source_of =
       options.autopilot.truth_only ? comms::topics::kGroundTruth.name : comms::topics::kImu.name;

@@ -190,6 +190,7 @@ void run(const Options& options) {
       runtime::prepare_realtime(options.process.realtime, runtime::Clock::kRealtime);
 
   comms::NodeSettings network = options.node;
+  network.hears_of_all = false;
   network.announcement_period = comms::kFixturePeriod;
   network.deadlines = false;  // the microcontroller tells the active controller by its term
   network.source_of = comms::topics::kImu.name;

@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -21,6 +22,7 @@
 #include <sys/select.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 #include <vector>
 
@@ -42,6 +44,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kJoins = 9;
+constexpr int kProcessesOfVehicle = 4;
+constexpr std::chrono::milliseconds kLookPeriod{10};
 constexpr std::chrono::seconds kFirstAnnouncements{2};  // duration of the faster initial announcements
 
 struct Options {
@@ -173,29 +177,128 @@ class ServerProcess {
   pid_t pid_ = 0;
 };
 
-// Runs until its standard input is closed; writes a byte once it has discovered all others.
-[[noreturn]] void run_process_of_fleet(int number, int count, const Network& network, int input, int output) {
-  network.hosts.enter(number % network.hosts.count());
+comms::NodeSettings settings_of(const std::string& name, const std::string& vehicle, const Network& network) {
   comms::NodeSettings settings;
-  settings.name = "process" + std::to_string(number);
+  settings.name = name;
+  settings.vehicle = vehicle;
   settings.domain = network.domain;
   settings.localhost_only = !network.server && network.hosts.count() == 1;
   if (network.server) settings.network.discovery_servers = network.hosts.server_address();
-  if (number % 4 < 2) settings.announcement_period = comms::kFixturePeriod;
-  comms::Node node(settings);
-  const auto imu = node.publish(comms::topics::kImu);
-  const auto status = node.publish(comms::topics::kVehicleInfo);
-  const auto battery = node.subscribe<comms::msg::Battery>(comms::topics::kBattery, [](const auto&) {});
-  const auto pose = node.subscribe<comms::msg::MocapPose>(comms::topics::kMocapPose, [](const auto&) {});
-  int known = 1;
-  node.on_peer([&](const comms::PeerEvent& peer) {
-    known += peer.alive ? 1 : -1;
-    if (known == count && ::write(output, "k", 1) != 1) std::_Exit(1);
-  });
+  return settings;
+}
+
+void write_known(int output) {
+  if (::write(output, "k", 1) != 1) std::_Exit(1);
+}
+
+// Ends the process without goodbye messages.
+[[noreturn]] void exit_when_closed(int input) {
   char byte = 0;
   while (::read(input, &byte, 1) > 0) {
   }
-  std::_Exit(0);  // without goodbye messages
+  std::_Exit(0);
+}
+
+template <class Condition>
+void wait_until(const Condition& holds) {
+  while (!holds()) std::this_thread::sleep_for(kLookPeriod);
+}
+
+// The four processes of a vehicle, with the topics over which they find each other.
+void run_plant(const comms::NodeSettings& settings, int input, int output) {
+  comms::Node node(settings);
+  const auto imu = node.publish(comms::topics::kImu);
+  const auto rotors = node.publish(comms::topics::kRotorSpeeds);
+  const auto truth = node.publish(comms::topics::kGroundTruth);
+  const auto info = node.publish(comms::topics::kVehicleInfo);
+  const auto commands =
+      node.subscribe<comms::msg::ActuatorCommand>(comms::topics::kActuatorCommand, [](const auto&) {});
+  wait_until([&] {
+    return imu.matched() == 1 && rotors.matched() == 1 && truth.matched() == 1 && info.matched() == 2 &&
+           commands.matched() == 1;
+  });
+  write_known(output);
+  exit_when_closed(input);
+}
+void run_motion_capture(const comms::NodeSettings& settings, int input, int output) {
+  comms::Node node(settings);
+  const auto poses = node.publish(comms::topics::kMocapPose);
+  const auto truth = node.subscribe<comms::msg::GroundTruth>(comms::topics::kGroundTruth, [](const auto&) {});
+  wait_until([&] { return poses.matched() == 2 && truth.matched() == 1; });
+  write_known(output);
+  exit_when_closed(input);
+}
+void run_control(const comms::NodeSettings& settings, int input, int output) {
+  comms::Node node(settings);
+  const auto actuators = node.publish(comms::topics::kActuatorCommand);
+  const auto status = node.publish(comms::topics::kControlStatus);
+  const auto state = node.publish(comms::topics::kControllerState);
+  const auto imu = node.subscribe<comms::msg::Imu>(comms::topics::kImu, [](const auto&) {});
+  const auto rotors =
+      node.subscribe<comms::msg::RotorSpeeds>(comms::topics::kRotorSpeeds, [](const auto&) {});
+  const auto poses = node.subscribe<comms::msg::MocapPose>(comms::topics::kMocapPose, [](const auto&) {});
+  const auto info = node.subscribe<comms::msg::VehicleInfo>(comms::topics::kVehicleInfo, [](const auto&) {});
+  const auto requests = node.subscribe<comms::msg::Command>(comms::topics::kCommand, [](const auto&) {});
+  wait_until([&] {
+    return actuators.matched() == 1 && status.matched() == 1 && state.matched() == 1 && imu.matched() == 1 &&
+           rotors.matched() == 1 && poses.matched() == 1 && info.matched() == 1 && requests.matched() == 1;
+  });
+  write_known(output);
+  exit_when_closed(input);
+}
+void run_ground(const comms::NodeSettings& settings, int input, int output) {
+  comms::Node node(settings);
+  const auto requests = node.publish(comms::topics::kCommand);
+  const auto status =
+      node.subscribe<comms::msg::ControlStatus>(comms::topics::kControlStatus, [](const auto&) {});
+  const auto state =
+      node.subscribe<comms::msg::ControllerState>(comms::topics::kControllerState, [](const auto&) {});
+  const auto poses = node.subscribe<comms::msg::MocapPose>(comms::topics::kMocapPose, [](const auto&) {});
+  const auto info = node.subscribe<comms::msg::VehicleInfo>(comms::topics::kVehicleInfo, [](const auto&) {});
+  wait_until([&] {
+    return requests.matched() == 1 && status.matched() == 1 && state.matched() == 1 && poses.matched() == 1 &&
+           info.matched() == 1;
+  });
+  write_known(output);
+  exit_when_closed(input);
+}
+
+// Writes a byte once it exchanges all topics with the others of its vehicle.
+void run_process_of_fleet(int number, const Network& network, int input, int output) {
+  network.hosts.enter(number % network.hosts.count());
+  constexpr std::array kNames = {"plant", "mocap", "control", "ground"};
+  constexpr std::array<void (*)(const comms::NodeSettings&, int, int), kProcessesOfVehicle> kRoles = {
+      run_plant, run_motion_capture, run_control, run_ground};
+  const int role = number % kProcessesOfVehicle;
+  comms::NodeSettings settings =
+      settings_of(kNames[role], "kl" + std::to_string(number / kProcessesOfVehicle), network);
+  settings.hears_of_all = false;
+  if (role < 2) settings.announcement_period = comms::kFixturePeriod;
+  kRoles[role](settings, input, output);
+}
+
+// A tool that looks at the domain, as `swiftlet list` does: writes a byte once it knows all processes.
+void run_tool(int count, const Network& network, int input, int output) {
+  network.hosts.enter(0);
+  const comms::Participant participant(settings_of("tool", "", network));
+  // Clients of a discovery server see it as one more.
+  const std::size_t all = static_cast<std::size_t>(count) + (network.server ? 1 : 0);
+  wait_until([&] { return participant.processes_seen().size() >= all; });
+  write_known(output);
+  exit_when_closed(input);
+}
+
+// Returns false if the deadline passes or the other end is closed before a byte comes.
+bool wait_for_byte(int input, std::chrono::time_point<Clock, std::chrono::duration<double>> deadline) {
+  while (Clock::now() < deadline) {
+    fd_set waiting;
+    FD_ZERO(&waiting);
+    FD_SET(input, &waiting);
+    timeval second{1, 0};
+    char byte = 0;
+    if (::select(input + 1, &waiting, nullptr, nullptr, &second) > 0) return ::read(input, &byte, 1) == 1;
+  }
+  return false;
 }
 
 class Fleet {
@@ -206,7 +309,7 @@ class Fleet {
       const pid_t pid = ::fork();
       if (pid == 0) {
         ::close(input_[1]);
-        run_process_of_fleet(i, count, network, input_[0], output_[1]);
+        run_process_of_fleet(i, network, input_[0], output_[1]);
       }
       processes_.push_back(pid);
     }
@@ -225,21 +328,12 @@ class Fleet {
   int wait_until_known(std::chrono::duration<double> patience) const {
     const auto deadline = Clock::now() + patience;
     int known = 0;
-    while (known < static_cast<int>(processes_.size()) && Clock::now() < deadline) {
-      fd_set waiting;
-      FD_ZERO(&waiting);
-      FD_SET(output_[0], &waiting);
-      timeval second{1, 0};
-      char byte = 0;
-      if (::select(output_[0] + 1, &waiting, nullptr, nullptr, &second) > 0 &&
-          ::read(output_[0], &byte, 1) == 1)
-        ++known;
-    }
+    while (known < static_cast<int>(processes_.size()) && wait_for_byte(output_[0], deadline)) ++known;
     return known;
   }
 
-  // Time that a late joiner needs to discover all processes.
-  double join_s(const Network& network) const {
+  // Time that a tool needs to hear of all processes; infinity if it is over before.
+  double join_s(const Network& network, std::chrono::duration<double> patience) const {
     std::array<int, 2> input{}, output{};
     if (::pipe(input.data()) != 0 || ::pipe(output.data()) != 0) throw std::runtime_error("no pipe");
     const auto start = Clock::now();
@@ -247,16 +341,15 @@ class Fleet {
     const pid_t pid = ::fork();
     if (pid == 0) {
       ::close(input[1]);
-      run_process_of_fleet(2, count + 1, network, input[0], output[1]);
+      run_tool(count, network, input[0], output[1]);
     }
     ::close(output[1]);
-    char byte = 0;
-    const bool known = ::read(output[0], &byte, 1) == 1;
+    const bool known = wait_for_byte(output[0], start + patience);
     const double time_s = std::chrono::duration<double>(Clock::now() - start).count();
+    ::kill(pid, SIGKILL);
     for (const int end : {input[0], input[1], output[0]}) ::close(end);
     ::waitpid(pid, nullptr, 0);
-    if (!known) throw std::runtime_error("a late joiner failed");
-    return time_s;
+    return known ? time_s : INFINITY;
   }
 
   // Lets the time pass. Throws if a process ends meanwhile.
@@ -285,13 +378,14 @@ class Fleet {
 };
 
 nlohmann::ordered_json measure(int count, Hosts& hosts, const Options& options) {
+  const std::chrono::duration<double> patience(options.patience_s);
   const comms::DomainLock lock;
   const Network network{hosts, lock.domain(), options.server};
   const ServerProcess server(network);
   const auto start = Clock::now();
   const Traffic at_start = hosts.traffic();
   const Fleet fleet(count, network);
-  const int known = fleet.wait_until_known(std::chrono::duration<double>(options.patience_s));
+  const int known = fleet.wait_until_known(patience);
   const double found_s = std::chrono::duration<double>(Clock::now() - start).count();
   const double finding_s = fleet.time_s();
   const Traffic when_found = hosts.traffic();
@@ -305,7 +399,7 @@ nlohmann::ordered_json measure(int count, Hosts& hosts, const Options& options) 
   const double cpu_s = fleet.time_s() - before_s;
   const Traffic after = hosts.traffic();
   std::vector<double> joins_s;
-  for (int i = 0; i < (known == count ? kJoins : 0); ++i) joins_s.push_back(fleet.join_s(network));
+  for (int i = 0; i < (known == count ? kJoins : 0); ++i) joins_s.push_back(fleet.join_s(network, patience));
   std::sort(joins_s.begin(), joins_s.end());
   return {{"processes", count},
           {"hosts", hosts.count()},

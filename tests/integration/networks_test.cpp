@@ -225,6 +225,30 @@ TEST_F(Networks, ADiscoveryServerServesItsOwnHost) {
   }
 }
 
+// As they are plain clients, the server tells them of each other only because a source reads its own topic at first.
+TEST_F(Networks, ASecondPlantIsRefusedThroughADiscoveryServer) {
+  connect(Layout::kRouter);
+  options_ = {{}, {}, {}};
+  const std::unique_ptr<Program> server = start(2, "swiftlet", {"discovery-server"});
+  const Words client = {"--discovery-server", hosts_->address(2)};
+  options_ = {client, client, client};
+  const auto refused = [&](const Program& plant) {
+    return plant.errors().find(" publishes its imu; choose another --vehicle-name or --domain") !=
+           std::string::npos;
+  };
+  const std::unique_ptr<Program> first = start(0, "swiftlet-plant", {});
+  const std::unique_ptr<Program> at_once = start(1, "swiftlet-plant", {});
+  ASSERT_TRUE(eventually([&] { return refused(*first) || refused(*at_once); })) << first->errors();
+  const bool first_remains = refused(*at_once);
+  EXPECT_EQ((first_remains ? at_once : first)->wait(kStuck), 1);
+  const std::unique_ptr<Program> third = start(2, "swiftlet-plant", {});
+  EXPECT_EQ(third->wait(kStuck), 1) << third->errors();
+  EXPECT_TRUE(refused(*third)) << third->errors();
+  const std::unique_ptr<Program>& remaining = first_remains ? first : at_once;
+  remaining->signal(SIGTERM);
+  EXPECT_EQ(remaining->wait(kStuck), 0) << remaining->errors();
+}
+
 class Doctors : public Networks {
  protected:
   // Runs `swiftlet doctor network` on hosts 0 and 1 at the same time. Returns the report of host 0.

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "swiftlet/services/dds/datagram/output_channels.hpp"
+
 namespace swiftlet::comms {
 namespace {
 
@@ -33,8 +35,6 @@ class GuardedTransport final : public ChainedTransport {
                         std::uint32_t largest_message) override;
   bool CloseInputChannel(const rtps::Locator_t& locator) override;
 
-  // The transport below recognizes the channels that it opened before only if they are not wrapped; it would open a
-  // second one and send everything twice.
   bool OpenOutputChannel(transport::SendResourceList& channels, const rtps::Locator_t& locator) override;
 
   bool send_through(rtps::SenderResource& below, const OutgoingDatagram& datagram, const Destination& to) {
@@ -92,20 +92,10 @@ class GuardedChannel final : public OutputChannel {
 
 bool GuardedTransport::OpenOutputChannel(transport::SendResourceList& channels,
                                          const rtps::Locator_t& locator) {
-  transport::SendResourceList below;
-  transport::SendResourceList others;
-  for (auto& channel : channels) {
-    auto* const guarded = dynamic_cast<GuardedChannel*>(channel.get());
-    if (guarded != nullptr && guarded->is_of(*this)) {
-      below.push_back(guarded->take());
-    } else {
-      others.push_back(std::move(channel));
-    }
-  }
-  const bool opened = low_level_transport_->OpenOutputChannel(below, locator);
-  channels = std::move(others);
-  for (auto& channel : below) channels.push_back(std::make_unique<GuardedChannel>(*this, std::move(channel)));
-  return opened;
+  return open_below<GuardedChannel>(
+      *low_level_transport_, channels, locator,
+      [this](const GuardedChannel& channel) { return channel.is_of(*this); },
+      [this](auto channel) { return std::make_unique<GuardedChannel>(*this, std::move(channel)); });
 }
 
 bool GuardedTransport::OpenInputChannel(const rtps::Locator_t& locator,

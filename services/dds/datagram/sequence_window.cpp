@@ -18,12 +18,15 @@ double SequenceWindow::Writer::interval_ns() const {
   return samples > 0.0 ? std::max(samples_span_ns / samples, kShortestInterval_ns) : kShortestInterval_ns;
 }
 
+std::uint32_t SequenceWindow::Writer::burst(std::int64_t now_ns) const {
+  if (is_builtin(entity) && is_discovery_server(participant)) return kServerBurst;
+  return is_builtin(entity) || now_ns - met_ns < kFirstContact_ns ? kFirstBurst : kSampleBurst;
+}
+
 bool SequenceWindow::Writer::admit(std::uint32_t number, std::int64_t now_ns) {
   if (number <= newest) return true;
   const double expected = timely + static_cast<double>(now_ns - timely_ns) / interval_ns() * kRateMargin;
-  const bool may_burst = is_builtin(entity) || now_ns - met_ns < kFirstContact_ns;
-  const double furthest = std::max<double>(newest, expected) + (may_burst ? kFirstBurst : kSampleBurst);
-  if (number > furthest) {
+  if (number > std::max<double>(newest, expected) + burst(now_ns)) {
     agreeing = number >= refused && number - refused <= kSampleBurst ? agreeing + 1 : 1;
     refused = number;
     if (agreeing < kAgreeingDatagrams) return false;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "swiftlet/services/dds/datagram/check.hpp"
 #include "swiftlet/services/dds/datagram/rtps_ids.hpp"
 
 namespace swiftlet::comms {
@@ -17,6 +18,9 @@ constexpr std::uint32_t kSampleBurst = 8;
 // At first, while a reader learns what the writer has sent before; and of the middleware's own writers at all times. A
 // process of many vehicles announces hundreds of endpoints at once, and a refused announcement is repeated after seconds.
 constexpr std::uint32_t kFirstBurst = 1024;
+// Of the middleware's own writers in a discovery server, which number what they tell all of its clients: each client hears
+// only of a part.
+constexpr std::uint32_t kServerBurst = kLongestBuiltinGap;
 constexpr std::int64_t kFirstContact_ns = 2'000'000'000;
 // As many datagrams in a row with numbers that are beyond, but agree with each other, show that the writer is there.
 constexpr int kAgreeingDatagrams = 4;
@@ -54,6 +58,7 @@ class SequenceWindow {
 
     double interval_ns() const;
     bool admit(std::uint32_t number, std::int64_t now_ns);
+    std::uint32_t burst(std::int64_t now_ns) const;
     void measure_rate(double silent_ns);  // before the newest sample
   };
 

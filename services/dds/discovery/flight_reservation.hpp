@@ -12,7 +12,7 @@ namespace swiftlet::comms {
 
 class FlightReservation {
  public:
-  // network.vehicle is ignored. Blocks for kSourceSearchTime, with security for kSecureSourceSearchTime. Throws
+  // network.vehicle is ignored. Blocks for kSourceSearchTime or kLongSourceSearchTime. Throws
   // std::runtime_error with a sentence if a process publishes as one of the vehicles or as its motion capture, or if another
   // flight has reserved one of the names. Of two flights that start at the same time, one is refused, here or when its plant
   // starts.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "swiftlet/io/byte_reader.hpp"
+#include "swiftlet/services/dds/datagram/output_channels.hpp"
 #include "swiftlet/services/dds/datagram/rtps_ids.hpp"
 #include "swiftlet/services/dds/datagram/submessage.hpp"
 #include "swiftlet/services/dds/discovery/announcement_budget.hpp"
@@ -128,23 +129,10 @@ class RepeatingTransport final : public ChainedTransport {
     return low_level_transport_->OpenInputChannel(locator, next, largest_message);
   }
 
-  // The transport below recognizes the channels that it opened before only if they are not wrapped.
   bool OpenOutputChannel(transport::SendResourceList& channels, const rtps::Locator_t& locator) override {
-    transport::SendResourceList below;
-    transport::SendResourceList others;
-    for (auto& channel : channels) {
-      auto* const repeating = dynamic_cast<RepeatingChannel*>(channel.get());
-      if (repeating != nullptr) {
-        below.push_back(repeating->take());
-      } else {
-        others.push_back(std::move(channel));
-      }
-    }
-    const bool opened = low_level_transport_->OpenOutputChannel(below, locator);
-    channels = std::move(others);
-    for (auto& channel : below)
-      channels.push_back(std::make_unique<RepeatingChannel>(repetition_, std::move(channel)));
-    return opened;
+    return open_below<RepeatingChannel>(
+        *low_level_transport_, channels, locator, [](const RepeatingChannel&) { return true; },
+        [this](auto channel) { return std::make_unique<RepeatingChannel>(repetition_, std::move(channel)); });
   }
 
   // The input channels pass this by.

@@ -13,9 +13,9 @@ namespace swiftlet::comms {
 // A process that finds another source of one of its vehicles ends with an error.
 class SoleSource {
  public:
-  // topic: NodeSettings::source_of of the participant. Blocks for kSourceSearchTime, with security for
-  // kSecureSourceSearchTime. Throws std::runtime_error with a sentence if there is another source. on_lost: called from
-  // another thread if an earlier source is discovered later; then call check().
+  // topic: NodeSettings::source_of of the participant. Blocks for kSourceSearchTime or kLongSourceSearchTime.
+  // Throws std::runtime_error with a sentence if there is another source. on_lost: called from another thread if an earlier
+  // source is discovered later; then call check().
   SoleSource(Participant& participant, const std::string& topic, std::function<void()> on_lost);
 
   // Throws std::runtime_error if an earlier source was discovered.
