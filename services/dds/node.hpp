@@ -73,7 +73,7 @@ constexpr std::chrono::milliseconds kSourceSearchTime{250};
 // With security, where Fast DDS repeats a lost handshake after 0.5 s, and with a discovery server, which tells of a source only
 // after it has heard of what searches for it.
 constexpr std::chrono::milliseconds kLongSourceSearchTime{1000};
-// After become_source(), a source that turns out to be the later of two yields within this time only.
+// So long after become_source(), and after it has heard of a discovery server, the later of two sources yields.
 constexpr std::chrono::milliseconds kSourceProbation{3000};
 // How long a SourceConflict is reported after the last ignored sample.
 constexpr std::chrono::milliseconds kConflictReportTime{2000};

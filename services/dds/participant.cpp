@@ -81,6 +81,7 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
   if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
   if (!settings.security.empty()) refused_peers_.emplace();
   joined_ns_ = Now::read().steady_ns;
+  if (settings.network.discovery_servers.empty()) introduced_at_ = Clock::now();
   session_ = std::make_unique<ParticipantSession>(settings, announcement_, guard_, this);
   periodic_task_.emplace(kCheckPeriod, [this] {
     rejoin_if_rediscovery_failed();
@@ -260,6 +261,7 @@ void Participant::Impl::listen(const Node* node, const std::string& vehicle,
 void Participant::Impl::on_participant(const Guid& guid, const std::string& name,
                                        const std::vector<std::uint8_t>& user_data) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
+  if (!introduced_at_ && is_discovery_server(bytes_of(guid.guidPrefix))) introduced_at_ = Clock::now();
   const Peer peer{name, from_user_data(user_data)};
   if (is_authenticated(guid)) return update_peer(guid, peer);
   strangers_[guid] = peer;
@@ -447,7 +449,11 @@ std::vector<std::string> Participant::Impl::watched_vehicles() const {
 void Participant::Impl::end_source_watch_when_due() {
   std::vector<Subscription> ended;  // after the lock
   const std::lock_guard<std::mutex> lock(peers_mutex_);
-  if (Clock::now() - established_at_ > kSourceProbation) ended.swap(source_watch_);
+  if (!is_on_probation()) ended.swap(source_watch_);
+}
+
+bool Participant::Impl::is_on_probation() const {
+  return !introduced_at_ || Clock::now() - std::max(established_at_, *introduced_at_) < kSourceProbation;
 }
 
 std::optional<std::string> Participant::Impl::other_source(const std::vector<std::string>& excluded) const {
@@ -476,9 +482,8 @@ std::optional<std::string> Participant::Impl::unannounced_source(const std::stri
 }
 
 void Participant::Impl::yield_source_to(const Peer& peer) {
-  const bool on_probation =
-      announcement_.is_established && on_lost_source_ && Clock::now() - established_at_ < kSourceProbation;
-  if (!on_probation || peer.announced.source_of != announcement_.source_of || !is_own(peer)) return;
+  if (!announcement_.is_established || !on_lost_source_ || !is_on_probation()) return;
+  if (peer.announced.source_of != announcement_.source_of || !is_own(peer)) return;
   if (!peer.announced.is_established || !yields(announcement_, peer.announced)) return;
   on_lost_source_(in_use_by(shared_vehicle(peer), peer.announced.source_of, peer));
   on_lost_source_ = nullptr;

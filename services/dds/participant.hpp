@@ -115,6 +115,7 @@ struct Participant::Impl final : public DiscoveryListener {
   // A sentence about another process to which this one must yield (become_source()); nullopt if there is none.
   std::optional<std::string> other_source(const std::vector<std::string>& excluded) const;
   std::optional<std::string> unannounced_source(const std::string& vehicle, const std::string& topic) const;
+  bool is_on_probation() const;  // as a source (kSourceProbation); requires peers_mutex_
   void end_source_watch_when_due();
   // Two sources that joined at the same time, and discovered each other late.
   void yield_source_to(const Peer& peer);
@@ -130,6 +131,8 @@ struct Participant::Impl final : public DiscoveryListener {
   mutable std::mutex peers_mutex_;  // guards all below; locked after session_mutex_
   Announcement announcement_;       // of this process; changed with both mutexes locked
   std::chrono::steady_clock::time_point established_at_;
+  // When it could first hear of others: with a discovery server when it heard of that.
+  std::optional<std::chrono::steady_clock::time_point> introduced_at_;
   std::function<void(const std::string&)> on_lost_source_;
   std::vector<Subscription> source_watch_;
   // Of any vehicle; with security only authenticated ones, whose announcements are not encrypted.
