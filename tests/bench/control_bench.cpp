@@ -48,7 +48,7 @@ void allocate(benchmark::State& state) {
   std::size_t i = 0;
   std::size_t saturated = 0;
   for (auto _ : state) {
-    const Allocation out = allocator.allocate(wanted[i++ % wanted.size()], supply);
+    Allocation out = allocator.allocate(wanted[i++ % wanted.size()], supply);
     saturated += out.saturated ? 1 : 0;
     benchmark::DoNotOptimize(out);
   }

@@ -68,7 +68,8 @@ void inner_loop_step(benchmark::State& state, const char* settings) {
       battery.stamp_ns = imu.stamp_ns;
       loop.controller.on_battery(battery);
     }
-    benchmark::DoNotOptimize(loop.controller.on_imu(imu));
+    auto command = loop.controller.on_imu(imu);
+    benchmark::DoNotOptimize(command);
   }
   if (loop.controller.status().mode != control::Mode::kHolding) state.SkipWithError("left the flight");
 }
