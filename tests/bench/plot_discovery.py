@@ -9,7 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-PANELS = [("megabytes_until", "traffic until all know each other, MB"), ("until_s", "time until then, s"),
+PANELS = [("megabytes_until", "traffic until all exchange their topics, MB"), ("until_s", "time until then, s"),
           ("cpu_until_s", "CPU time until then, s"), ("kilobytes_per_s_at_rest", "traffic at rest, kB/s")]
 
 
@@ -17,7 +17,7 @@ def main(without, with_server, picture):
     rows = [("without a server", json.loads(Path(without).read_text(encoding="utf-8"))),
             ("with a discovery server", json.loads(Path(with_server).read_text(encoding="utf-8")))]
     script = [f"set terminal pngcairo size 1000,700\nset output '{picture}'\nset multiplot layout 2,2\nset logscale xy\n"
-              "set grid\nset key top left\nset xlabel 'processes'\nset xtics (4, 10, 20, 40, 80, 120, 200)\n"]
+              "set grid\nset key bottom right\nset xlabel 'processes'\nset xrange [3:250]\nset xtics (4, 12, 40, 80, 200)\n"]
     for key, title in PANELS:
         script.append(f"set title '{title}'\nplot " + ", ".join(
             f"'-' with linespoints pointtype 7 linewidth 2 title '{name}'" for name, _ in rows) + "\n")
