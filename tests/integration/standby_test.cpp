@@ -280,7 +280,8 @@ TEST_F(Standby, ClientReconnectsToARestartedController) {
   ASSERT_TRUE(events.wait_for_count(1));
   EXPECT_EQ(events.items()[0].kind, Kind::kConnected);
   EXPECT_EQ(events.items()[0].controller, first.id);
-  ASSERT_TRUE(vehicle.arm().accepted());
+  // Until a pose and a battery sample arrive, it is refused.
+  ASSERT_TRUE(eventually([&] { return vehicle.arm().accepted(); }));
   const ground::ActionHandle climb = vehicle.take_off(0.5);
   ASSERT_TRUE(climb.accepted()) << climb.answer().reason;
   flight_.kill(first);
