@@ -442,8 +442,8 @@ std::optional<std::string> Participant::Impl::become_source(const std::vector<st
 
 std::vector<std::string> Participant::Impl::watched_vehicles() const {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
-  const bool is_told_of_all = settings.network.discovery_servers.empty() || settings.hears_of_all;
-  return is_told_of_all ? std::vector<std::string>() : split_names(announcement_.vehicles);
+  const bool discovers_all = settings.network.discovery_servers.empty() || settings.hears_of_all;
+  return discovers_all ? std::vector<std::string>() : split_names(announcement_.vehicles);
 }
 
 void Participant::Impl::end_source_watch_when_due() {

@@ -44,8 +44,8 @@ struct Participant::Impl final : public DiscoveryListener {
   std::optional<std::string> become_source(const std::vector<std::string>& excluded,
                                            std::function<void(const std::string&)> on_lost,
                                            std::vector<Subscription> watch);
-  // Of which this process has to read a topic to be told of its writers: a discovery server tells a client only of those with
-  // which it exchanges topics. Empty if it is told of all.
+  // Of which this process has to read a topic to discover its writers: through a discovery server a client discovers only
+  // those with which it exchanges topics. Empty if it discovers all.
   std::vector<std::string> watched_vehicles() const;
   void add(Endpoint* endpoint);
   void remove(Endpoint* endpoint);

@@ -14,6 +14,7 @@
 #include <memory>
 #include <net/if.h>
 #include <optional>
+#include <poll.h>
 #include <sched.h>
 #include <sstream>
 #include <stdexcept>
@@ -22,7 +23,6 @@
 #include <sys/select.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
-#include <thread>
 #include <unistd.h>
 #include <vector>
 
@@ -45,7 +45,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kJoins = 9;
 constexpr int kProcessesOfVehicle = 4;
-constexpr std::chrono::milliseconds kLookPeriod{10};
+constexpr int kLookPeriod_ms = 10;
 constexpr std::chrono::seconds kFirstAnnouncements{2};  // duration of the faster initial announcements
 
 struct Options {
@@ -199,9 +199,13 @@ void write_known(int output) {
   std::_Exit(0);
 }
 
+// Ends the process when the input is closed before the condition holds.
 template <class Condition>
-void wait_until(const Condition& holds) {
-  while (!holds()) std::this_thread::sleep_for(kLookPeriod);
+void wait_until(const Condition& holds, int input) {
+  pollfd closed{input, POLLIN, 0};
+  while (!holds()) {
+    if (::poll(&closed, 1, kLookPeriod_ms) > 0) std::_Exit(0);
+  }
 }
 
 // The four processes of a vehicle, with the topics over which they find each other.
@@ -213,10 +217,12 @@ void run_plant(const comms::NodeSettings& settings, int input, int output) {
   const auto info = node.publish(comms::topics::kVehicleInfo);
   const auto commands =
       node.subscribe<comms::msg::ActuatorCommand>(comms::topics::kActuatorCommand, [](const auto&) {});
-  wait_until([&] {
-    return imu.matched() == 1 && rotors.matched() == 1 && truth.matched() == 1 && info.matched() == 2 &&
-           commands.matched() == 1;
-  });
+  wait_until(
+      [&] {
+        return imu.matched() == 1 && rotors.matched() == 1 && truth.matched() == 1 && info.matched() == 2 &&
+               commands.matched() == 1;
+      },
+      input);
   write_known(output);
   exit_when_closed(input);
 }
@@ -224,7 +230,7 @@ void run_motion_capture(const comms::NodeSettings& settings, int input, int outp
   comms::Node node(settings);
   const auto poses = node.publish(comms::topics::kMocapPose);
   const auto truth = node.subscribe<comms::msg::GroundTruth>(comms::topics::kGroundTruth, [](const auto&) {});
-  wait_until([&] { return poses.matched() == 2 && truth.matched() == 1; });
+  wait_until([&] { return poses.matched() == 2 && truth.matched() == 1; }, input);
   write_known(output);
   exit_when_closed(input);
 }
@@ -239,10 +245,13 @@ void run_control(const comms::NodeSettings& settings, int input, int output) {
   const auto poses = node.subscribe<comms::msg::MocapPose>(comms::topics::kMocapPose, [](const auto&) {});
   const auto info = node.subscribe<comms::msg::VehicleInfo>(comms::topics::kVehicleInfo, [](const auto&) {});
   const auto requests = node.subscribe<comms::msg::Command>(comms::topics::kCommand, [](const auto&) {});
-  wait_until([&] {
-    return actuators.matched() == 1 && status.matched() == 1 && state.matched() == 1 && imu.matched() == 1 &&
-           rotors.matched() == 1 && poses.matched() == 1 && info.matched() == 1 && requests.matched() == 1;
-  });
+  wait_until(
+      [&] {
+        return actuators.matched() == 1 && status.matched() == 1 && state.matched() == 1 &&
+               imu.matched() == 1 && rotors.matched() == 1 && poses.matched() == 1 && info.matched() == 1 &&
+               requests.matched() == 1;
+      },
+      input);
   write_known(output);
   exit_when_closed(input);
 }
@@ -255,10 +264,12 @@ void run_ground(const comms::NodeSettings& settings, int input, int output) {
       node.subscribe<comms::msg::ControllerState>(comms::topics::kControllerState, [](const auto&) {});
   const auto poses = node.subscribe<comms::msg::MocapPose>(comms::topics::kMocapPose, [](const auto&) {});
   const auto info = node.subscribe<comms::msg::VehicleInfo>(comms::topics::kVehicleInfo, [](const auto&) {});
-  wait_until([&] {
-    return requests.matched() == 1 && status.matched() == 1 && state.matched() == 1 && poses.matched() == 1 &&
-           info.matched() == 1;
-  });
+  wait_until(
+      [&] {
+        return requests.matched() == 1 && status.matched() == 1 && state.matched() == 1 &&
+               poses.matched() == 1 && info.matched() == 1;
+      },
+      input);
   write_known(output);
   exit_when_closed(input);
 }
@@ -283,7 +294,7 @@ void run_tool(int count, const Network& network, int input, int output) {
   const comms::Participant participant(settings_of("tool", "", network));
   // Clients of a discovery server see it as one more.
   const std::size_t all = static_cast<std::size_t>(count) + (network.server ? 1 : 0);
-  wait_until([&] { return participant.processes_seen().size() >= all; });
+  wait_until([&] { return participant.processes_seen().size() >= all; }, input);
   write_known(output);
   exit_when_closed(input);
 }
