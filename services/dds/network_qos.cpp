@@ -14,21 +14,10 @@
 namespace swiftlet::comms {
 namespace {
 
-constexpr const char* kAnyAddress = "0.0.0.0";
-constexpr const char* kLoopback = "127.0.0.1";
-
-rtps::Locator_t locator_of(const std::string& ipv4, std::uint32_t port) {
-  rtps::Locator_t locator;
-  locator.kind = LOCATOR_KIND_UDPv4;
-  rtps::IPLocator::setIPv4(locator, ipv4);
-  locator.port = port;
-  return locator;
-}
-
 // All first ports of the domain on a host, as its processes take the first that are free there.
 void add_host(const std::string& ipv4, const DiscoveryPorts& ports, std::uint32_t count,
               rtps::LocatorList_t& peers) {
-  for (std::uint32_t i = 0; i < count; ++i) peers.push_back(locator_of(ipv4, ports.first + i * ports.gap));
+  for (std::uint32_t i = 0; i < count; ++i) peers.push_back(udp_locator(ipv4, ports.first + i * ports.gap));
 }
 
 bool is_own(const std::string& ipv4) {
@@ -46,7 +35,7 @@ void add_servers(const std::string& list, bool hears_of_all, rtps::DiscoverySett
   for (const DiscoveryServerAddress& server : parse_discovery_servers(list)) {
     std::vector<rtps::Locator_t> addresses;
     for (const std::string& address : ipv4_addresses_of(server.address.host)) {
-      addresses.push_back(locator_of(is_own(address) ? kLoopback : address, server.address.port));
+      addresses.push_back(udp_locator(is_own(address) ? kLoopback : address, server.address.port));
       if (is_own(address) && !udp.interfaceWhiteList.empty()) udp.interfaceWhiteList.emplace_back(kLoopback);
     }
     add_discovery_server(discovery, server.number, addresses);
@@ -54,6 +43,14 @@ void add_servers(const std::string& list, bool hears_of_all, rtps::DiscoverySett
 }
 
 }  // namespace
+
+rtps::Locator_t udp_locator(const std::string& ipv4, std::uint32_t port) {
+  rtps::Locator_t locator;
+  locator.kind = LOCATOR_KIND_UDPv4;
+  rtps::IPLocator::setIPv4(locator, ipv4);
+  locator.port = port;
+  return locator;
+}
 
 void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
                  eprosima::fastdds::dds::DomainParticipantQos& qos,
@@ -66,7 +63,7 @@ void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
   auto& builtin = qos.wire_protocol().builtin;
   const DiscoveryPorts ports = discovery_ports(settings.domain);
   // Instead of the multicast address, only this: the first free port of the domain.
-  builtin.metatrafficUnicastLocatorList.push_back(locator_of(kAnyAddress, ports.first));
+  builtin.metatrafficUnicastLocatorList.push_back(udp_locator(kAnyAddress, ports.first));
   if (network.peers.empty())
     return add_servers(network.discovery_servers, settings.hears_of_all, builtin.discovery_config, udp);
   // The processes of this host.
@@ -77,7 +74,7 @@ void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
     const HostAddress host = parse_host_address(peer);
     for (const std::string& address : ipv4_addresses_of(host.host)) {
       if (host.port != 0) {
-        builtin.initialPeersList.push_back(locator_of(address, host.port));
+        builtin.initialPeersList.push_back(udp_locator(address, host.port));
       } else {
         add_host(address, ports, announced_ports, builtin.initialPeersList);
       }

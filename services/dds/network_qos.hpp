@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 
@@ -10,6 +11,11 @@
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::comms {
+
+constexpr const char* kAnyAddress = "0.0.0.0";
+constexpr const char* kLoopback = "127.0.0.1";
+
+rtps::Locator_t udp_locator(const std::string& ipv4, std::uint32_t port);
 
 // Sets the interfaces of the transport, and with peers the addresses of discovery. announced_ports: as for
 // participant_qos(). Throws std::runtime_error for an unknown host or interface, and

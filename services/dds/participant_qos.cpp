@@ -20,16 +20,7 @@ namespace dds = eprosima::fastdds::dds;
 using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 
-constexpr const char* kLoopback = "127.0.0.1";
 constexpr std::uint32_t kSegmentBytes = 1 << 20;  // of shared memory: fits seven missions of maximum length
-
-rtps::Locator_t loopback_locator(std::uint32_t port) {
-  rtps::Locator_t locator;
-  locator.kind = LOCATOR_KIND_UDPv4;
-  rtps::IPLocator::setIPv4(locator, kLoopback);
-  locator.port = port;
-  return locator;
-}
 
 }  // namespace
 
@@ -72,15 +63,17 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
     udp.maxInitialPeersRange = announced_ports;
     // Listen on the first free port of the domain, whatever ID the middleware assigns to the participant, and
     // on no multicast address. For the peers (port 0) the middleware tries maxInitialPeersRange ports.
-    builtin.metatrafficUnicastLocatorList.push_back(loopback_locator(ports.first));
-    builtin.initialPeersList.push_back(loopback_locator(0));
-    // Samples too are received on one port, the first free one. Without this Fast DDS 2.9 announces, from the first
-    // change of the user data on, also the port of the first process of the host, and others send there.
-    if (settings.transport != Transport::kSharedMemory)
-      qos.wire_protocol().default_unicast_locator_list.push_back(loopback_locator(0));
+    builtin.metatrafficUnicastLocatorList.push_back(udp_locator(kLoopback, ports.first));
+    builtin.initialPeersList.push_back(udp_locator(kLoopback, 0));
   } else {
     set_network(settings, announced_ports, qos, udp);
   }
+  // Samples are received on one port, the first free one after the discovery port. If it is left to Fast DDS, the port of the
+  // first process of the host is announced from the first change of the user data on: by 2.9 as a further one, by 3.1 in
+  // place of the own one, and the others send there.
+  auto& addresses = qos.wire_protocol().default_unicast_locator_list;
+  if (settings.transport != Transport::kSharedMemory && addresses.empty())
+    addresses.push_back(udp_locator(settings.localhost_only ? kLoopback : kAnyAddress, 0));
   qos.transport().use_builtin_transports = false;
   const bool loses_nothing = settings.localhost_only;
   qos.transport().user_transports.push_back(

@@ -1,5 +1,6 @@
 #include "swiftlet/services/dds/discovery/discovery_server.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
@@ -12,6 +13,7 @@
 #include <thread>
 #include <unistd.h>
 #include <utility>
+#include <vector>
 
 #include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 #include "swiftlet/services/dds/datagram/guarded_transport.hpp"
@@ -21,6 +23,7 @@
 #include "swiftlet/services/dds/discovery/spaced_changes.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/fast_dds_library.hpp"
+#include "swiftlet/services/dds/network_qos.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/periodic_task.hpp"
 #include "swiftlet/services/dds/qos/duration.hpp"
@@ -63,14 +66,16 @@ dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings,
   protocol.builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol::SERVER;
   protocol.builtin.discovery_config.leaseDuration = duration(kLivelinessLease);
   protocol.builtin.discovery_config.leaseDuration_announcementperiod = duration(kLivelinessPeriod);
-  rtps::Locator_t locator;
-  rtps::IPLocator::createLocator(LOCATOR_KIND_UDPv4, "0.0.0.0", static_cast<std::uint32_t>(settings.port),
-                                 locator);
-  protocol.builtin.metatrafficUnicastLocatorList.push_back(locator);
+  // Fast DDS 3.1 takes the port for taken if it listens on all addresses of a host that is in no network.
+  const std::vector<Interface> interfaces = interfaces_up();
+  const bool in_a_network =
+      std::any_of(interfaces.begin(), interfaces.end(), [](const Interface& it) { return !it.is_loopback; });
+  protocol.builtin.metatrafficUnicastLocatorList.push_back(
+      udp_locator(in_a_network ? kAnyAddress : kLoopback, static_cast<std::uint32_t>(settings.port)));
   UDPv4TransportDescriptor udp;
   udp.interfaceWhiteList = addresses_of_interfaces(settings.interfaces);
   if (!settings.interfaces.empty())
-    udp.interfaceWhiteList.emplace_back("127.0.0.1");  // for clients of this host
+    udp.interfaceWhiteList.emplace_back(kLoopback);  // for clients of this host
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(space_changes(send_to_opened(guarded(udp, guard)), open));
   qos.allocation().participants = {0, kMostParticipants, 1};
