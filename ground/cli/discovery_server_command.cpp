@@ -71,8 +71,10 @@ class Register {
 int serve(const comms::DiscoveryServerSettings& settings) {
   runtime::StopSignal stop;
   Register processes;
-  const comms::DiscoveryServer server(settings,
-                                      [&](const comms::DiscoveryServerEvent& event) { processes.on(event); });
+  comms::DiscoveryServer server(settings,
+                                [&](const comms::DiscoveryServerEvent& event) { processes.on(event); });
+  if (stop.wait_for(comms::DiscoveryServer::kStartTime)) return kDone;
+  server.serve();
   processes.begin(fmt::format(
       "discovery server {} of domain {} listens on UDP port {}; start the others with --domain {} "
       "--discovery-server {}",

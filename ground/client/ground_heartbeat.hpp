@@ -12,8 +12,7 @@ namespace swiftlet::ground {
 class GroundHeartbeatPublisher {
  public:
   GroundHeartbeatPublisher(comms::Node& node, std::uint64_t client);
-  // Ends the failsafe: publishes `depends` = false, and waits until the controllers have received it, 0.5 s at
-  // most.
+  // Ends the failsafe: publishes `depends` = false several times, within 0.1 s.
   ~GroundHeartbeatPublisher();
   GroundHeartbeatPublisher(const GroundHeartbeatPublisher&) = delete;
   GroundHeartbeatPublisher& operator=(const GroundHeartbeatPublisher&) = delete;

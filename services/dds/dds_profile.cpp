@@ -76,6 +76,7 @@ class ProfileFile {
 
   const Element& all_profiles() const {
     const Element* const root = document_.RootElement();
+    if (root == nullptr) throw runtime::ConfigError(file_, 0, "", "must be <dds> with <profiles>");
     if (std::string_view(root->Name()) == "profiles") return *root;
     const Element* const profiles = root->FirstChildElement("profiles");
     if (std::string_view(root->Name()) != "dds" || profiles == nullptr)

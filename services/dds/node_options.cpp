@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <stdexcept>
+#include <string>
 
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/network_key.hpp"
@@ -11,6 +12,7 @@
 #include "swiftlet/services/dds/network_file.hpp"
 #include "swiftlet/services/dds/security/security_qos.hpp"
 #include "swiftlet/services/dds/vehicle_list.hpp"
+#include "swiftlet/services/runtime/split_text.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -27,6 +29,25 @@ std::string fault_of_key_file(const std::string& file) {
 std::string environment(const char* variable) {
   const char* const value = std::getenv(variable);
   return value == nullptr ? "" : value;
+}
+
+// The variables by which ROS 2 is told where to look for others.
+void apply_environment(NodeSettings& settings) {
+  const std::string range = environment("ROS_AUTOMATIC_DISCOVERY_RANGE");
+  const std::string peers = environment("ROS_STATIC_PEERS");
+  const bool near = (range == "LOCALHOST" || range == "OFF") && peers.empty();
+  settings.localhost_only = near || environment("ROS_LOCALHOST_ONLY") == "1";
+  settings.network.peers.clear();
+  settings.network.discovery_servers.clear();
+  if (settings.localhost_only) return;
+  settings.network.discovery_servers = environment("ROS_DISCOVERY_SERVER");
+  if (!settings.network.discovery_servers.empty()) return;
+  for (const std::string& peer : runtime::split_text(peers, ';')) {
+    if (peer.empty()) continue;
+    if (const std::string fault = fault_of_host_address(peer); !fault.empty())
+      throw runtime::ConfigError("ROS_STATIC_PEERS: a peer " + fault);
+    settings.network.peers.push_back(peer);
+  }
 }
 
 // Applies the file.
@@ -52,7 +73,8 @@ void add_network_options(runtime::CommandLine app, NodeSettings& settings) {
       "Use the loopback interface only, without multicast");
   runtime::Option peer =
       app.add_option("--peer", settings.network.peers,
-                     "Find the processes of this host without multicast; once for each other host");
+                     "Find the processes of this host without multicast; once for each other host; default: "
+                     "$ROS_STATIC_PEERS");
   peer.repeated()
       .check(fault_of_host_address, "HOST[:PORT]")
       .excludes(localhost_only)
@@ -91,8 +113,7 @@ void add_profile_option(runtime::CommandLine app, NodeSettings& settings) {
 }  // namespace
 
 void add_node_options(runtime::CommandLine app, NodeSettings& settings, const NameCheck& name) {
-  settings.localhost_only = environment("ROS_LOCALHOST_ONLY") == "1";
-  settings.network.discovery_servers = settings.localhost_only ? "" : environment("ROS_DISCOVERY_SERVER");
+  apply_environment(settings);
   // First, so that other options win over the file.
   app.add_option("--network", settings.network.file,
                  "File of the options of the network (YAML); other options win over it")

@@ -17,7 +17,8 @@ struct NameCheck {
 };
 
 // --domain (default $ROS_DOMAIN_ID or 0), --vehicle-name, --transport udp|shm; --localhost-only (default
-// $ROS_LOCALHOST_ONLY), --network, --peer, --discovery-server (default $ROS_DISCOVERY_SERVER), --interface,
+// $ROS_LOCALHOST_ONLY, or $ROS_AUTOMATIC_DISCOVERY_RANGE), --network, --peer (default $ROS_STATIC_PEERS),
+// --discovery-server (default $ROS_DISCOVERY_SERVER), --interface,
 // --dds-profile (default $FASTDDS_DEFAULT_PROFILES_FILE, else $FASTRTPS_DEFAULT_PROFILES_FILE), --network-key
 // (default $SWIFTLET_NETWORK_KEY), --security (default $SWIFTLET_SECURITY).
 void add_node_options(runtime::CommandLine app, NodeSettings& settings, const NameCheck& name = {});

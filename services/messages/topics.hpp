@@ -66,7 +66,7 @@ inline constexpr Topic<msg::ClockStatus> kClockStatus{"clock_status", Qos::kTele
 inline constexpr Topic<msg::ControlStatus> kControlStatus{"control_status", Qos::kLatched};
 inline constexpr Topic<msg::MissionStatus> kMissionStatus{"mission_status", Qos::kLatched};
 inline constexpr Topic<msg::VehicleInfo> kVehicleInfo{"vehicle_info", Qos::kLatched};
-inline constexpr Topic<msg::GroundLink> kGroundLink{"ground_link", Qos::kLatched};
+inline constexpr Topic<msg::GroundLink> kGroundLink{"ground_link", Qos::kTelemetry};
 inline constexpr Topic<msg::SimulationClock> kSimulationClock{"simulation_clock", Qos::kLatched};
 inline constexpr Topic<msg::Command> kCommand{"command", Qos::kRequest};
 inline constexpr Topic<msg::Mission> kMission{"mission", Qos::kRequest};

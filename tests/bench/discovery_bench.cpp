@@ -23,6 +23,7 @@
 #include <sys/select.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 #include <vector>
 
@@ -151,7 +152,9 @@ class ServerProcess {
       comms::DiscoveryServerSettings settings;
       settings.domain = network.domain;
       settings.port = comms::kDiscoveryServerPort;
-      const comms::DiscoveryServer server(settings, [](const comms::DiscoveryServerEvent&) {});
+      comms::DiscoveryServer server(settings, [](const comms::DiscoveryServerEvent&) {});
+      std::this_thread::sleep_for(comms::DiscoveryServer::kStartTime);
+      server.serve();
       char byte = 'r';
       if (::write(ready[1], &byte, 1) != 1) std::_Exit(1);
       while (::read(input_[0], &byte, 1) > 0) {

@@ -1,4 +1,4 @@
-// Fuzzes the check of received datagrams. The first byte switches security on.
+// Fuzzes the check of received datagrams. The first byte switches on security, discovery servers, and a network key.
 #include <algorithm>
 #include <vector>
 
@@ -11,10 +11,18 @@ using namespace swiftlet;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   comms::DatagramLimits limits;
-  limits.security = *data % 2 == 1;
+  limits.security = (*data & 1U) != 0;
+  limits.discovery_servers = (*data & 2U) != 0;
   const std::vector<std::uint8_t> datagram(data + 1, data + size);
   const comms::CheckedDatagram checked = comms::check_datagram(datagram.data(), datagram.size(), limits);
-  static comms::DatagramGuard guard;
+  static comms::DatagramGuard open;
+  static comms::DatagramGuard served({}, [] {
+    comms::DatagramLimits of_client;
+    of_client.discovery_servers = true;
+    return of_client;
+  }());
+  static comms::DatagramGuard with_key({runtime::NetworkKey{1}});
+  comms::DatagramGuard& guard = (*data & 4U) != 0 ? with_key : limits.discovery_servers ? served : open;
   guard.admit(datagram.data(), datagram.size(), {}, 7411, {1, 1});
   if (checked.fault != nullptr) return 0;
   tests::demand(checked.length <= datagram.size(), "the middleware gets no more than was received");

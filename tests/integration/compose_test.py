@@ -86,6 +86,12 @@ class ComposeFiles(unittest.TestCase):
         self.assertIn("'container:x', must be host or service:NAME", self.refusal(service % "network_mode: 'container:x'"))
         self.assertIn("must be a list of words", self.refusal(service % "command: fly square"))
         self.assertIn("is no compose file", self.refusal("[]"))
+        self.assertIn("services.a: must be", self.refusal("services: {a: }"))
+        self.assertIn("services.a.environment: 'FOO', must be NAME=TEXT", self.refusal(service % "environment: [FOO]"))
+        self.assertIn("services.a.depends_on.b: condition is 'None'", self.refusal(service % "depends_on: {b: {}}"))
+        self.assertIn("networks.n: subnet is missing", self.refusal("networks: {n: {ipam: {}}}"))
+        self.assertIn("there is no service 'b', as its profiles are off", self.refusal(
+            "services: {a: {image: swiftlet, depends_on: [b]}, b: {image: swiftlet, profiles: [p]}}"))
 
     def test_wrong_usage_exits_with_2_and_one_sentence(self):
         for arguments in (["no_such.yaml", "--bin", str(BIN)], [str(SOURCE / "docker/sil.yaml")],

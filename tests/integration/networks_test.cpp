@@ -21,6 +21,7 @@
 #include "tests/support/program.hpp"
 #include "tests/support/shifted_clock.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/terminal.hpp"
 
 namespace swiftlet::tests {
 namespace {
@@ -123,6 +124,19 @@ class Networks : public testing::Test {
              list[0].at("controllers") == 1 && list[0].at("mocap_hz") > 20.0;
     });
   }
+  // Whether the tools that show one vehicle do so.
+  void expect_shows_the_vehicle(int host) const {
+    const ProgramResult status = swiftlet(host, {"status", "--json", "--watch", "0.1"});
+    EXPECT_EQ(status.exit_code, 0) << status.errors;
+    Words words = options_.at(static_cast<std::size_t>(host));
+    words.insert(words.begin(), "watch");
+    const HostNetwork::Inside inside(*hosts_, host);
+    Terminal watch("swiftlet", words, 100, 40);
+    EXPECT_TRUE(eventually([&] { return watch.text().find("disarmed") != std::string::npos; }))
+        << watch.text();
+    watch.type("q");
+    EXPECT_EQ(watch.wait(kStuck), 0);
+  }
   void expect_flies(const Words& mission) const {
     Words words = {"fly"};
     words.insert(words.end(), mission.begin(), mission.end());
@@ -152,8 +166,7 @@ TEST_F(Networks, PeersFlyThroughRoutersWithoutMulticast) {
                                                   "]\ninterfaces: [eth0]\ndds_profile: profile.xml\n")};
   start_all(options);
   ASSERT_TRUE(finds_the_vehicle(2)) << logs();
-  const ProgramResult status = swiftlet(2, {"status", "--json", "--watch", "0.1"});
-  EXPECT_EQ(status.exit_code, 0) << status.errors;
+  expect_shows_the_vehicle(2);
   expect_flies({"square"});
   EXPECT_EQ(logs().find("rejoined"), std::string::npos) << logs();
 }
@@ -202,6 +215,7 @@ TEST_F(Networks, ADiscoveryServerIntroducesTheHosts) {
   EXPECT_EQ(swiftlet(2, {"list", "--time", "1"}).exit_code, 1);
 
   options_[2] = client;
+  expect_shows_the_vehicle(2);
   ASSERT_EQ(swiftlet(2, {"arm", "--wait", "60"}).exit_code, 0);
   const std::unique_ptr<Program> takeoff = start(2, "swiftlet", {"takeoff", "--wait", "60"});
   ASSERT_TRUE(eventually([&] { return control_->errors().find("taking off") != std::string::npos; }));

@@ -4,12 +4,17 @@
 #include <csignal>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/io/security/certificates.hpp"
 #include "swiftlet/io/security/security_folder.hpp"
+#include "swiftlet/io/text_file.hpp"
+#include "swiftlet/services/dds/security/policy.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/redundant_flight.hpp"
@@ -28,6 +33,7 @@ constexpr double kLongestGapBusy_ms = 120.0;  // of one kill of several, on a bu
 constexpr double kLargestDeviation_m = 0.05;
 constexpr std::int64_t kSecond = 1'000'000'000;  // ns
 constexpr std::int64_t kDays_s = 24 * 3600;
+constexpr std::uint32_t kHighestStrength = 0x7fffffff;
 
 class Security : public testing::Test {
  protected:
@@ -48,6 +54,38 @@ class Security : public testing::Test {
     return settings;
   }
 
+  // A copy of the folder for a process that does not check what its role may write, as one that an attacker has changed.
+  std::string without_write_control(const std::string& keys) const {
+    const std::string path = folder_.path() / "captured";
+    fs::copy(keys, path, fs::copy_options::recursive);
+    const runtime::SecurityFolder copy{path};
+    const runtime::Credential authority{runtime::read_text_file(copy.authority()),
+                                        runtime::read_text_file(copy.authority_key())};
+    const std::string on = "<enable_write_access_control>true<";
+    std::string governance = comms::governance_document();
+    governance.replace(governance.find(on), on.size(), "<enable_write_access_control>false<");
+    std::ofstream(copy.governance()) << runtime::sign(authority, governance);
+    return path;
+  }
+
+  // Sends commands that stop the rotors to the vehicle, which flies.
+  static void expect_not_obeyed(const RedundantFlight& flight, comms::Node& sender) {
+    comms::Publisher<msg::ActuatorCommand> commands =
+        sender.publish(comms::topics::kActuatorCommand, kHighestStrength);
+    msg::ActuatorCommand stop;
+    stop.rotor_state(msg::ActuatorCommand_Constants::ROTORS_OFF);
+    stop.rotor_count(4);
+    stop.term(0xfffffff0U);
+    const std::int64_t from_ns = flight.stamp_ns();
+    flight.wait("a second in which somebody else sends commands", [&] {
+      stop.stamp_ns(flight.stamp_ns());
+      commands.publish(stop);
+      return flight.stamp_ns() > from_ns + kSecond;
+    });
+    EXPECT_EQ(commands.matched(), 0);
+    EXPECT_LT(flight.z_ned(), -0.98) << "the vehicle obeyed";
+  }
+
   TemporaryFolder folder_;
 };
 
@@ -62,22 +100,14 @@ TEST_F(Security, StandbyTakesOverAndNeitherStrangersNorGroundFlyTheVehicle) {
   comms::NodeSettings open = flight.node_settings("stranger");
   open.security.clear();
   comms::Node stranger(open);
-  comms::Publisher<msg::ActuatorCommand> commands = stranger.publish(comms::topics::kActuatorCommand);
-  msg::ActuatorCommand stop;
-  stop.rotor_state(msg::ActuatorCommand_Constants::ROTORS_OFF);
-  stop.rotor_count(4);
-  stop.term(0xfffffff0U);
-  const std::int64_t from_ns = flight.stamp_ns();
-  flight.wait("a second in which a stranger sends commands", [&] {
-    stop.stamp_ns(flight.stamp_ns());
-    commands.publish(stop);
-    return flight.stamp_ns() > from_ns + kSecond;
-  });
-  EXPECT_EQ(commands.matched(), 0);
-  EXPECT_LT(flight.z_ned(), -0.98) << "the vehicle obeyed a stranger";
+  expect_not_obeyed(flight, stranger);
 
   comms::Node ground(flight.node_settings("ground"));
   EXPECT_THROW(ground.publish(comms::topics::kActuatorCommand), std::runtime_error);
+  comms::NodeSettings captured = flight.node_settings("ground");
+  captured.security = without_write_control(keys("lab"));
+  comms::Node captured_ground(captured);
+  expect_not_obeyed(flight, captured_ground);
 
   std::vector<double> gaps_ms;
   for (int kill = 0; kill < 3; ++kill) {
@@ -113,26 +143,33 @@ TEST_F(Security, StrangersAreRefusedByName) {
     words.insert(words.end(), options.begin(), options.end());
     return swiftlet(words);
   };
-  const auto says = [](const Program& program, const std::string& text) {
-    return program.errors().find(text) != std::string::npos;
-  };
-  const auto refused = [&](const std::string& reason) {
-    return eventually([&] { return says(control, reason); }, kStuck, 20ms);
+  const auto refused_by = [](const Program& program, const std::vector<std::string>& reasons) {
+    const auto is_refusal = [&](const std::string& line) {
+      return line.find("refused ground (process ") != std::string::npos &&
+             std::any_of(reasons.begin(), reasons.end(),
+                         [&](const std::string& reason) { return line.find(reason) != std::string::npos; });
+    };
+    return eventually(
+        [&] {
+          std::istringstream lines(program.errors());
+          std::string line;
+          while (std::getline(lines, line)) {
+            if (is_refusal(line)) return true;
+          }
+          return false;
+        },
+        kStuck, 20ms);
   };
 
   const std::string patient = "25";  // a busy machine takes long for a handshake
   EXPECT_EQ(status({"--security", lab}, patient).exit_code, 0);
   EXPECT_EQ(status({}).exit_code, 1) << "without identity";
-  EXPECT_TRUE(refused("refused ground (process ")) << control.errors();
+  EXPECT_TRUE(refused_by(control, {": "})) << control.errors();
 
   // Either side may be the first to see a foreign certificate.
   EXPECT_EQ(status({"--security", keys("foreign")}).exit_code, 1);
-  EXPECT_TRUE(eventually(
-      [&] {
-        return says(control, "its certificate signature failure") ||
-               says(control, "it does not complete the handshake");
-      },
-      kStuck, 20ms))
+  EXPECT_TRUE(
+      refused_by(control, {"its certificate signature failure", "it does not complete the handshake"}))
       << control.errors();
 
   // Who was revoked after it got its copy of the list.
@@ -142,8 +179,7 @@ TEST_F(Security, StrangersAreRefusedByName) {
   runtime::revoke_identity({lab}, runtime::SecurityFolder{thief}.certificate("ground"));
   const Program& wary = *flight.start_controller(1).process;
   EXPECT_EQ(status({"--security", thief}, patient).exit_code, 0) << "the first controller has the old list";
-  EXPECT_TRUE(eventually([&] { return says(wary, "its certificate revoked"); }, kStuck, 20ms))
-      << wary.errors();
+  EXPECT_TRUE(refused_by(wary, {"its certificate revoked"})) << wary.errors();
 
   // Whose clock is three days late.
   const std::string old = folder_.path() / "old";
@@ -151,7 +187,7 @@ TEST_F(Security, StrangersAreRefusedByName) {
   const ShiftedClock late(folder_.path() / "shift", {-3 * kDays_s});
   ASSERT_EQ(swiftlet({"keys", "renew", old, "ground", "--days", "1"}).exit_code, 0);
   EXPECT_EQ(status({"--security", old}).exit_code, 1);
-  EXPECT_TRUE(refused("its certificate has expired")) << control.errors();
+  EXPECT_TRUE(refused_by(control, {"its certificate has expired"})) << control.errors();
 }
 
 TEST_F(Security, OwnFaultsAreToldBeforeJoining) {

@@ -32,7 +32,7 @@ const topic_t topics[] = {
     TOPIC("control_status", ControlStatus, LATCHED),
     TOPIC("mission_status", MissionStatus, LATCHED),
     TOPIC("vehicle_info", VehicleInfo, LATCHED),
-    TOPIC("ground_link", GroundLink, LATCHED),
+    TOPIC("ground_link", GroundLink, STREAM),
     TOPIC("command", Command, REQUEST),
     TOPIC("mission", Mission, REQUEST),
     TOPIC("trajectory", Trajectory, REQUEST),

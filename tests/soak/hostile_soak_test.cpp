@@ -11,7 +11,13 @@ namespace {
 constexpr double kLargestDeviation_m = 0.05;
 constexpr double kMemoryGrowth_mib = 16.0;
 
-class Hostile : public testing::TestWithParam<bool> {};  // with a network key
+struct Attack {
+  const char* name;
+  tests::AttackTransport transport;
+  bool forges;  // the flight has a network key then: only a key can tell
+};
+
+class Hostile : public testing::TestWithParam<Attack> {};
 
 TEST_P(Hostile, DatagramsDoNotDisturbAFlight) {
   if (const std::string why = tests::HostNetwork::why_unavailable(); !why.empty()) GTEST_SKIP() << why;
@@ -19,8 +25,9 @@ TEST_P(Hostile, DatagramsDoNotDisturbAFlight) {
   HostileSettings settings;
   settings.datagrams = 16'000;
   settings.per_second = 4'000;
-  settings.network_key = GetParam();
-  settings.forges = GetParam();  // only a key can tell
+  settings.transport = GetParam().transport;
+  settings.network_key = GetParam().forges;
+  settings.forges = GetParam().forges;
   const HostileResult result = fly_under_attack(settings, folder.path());
   EXPECT_GE(result.sent, settings.datagrams);
   EXPECT_TRUE(result.dead.empty()) << result.dead.front() << " ended";
@@ -29,8 +36,12 @@ TEST_P(Hostile, DatagramsDoNotDisturbAFlight) {
   EXPECT_LT(result.memory_growth_mib, kMemoryGrowth_mib);
 }
 
-INSTANTIATE_TEST_SUITE_P(Over, Hostile, testing::Bool(),
-                         [](const auto& of) { return of.param ? "ForgedToo" : "Changed"; });
+INSTANTIATE_TEST_SUITE_P(Over, Hostile,
+                         testing::Values(Attack{"Changed", tests::AttackTransport::kUdp, false},
+                                         Attack{"ForgedToo", tests::AttackTransport::kUdp, true},
+                                         Attack{"SharedMemory", tests::AttackTransport::kSharedMemory,
+                                                false}),
+                         [](const auto& of) { return of.param.name; });
 
 }  // namespace
 }  // namespace swiftlet::soak

@@ -64,6 +64,10 @@ std::vector<Partition> all_partitions() {
                                     {300, kOn, "", kOffPath_m},
                                     {1000, kHolds, "no mocap pose, pose regained", kPath_m},
                                     {5000, kLands, "no mocap pose, landed without position", kPath_m}};
+  const std::vector<Cut> no_effect{{50, kOn, "", kOffPath_m},
+                                   {300, kOn, "", kOffPath_m},
+                                   {1000, kOn, "", kOffPath_m},
+                                   {5000, kOn, "", kOffPath_m}};
   return {
       {kVehicle,
        kControl,
@@ -74,19 +78,14 @@ std::vector<Partition> all_partitions() {
         {300, kFalls, "IMU samples were missing", kPath_m},
         {1000, kFalls, "IMU samples were missing", kPath_m},
         {5000, kFalls, "IMU samples were missing", kPath_m}}},
-      {kVehicle,
-       kControl,
-       true,
-       true,
-       kTakeover_ms,
-       {{50, kOn, "", kOffPath_m},
-        {300, kOn, "", kOffPath_m},
-        {1000, kOn, "", kOffPath_m},
-        {5000, kOn, "", kOffPath_m}}},
+      {kVehicle, kControl, true, true, kTakeover_ms, no_effect},
       {kControl, kGround, false, false, kObeys_ms, ground_cuts},
       {kControl, kGround, true, false, kObeys_ms, ground_cuts},
       {kVehicle, kMocap, false, false, kObeys_ms, mocap_cuts},
       {kVehicle, kMocap, true, false, kObeys_ms, mocap_cuts},
+      {kMocap, kControl, false, false, kObeys_ms, mocap_cuts},
+      {kMocap, kControl, true, false, kObeys_ms, mocap_cuts},
+      {kVehicle, kGround, false, false, kObeys_ms, no_effect},
   };
 }
 

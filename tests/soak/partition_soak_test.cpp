@@ -58,5 +58,17 @@ TEST(Partition, WithoutMotionCaptureTheVehicleHoldsOrLandsAlsoWithAStandby) {
   expect_as_in_the_table(NetworkFlight::kVehicle, NetworkFlight::kMocap, true);
 }
 
+TEST(Partition, WithoutPosesTheVehicleHoldsOrLands) {
+  expect_as_in_the_table(NetworkFlight::kMocap, NetworkFlight::kControl, false);
+}
+
+TEST(Partition, WithoutPosesTheVehicleHoldsOrLandsAlsoWithAStandby) {
+  expect_as_in_the_table(NetworkFlight::kMocap, NetworkFlight::kControl, true);
+}
+
+TEST(Partition, BetweenVehicleAndGroundDoesNotDisturbAFlight) {
+  expect_as_in_the_table(NetworkFlight::kVehicle, NetworkFlight::kGround, false);
+}
+
 }  // namespace
 }  // namespace swiftlet::soak

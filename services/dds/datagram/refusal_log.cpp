@@ -26,10 +26,14 @@ void RefusalLog::note(const SenderAddress& address, const char* rule) {
   ++total_;
   const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
   if (!lock) return;
-  auto sender = std::find_if(senders_.begin(), senders_.end() - 1, [&](const Sender& other) {
-    return other.last_rule == nullptr || other.address == address;
+  const auto others = senders_.end() - 1;
+  auto sender = std::find_if(senders_.begin(), others, [&](const Sender& known) {
+    return known.last_rule != nullptr && known.address == address;
   });
-  sender->address = address;
+  if (sender == others)
+    sender = std::find_if(senders_.begin(), others,
+                          [](const Sender& known) { return known.last_rule == nullptr; });
+  if (sender != others) sender->address = address;
   sender->last_rule = rule;
   ++sender->refused;
 }
@@ -39,16 +43,22 @@ void RefusalLog::write_due(std::chrono::steady_clock::time_point now) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     for (std::size_t i = 0; i < kSenders; ++i) {
-      if (senders_[i].refused == 0 || now < senders_[i].next_line) continue;
+      if (now < senders_[i].next_line) continue;
       due[i] = senders_[i];
+      if (due[i].refused == 0) {
+        senders_[i] = Sender();
+        continue;
+      }
       senders_[i].refused = 0;
       senders_[i].next_line = now + kRefusalLogPeriod;
     }
   }
-  for (const Sender& sender : due) {
+  for (std::size_t i = 0; i < kSenders; ++i) {
+    const Sender& sender = due[i];
     if (sender.refused == 0) continue;
     spdlog::warn("refused {} datagram{} from {}; the last: {}", sender.refused,
-                 sender.refused == 1 ? "" : "s", text_of(sender.address), sender.last_rule);
+                 sender.refused == 1 ? "" : "s", i + 1 < kSenders ? text_of(sender.address) : "other senders",
+                 sender.last_rule);
   }
 }
 

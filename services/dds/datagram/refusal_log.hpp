@@ -31,7 +31,8 @@ class RefusalLog {
     const char* last_rule = nullptr;
     std::chrono::steady_clock::time_point next_line{};
   };
-  static constexpr std::size_t kSenders = 16;  // further ones share the last entry
+  static constexpr std::size_t kSenders =
+      16;  // that are not silent for long; further ones share the last entry
 
   std::mutex mutex_;
   std::array<Sender, kSenders> senders_{};

@@ -19,23 +19,6 @@ std::array<std::uint8_t, kSize> bytes_of(ByteReader& in) {
   return bytes;
 }
 
-// Calls found(kind, body) for each submessage up to the first that reaches to the end of the message.
-template <class Found>
-void for_each_submessage(const std::uint8_t* message, std::size_t size, const Found& found) {
-  ByteReader rest(message, size, true);
-  rest.skip(kHeaderBytes);
-  while (rest.rest() >= 4) {
-    const std::uint8_t kind = rest.u8();
-    const bool little_endian = (rest.u8() & kLittleEndianFlag) != 0;
-    const std::uint8_t* const length_at = rest.take(2);
-    std::size_t length = ByteReader(length_at, 2, little_endian).u16();
-    if (length == 0 && kind != kPad && kind != kInfoTimestamp) length = rest.rest();
-    length = std::min(length, rest.rest());
-    found(kind, ByteReader(rest.data(), length, little_endian));
-    rest.skip(length);
-  }
-}
-
 }  // namespace
 
 ReplyCheck::ReplyCheck(std::uint32_t gaps_ahead) : gaps_ahead_(gaps_ahead), acknowledged_(kWriters) {}

@@ -10,7 +10,6 @@
 #include <netinet/in.h>
 #include <stdexcept>
 #include <sys/socket.h>
-#include <thread>
 #include <unistd.h>
 #include <utility>
 #include <vector>
@@ -36,10 +35,6 @@ using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 
 constexpr const char* kName = "discovery-server";
 constexpr std::chrono::milliseconds kLogPeriod{250};
-// A server that was killed leaves clients that take the next one for it, and ignore what that numbers anew. They forget it
-// when its lease has ended, on a busy host later. Besides, Fast DDS 3.1 fails an assertion if it hears of a client before a
-// thread of it has taken in its own announcement.
-constexpr auto kStartTime = 2 * kLivelinessLease;
 
 // Fast DDS does not say why it fails.
 void require_free(int port) {
@@ -135,9 +130,9 @@ DiscoveryServer::DiscoveryServer(const DiscoveryServerSettings& settings,
   if (impl_->participant == nullptr)
     throw std::runtime_error("cannot start the discovery server on UDP port " +
                              std::to_string(settings.port));
-  std::this_thread::sleep_for(kStartTime);
-  *impl_->open = true;
 }
+
+void DiscoveryServer::serve() { *impl_->open = true; }
 
 DiscoveryServer::~DiscoveryServer() {
   impl_->participant->set_listener(nullptr);

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "swiftlet/services/messages/qos.hpp"
+
 namespace swiftlet::comms {
 
 struct DiscoveryServerSettings {
@@ -26,13 +28,20 @@ struct DiscoveryServerEvent {
 
 class DiscoveryServer {
  public:
-  // Takes 0.25 s until it serves. on_event runs in a middleware thread. Throws std::runtime_error if the port cannot be opened, or
-  // the key file is not valid.
+  // A server that was killed leaves clients that take the next one for it, and ignore what that numbers anew. They forget it
+  // when its lease has ended, on a busy host later. Besides, Fast DDS 3.1 fails an assertion if it hears of a client before a
+  // thread of it has taken in its own announcement.
+  static constexpr auto kStartTime = 2 * kLivelinessLease;
+
+  // Hears nothing before serve(). on_event runs in a middleware thread. Throws std::runtime_error if the port cannot be opened,
+  // or the key file is not valid.
   DiscoveryServer(const DiscoveryServerSettings& settings,
                   std::function<void(const DiscoveryServerEvent&)> on_event);
   ~DiscoveryServer();
   DiscoveryServer(const DiscoveryServer&) = delete;
   DiscoveryServer& operator=(const DiscoveryServer&) = delete;
+
+  void serve();  // call it kStartTime after the construction
 
  private:
   struct Impl;

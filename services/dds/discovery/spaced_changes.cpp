@@ -24,36 +24,51 @@ EntityId entity_id(ByteReader& data) {
   return id;
 }
 
+// The sequence number of a submessage that announces a participant or says goodbye; nullopt for others.
+std::optional<std::int64_t> changed(std::uint8_t kind, ByteReader body) {
+  if (kind != kData) return std::nullopt;
+  body.skip(kBytesBeforeIds);
+  const EntityId reader = entity_id(body);
+  const EntityId writer = entity_id(body);
+  const auto high = static_cast<std::uint64_t>(body.u32());
+  const std::uint64_t low = body.u32();
+  if (!body.ok() || topic_of(reader, writer) != BuiltinTopic::kParticipant) return std::nullopt;
+  return static_cast<std::int64_t>(high << 32U | low);
+}
+
+// What it says holds for the submessages that follow it.
+bool is_info(std::uint8_t kind) {
+  return kind == kInfoTimestamp || kind == kInfoSource || kind == kInfoDestination;
+}
+
 }  // namespace
 
 std::optional<ParticipantChange> participant_change(const std::uint8_t* message, std::size_t size) {
-  ByteReader rest(message, size, true);
-  ParticipantChange change;
-  rest.skip(kBytesBeforePrefix);
-  const std::uint8_t* const prefix = rest.take(change.participant.size());
-  if (prefix == nullptr) return std::nullopt;
-  std::copy_n(prefix, change.participant.size(), change.participant.begin());
-  bool found = false;
-  while (rest.ok() && rest.rest() > 0) {
-    const std::uint8_t kind = rest.u8();
-    const bool little_endian = (rest.u8() & kLittleEndianFlag) != 0;
-    const std::uint8_t* const length = rest.take(2);
-    if (length == nullptr) break;
-    const std::size_t bytes = ByteReader(length, 2, little_endian).u16();
-    // 0: the last submessage, of all bytes that follow.
-    const ByteReader body = rest.part(bytes == 0 ? rest.rest() : bytes);
-    if (kind != kData || !body.ok()) continue;
-    ByteReader data(body.data(), body.rest(), little_endian);
-    data.skip(kBytesBeforeIds);
-    const EntityId reader = entity_id(data);
-    const EntityId writer = entity_id(data);
-    const auto high = static_cast<std::uint64_t>(data.u32());
-    const std::uint64_t low = data.u32();
-    if (!data.ok() || topic_of(reader, writer) != BuiltinTopic::kParticipant) continue;
-    change.sequence_number = static_cast<std::int64_t>(high << 32U | low);
-    found = true;
-  }
-  return found ? std::optional(change) : std::nullopt;
+  std::optional<ParticipantChange> change;
+  for_each_submessage(message, size, [&](std::uint8_t kind, ByteReader body) {
+    const auto number = changed(kind, body);
+    if (!number) return;
+    change.emplace();
+    std::copy_n(message + kBytesBeforePrefix, change->participant.size(), change->participant.begin());
+    change->sequence_number = *number;
+  });
+  return change;
+}
+
+std::vector<std::vector<std::uint8_t>> divide_changes(const std::uint8_t* message, std::size_t size) {
+  std::vector<std::uint8_t> begin(message, message + std::min(size, kHeaderBytes));
+  std::vector<std::vector<std::uint8_t>> messages{begin};
+  bool has_change = false;
+  for_each_submessage(message, size, [&](std::uint8_t kind, ByteReader body) {
+    const std::uint8_t* const submessage = body.data() - kSubmessageHeaderBytes;
+    const std::uint8_t* const end = body.data() + body.rest();
+    const bool is_change = changed(kind, body).has_value();
+    if (is_change && has_change) messages.push_back(begin);
+    has_change = has_change || is_change;
+    messages.back().insert(messages.back().end(), submessage, end);
+    if (is_info(kind)) begin.insert(begin.end(), submessage, end);
+  });
+  return messages;
 }
 
 bool ChangeSpacing::admit(const ParticipantChange& change, Time now) {
@@ -109,9 +124,12 @@ class SpacingTransport final : public ChainedTransport {
       const std::vector<rtps::octet>& bytes = early->bytes;
       next->OnDataReceived(bytes.data(), static_cast<std::uint32_t>(bytes.size()), local, early->sender);
     }
-    const auto change = participant_change(data, size);
-    if (!change || admit_or_keep(*change, next, data, size, remote))
-      next->OnDataReceived(data, size, local, remote);
+    if (!participant_change(data, size)) return next->OnDataReceived(data, size, local, remote);
+    for (auto& message : divide_changes(data, size)) {
+      const auto change = participant_change(message.data(), message.size());
+      if (change && !admit_or_keep(*change, next, message, remote)) continue;
+      next->OnDataReceived(message.data(), static_cast<std::uint32_t>(message.size()), local, remote);
+    }
   }
 
  private:
@@ -119,11 +137,11 @@ class SpacingTransport final : public ChainedTransport {
     const std::lock_guard<std::mutex> lock(mutex_);
     return early_.take(receiver, spacing_, std::chrono::steady_clock::now());
   }
-  bool admit_or_keep(const ParticipantChange& change, const void* receiver, const rtps::octet* data,
-                     std::uint32_t size, const rtps::Locator_t& sender) {
+  bool admit_or_keep(const ParticipantChange& change, const void* receiver,
+                     std::vector<std::uint8_t>& message, const rtps::Locator_t& sender) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (spacing_.admit(change, std::chrono::steady_clock::now())) return true;
-    early_.keep({change, {data, data + size}, receiver, sender});
+    early_.keep({change, std::move(message), receiver, sender});
     return false;
   }
 

@@ -30,6 +30,9 @@ struct ParticipantChange {
 // Of a message of RTPS: the last announcement or goodbye of a participant in it. nullopt if there is none.
 std::optional<ParticipantChange> participant_change(const std::uint8_t* message, std::size_t size);
 
+// Divides a message of RTPS with several of them into messages with one each: nothing keeps two in one message apart.
+std::vector<std::vector<std::uint8_t>> divide_changes(const std::uint8_t* message, std::size_t size);
+
 // Which changes may be handed on. Remembers at most kMostParticipants. Not thread-safe.
 class ChangeSpacing {
  public:

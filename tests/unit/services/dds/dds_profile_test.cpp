@@ -107,6 +107,7 @@ TEST_F(DdsProfiles, NameWhatTheyMayNotSet) {
 TEST_F(DdsProfiles, AreRefusedIfBroken) {
   EXPECT_EQ(refusal("<dds>\n<profiles>\n</dds>\n").rfind("2: is no valid XML: ", 0), 0U)
       << refusal("<dds>\n<profiles>\n</dds>\n");
+  EXPECT_EQ(refusal("<!-- nothing -->\n"), " must be <dds> with <profiles>");
   EXPECT_EQ(refusal("<html/>\n"), "1: <html>: must be <dds> with <profiles>");
   EXPECT_EQ(refusal("<dds><profiles></profiles></dds>\n"), "1: <profiles>: has no <participant>");
   const std::string many = "<participant profile_name=\"other\"><rtps/></participant>\n";

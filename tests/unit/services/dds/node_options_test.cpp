@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/io/config_error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::comms {
@@ -78,6 +79,33 @@ TEST_F(NodeOptions, WinOverTheEnvironment) {
   }
   unsetenv("ROS_LOCALHOST_ONLY");
   unsetenv("ROS_DISCOVERY_SERVER");
+}
+
+TEST_F(NodeOptions, TakeThePeersOfRos) {
+  setenv("ROS_STATIC_PEERS", "lab1;10.0.0.7;", 1);
+  EXPECT_TRUE(parses(""));
+  EXPECT_EQ(settings_.network.peers, (std::vector<std::string>{"lab1", "10.0.0.7"}));
+  EXPECT_TRUE(parses("--peer lab3"));
+  EXPECT_EQ(settings_.network.peers, std::vector<std::string>{"lab3"});
+  for (const char* line : {"--discovery-server lab3", "--localhost-only"}) {
+    EXPECT_TRUE(parses(line));
+    EXPECT_TRUE(settings_.network.peers.empty()) << line;
+  }
+  setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST", 1);
+  EXPECT_TRUE(parses(""));
+  EXPECT_FALSE(settings_.localhost_only) << "it has peers";
+  setenv("ROS_STATIC_PEERS", "lab1;lab2:0", 1);
+  EXPECT_THROW(parses(""), runtime::ConfigError);
+  unsetenv("ROS_STATIC_PEERS");
+  for (const char* range : {"LOCALHOST", "OFF"}) {
+    setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", range, 1);
+    EXPECT_TRUE(parses(""));
+    EXPECT_TRUE(settings_.localhost_only) << range;
+  }
+  setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET", 1);
+  EXPECT_TRUE(parses(""));
+  EXPECT_FALSE(settings_.localhost_only);
+  unsetenv("ROS_AUTOMATIC_DISCOVERY_RANGE");
 }
 
 TEST_F(NodeOptions, TakeTheProfileOfEitherFastDds) {

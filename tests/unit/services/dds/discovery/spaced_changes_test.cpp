@@ -39,10 +39,34 @@ TEST(ParticipantChange, IsOnlyThatOfAParticipant) {
   EXPECT_FALSE(change_in(RtpsMessage(tests::kAlice)
                              .add(0x15, 4, tests::data_fields(tests::kSedpReader, tests::kSedpWriter, 1))));
   EXPECT_FALSE(change_in(RtpsMessage(tests::kAlice).add(0x15, 4, ByteWriter().zeros(3)))) << "too short";
-  EXPECT_FALSE(change_in(RtpsMessage(tests::kAlice).add(0x15, 4, announcement(1), 200)))
-      << "longer than the message";
   const std::uint8_t header[10] = {};
   EXPECT_FALSE(participant_change(header, sizeof header));
+}
+
+// An INFO_TS may be empty: its length of 0 does not mean that it reaches to the end of the message (RTPS 2.5, 9.4.5.1.3).
+TEST(ParticipantChange, IsNotHiddenBehindAnEmptySubmessage) {
+  for (const unsigned kind : {0x01U, 0x09U})
+    EXPECT_TRUE(
+        change_in(RtpsMessage(tests::kAlice).add(kind, 2, ByteWriter()).add(0x15, 4, announcement(7))));
+}
+
+TEST(DivideChanges, PutsEachChangeIntoAMessageOfItsOwn) {
+  const ByteWriter to_bob = ByteWriter().bytes(tests::kBob);
+  const ByteWriter heartbeat = ByteWriter().zeros(28);
+  const RtpsMessage all = RtpsMessage(tests::kAlice)
+                              .add(0x07, 0, heartbeat)
+                              .add(0x0e, 0, to_bob)
+                              .add(0x15, 4, announcement(7))
+                              .add(0x15, 4, announcement(8))
+                              .add(0x07, 0, heartbeat);
+  const RtpsMessage first =
+      RtpsMessage(tests::kAlice).add(0x07, 0, heartbeat).add(0x0e, 0, to_bob).add(0x15, 4, announcement(7));
+  const RtpsMessage second =
+      RtpsMessage(tests::kAlice).add(0x0e, 0, to_bob).add(0x15, 4, announcement(8)).add(0x07, 0, heartbeat);
+  EXPECT_EQ(divide_changes(all.bytes().data(), all.bytes().size()),
+            (std::vector<tests::Bytes>{first.bytes(), second.bytes()}));
+  EXPECT_EQ(divide_changes(first.bytes().data(), first.bytes().size()),
+            std::vector<tests::Bytes>{first.bytes()});
 }
 
 TEST(ChangeSpacing, KeepsTheChangesOfAParticipantApart) {

@@ -1,0 +1,69 @@
+#include "swiftlet/services/dds/datagram/refusal_log.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
+
+namespace swiftlet::comms {
+namespace {
+
+using namespace std::chrono_literals;
+
+class RefusalLogTest : public testing::Test {
+ protected:
+  RefusalLogTest() {
+    auto sink = std::make_shared<spdlog::sinks::ostream_sink_mt>(text_);
+    sink->set_pattern("%v");
+    spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", sink));
+  }
+  ~RefusalLogTest() override { spdlog::set_default_logger(before_); }
+
+  void refuse(std::uint8_t host, const char* rule, int times = 1) {
+    for (int i = 0; i < times; ++i) log_.note({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 10, 0, 0, host}, rule);
+  }
+  std::string lines_after(std::chrono::steady_clock::duration time) {
+    text_.str("");
+    log_.write_due(start_ + time);
+    return text_.str();
+  }
+
+  RefusalLog log_;
+
+ private:
+  const std::shared_ptr<spdlog::logger> before_ = spdlog::default_logger();
+  const std::chrono::steady_clock::time_point start_{1h};
+  std::ostringstream text_;
+};
+
+TEST_F(RefusalLogTest, NamesEachSenderAndItsLastRuleOnceInAPeriod) {
+  refuse(1, "first rule");
+  refuse(1, "second rule");
+  refuse(2, "third rule");
+  EXPECT_EQ(lines_after(0s),
+            "refused 2 datagrams from 10.0.0.1; the last: second rule\n"
+            "refused 1 datagram from 10.0.0.2; the last: third rule\n");
+  refuse(1, "first rule", 5);
+  EXPECT_EQ(lines_after(kRefusalLogPeriod - 1ms), "");
+  EXPECT_EQ(lines_after(kRefusalLogPeriod), "refused 5 datagrams from 10.0.0.1; the last: first rule\n");
+  EXPECT_EQ(log_.total(), 8U);
+}
+
+TEST_F(RefusalLogTest, CountsMoreSendersThanItRemembersTogether) {
+  for (std::uint8_t host = 1; host <= 18; ++host) refuse(host, "rule");
+  const std::string lines = lines_after(0s);
+  EXPECT_NE(lines.find("refused 1 datagram from 10.0.0.15; "), std::string::npos) << lines;
+  EXPECT_NE(lines.find("refused 3 datagrams from other senders; the last: rule\n"), std::string::npos)
+      << lines;
+  EXPECT_EQ(lines_after(kRefusalLogPeriod), "") << "all were silent, and are forgotten";
+  refuse(18, "rule");
+  EXPECT_EQ(lines_after(kRefusalLogPeriod), "refused 1 datagram from 10.0.0.18; the last: rule\n");
+}
+
+}  // namespace
+}  // namespace swiftlet::comms
