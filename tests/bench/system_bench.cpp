@@ -458,6 +458,9 @@ void simulated_time(Table& table) {
   }
   for (const auto& [name, entry] : inner.items())
     table.add({name, cpu_ns(entry), "ns", "the target", 2000.0, ""});
+  const json datagram = benchmarks("datagram_bench", ".*");
+  const char* const hop = "datagram_hop_with_key";
+  table.add({hop, cpu_ns(datagram.at(hop)), "ns", "the target", 3000.0, "at most 1"});
 }
 
 // Runs of the square with sampled vehicles per second, on one core and on 2, 4 ... of them.

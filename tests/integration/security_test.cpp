@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/io/network_key.hpp"
 #include "swiftlet/io/security/certificates.hpp"
 #include "swiftlet/io/security/security_folder.hpp"
 #include "swiftlet/io/text_file.hpp"
@@ -202,6 +203,28 @@ TEST_F(Security, OwnFaultsAreToldBeforeJoining) {
   EXPECT_NE(revoked.errors.find("lab/ground/certificate.pem is revoked"), std::string::npos)
       << revoked.errors;
   EXPECT_EQ(swiftlet({"keys", "create", lab, "--vehicle", "kl1"}).exit_code, 2) << "it exists";
+}
+
+TEST_F(Security, TheNetworkKeyIsExchangedInThreeSteps) {
+  const std::string file = folder_.path() / "lab.key";
+  const auto exchange = [&](const char* step) {
+    return swiftlet({"keys", "network", file, "--exchange", step}).exit_code;
+  };
+  ASSERT_EQ(swiftlet({"keys", "network", file}).exit_code, 0);
+  EXPECT_EQ(swiftlet({"keys", "network", file}).exit_code, 2) << "it exists";
+  const runtime::NetworkKeys before = runtime::read_network_keys(file);
+  ASSERT_EQ(before.size(), 1U);
+  EXPECT_EQ(exchange("switch"), 2) << "there is one key";
+  EXPECT_EQ(exchange("add"), 0);
+  const runtime::NetworkKeys both = runtime::read_network_keys(file);
+  ASSERT_EQ(both.size(), 2U);
+  EXPECT_EQ(both[0], before[0]) << "the old one still sends";
+  EXPECT_NE(both[1], before[0]);
+  EXPECT_EQ(exchange("add"), 2) << "there are two";
+  EXPECT_EQ(exchange("switch"), 0);
+  EXPECT_EQ(runtime::read_network_keys(file), (runtime::NetworkKeys{both[1], both[0]}));
+  EXPECT_EQ(exchange("drop"), 0);
+  EXPECT_EQ(runtime::read_network_keys(file), runtime::NetworkKeys{both[1]});
 }
 
 TEST_F(Security, WholeFlightIsFlown) {
