@@ -17,7 +17,9 @@ Now Now::read() {
 }
 
 DatagramGuard::DatagramGuard(const runtime::NetworkKeys& keys, const DatagramLimits& limits)
-    : limits_(limits), replies_(limits.discovery_servers ? kLongestBuiltinGap : kGapsAhead) {
+    : limits_(limits),
+      sequences_(limits.discovery_servers),
+      replies_(limits.discovery_servers ? kLongestBuiltinGap : kGapsAhead) {
   if (keys.empty()) return;
   sealer_.emplace(keys);
   opener_.emplace(keys);
@@ -27,8 +29,11 @@ CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size,
                                      std::uint32_t port, const Now& now) {
   CheckedDatagram checked;
   if (opener_) {
-    const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
-    checked.fault = opener_->open(data, size, port, now.since_1970_ns, now.steady_ns);
+    checked.fault = opener_->verify(data, size, now.since_1970_ns);
+    if (checked.fault == nullptr) {
+      const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
+      checked.fault = opener_->take(data, size, port, now.steady_ns);
+    }
     if (checked.fault == kSentTwice) return checked;
   }
   if (checked.fault == nullptr) checked = check_datagram(data, opener_ ? size - kSealBytes : size, limits_);

@@ -71,8 +71,7 @@ DatagramOpener::DatagramOpener(const runtime::NetworkKeys& keys) : senders_(kSen
   for (const NetworkKey& key : keys) keys_.push_back({key, id_of(key)});
 }
 
-const char* DatagramOpener::open(const std::uint8_t* data, std::size_t size, std::uint32_t port,
-                                 std::int64_t now_ns, std::int64_t steady_ns) {
+const char* DatagramOpener::verify(const std::uint8_t* data, std::size_t size, std::int64_t now_ns) const {
   if (size < kPrefixAt + GuidPrefix().size() + kSealBytes) return "not sealed with a network key";
   const std::uint8_t* const trailer = data + size - kSealBytes;
   if (trailer[0] != kSealKind || get(trailer + 2, 2) != kSealBytes - 4)
@@ -86,9 +85,15 @@ const char* DatagramOpener::open(const std::uint8_t* data, std::size_t size, std
   const auto sent_ns = static_cast<std::int64_t>(get(trailer + kTimeAt, 8));
   if (sent_ns < now_ns - kSealTolerance_ns || sent_ns > now_ns + kSealTolerance_ns)
     return "sealed more than 30 s ago or ahead: a recording, or the clocks of the hosts differ";
+  return nullptr;
+}
+
+const char* DatagramOpener::take(const std::uint8_t* data, std::size_t size, std::uint32_t port,
+                                 std::int64_t steady_ns) {
+  const std::uint8_t* const trailer = data + size - kSealBytes;
   Sender& from = sender(data + kPrefixAt, port);
   from.heard_ns = steady_ns;
-  return from.take(get(trailer + kCountAt, 8), sent_ns);
+  return from.take(get(trailer + kCountAt, 8), static_cast<std::int64_t>(get(trailer + kTimeAt, 8)));
 }
 
 DatagramOpener::Sender& DatagramOpener::sender(const std::uint8_t* participant, std::uint32_t port) {

@@ -36,16 +36,18 @@ class DatagramSealer {
   std::atomic<std::uint64_t> count_;
 };
 
-// Checks trailers. Allocates only when constructed. Not thread-safe.
+// Checks trailers. Allocates only when constructed.
 class DatagramOpener {
  public:
   explicit DatagramOpener(const runtime::NetworkKeys& keys);
 
-  // Returns the broken rule as a string literal, nullptr if the trailer is valid; the datagram is then kSealBytes shorter. A
-  // datagram is valid once on each port: port is the local one, because a participant may receive it on several.
-  // now_ns: since 1970; steady_ns: of a monotonic clock.
-  const char* open(const std::uint8_t* data, std::size_t size, std::uint32_t port, std::int64_t now_ns,
-                   std::int64_t steady_ns);
+  // Each returns the broken rule as a string literal, nullptr if there is none; the datagram is then kSealBytes shorter.
+
+  // Whether the trailer is valid. Thread-safe. now_ns: since 1970.
+  const char* verify(const std::uint8_t* data, std::size_t size, std::int64_t now_ns) const;
+  // Whether a datagram with a valid trailer is taken for the first time: once on each port. port is the local one, because a
+  // participant may receive it on several. Not thread-safe. steady_ns: of a monotonic clock.
+  const char* take(const std::uint8_t* data, std::size_t size, std::uint32_t port, std::int64_t steady_ns);
 
  private:
   struct Key {

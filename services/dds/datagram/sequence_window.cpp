@@ -18,15 +18,16 @@ double SequenceWindow::Writer::interval_ns() const {
   return samples > 0.0 ? std::max(samples_span_ns / samples, kShortestInterval_ns) : kShortestInterval_ns;
 }
 
-std::uint32_t SequenceWindow::Writer::burst(std::int64_t now_ns) const {
-  if (is_builtin(entity) && is_discovery_server(participant)) return kServerBurst;
-  return is_builtin(entity) || now_ns - met_ns < kFirstContact_ns ? kFirstBurst : kSampleBurst;
+std::uint32_t SequenceWindow::burst_of(const Writer& writer, std::int64_t now_ns) const {
+  const bool builtin = is_builtin(writer.entity);
+  if (builtin && discovery_servers_ && is_discovery_server(writer.participant)) return kServerBurst;
+  return builtin || now_ns - writer.met_ns < kFirstContact_ns ? kFirstBurst : kSampleBurst;
 }
 
-bool SequenceWindow::Writer::admit(std::uint32_t number, std::int64_t now_ns) {
+bool SequenceWindow::Writer::admit(std::uint32_t number, std::int64_t now_ns, std::uint32_t burst) {
   if (number <= newest) return true;
   const double expected = timely + static_cast<double>(now_ns - timely_ns) / interval_ns() * kRateMargin;
-  if (number > std::max<double>(newest, expected) + burst(now_ns)) {
+  if (number > std::max<double>(newest, expected) + burst) {
     agreeing = number >= refused && number - refused <= kSampleBurst ? agreeing + 1 : 1;
     refused = number;
     if (agreeing < kAgreeingDatagrams) return false;
@@ -67,7 +68,8 @@ bool SequenceWindow::admit(const GuidPrefix& participant, const EntityId& entity
   Writer* longest_silent = nullptr;
   for (std::size_t i = 0; i < kPlaces; ++i) {
     Writer& writer = writers_[(first + i) & (kWriters - 1)];
-    if (writer.entity == entity && writer.participant == participant) return writer.admit(number, now_ns);
+    if (writer.entity == entity && writer.participant == participant)
+      return writer.admit(number, now_ns, burst_of(writer, now_ns));
     if (longest_silent == nullptr || writer.heard_ns < longest_silent->heard_ns) longest_silent = &writer;
   }
   *longest_silent = {participant, entity, number, now_ns, now_ns, number, now_ns};

@@ -29,7 +29,9 @@ constexpr int kAgreeingDatagrams = 4;
 // constructed. Not thread-safe.
 class SequenceWindow {
  public:
-  SequenceWindow() : writers_(kWriters) {}
+  // discovery_servers: some participants are such servers.
+  explicit SequenceWindow(bool discovery_servers = false)
+      : discovery_servers_(discovery_servers), writers_(kWriters) {}
 
   // Returns whether the writer may have this number now, and remembers it. now_ns: of a monotonic clock.
   bool admit(const GuidPrefix& participant, const EntityId& entity, std::uint32_t number,
@@ -57,11 +59,13 @@ class SequenceWindow {
     int agreeing = 0;           // refused numbers in a row that agree with each other
 
     double interval_ns() const;
-    bool admit(std::uint32_t number, std::int64_t now_ns);
-    std::uint32_t burst(std::int64_t now_ns) const;
+    bool admit(std::uint32_t number, std::int64_t now_ns, std::uint32_t burst);
     void measure_rate(double silent_ns);  // before the newest sample
   };
 
+  std::uint32_t burst_of(const Writer& writer, std::int64_t now_ns) const;
+
+  const bool discovery_servers_;
   std::vector<Writer> writers_;
 };
 
