@@ -80,12 +80,17 @@ TEST(SequenceWindow, LetsAnnouncementsOfEndpointsComeInBursts) {
 
 // It numbers what it tells all of its clients.
 TEST(SequenceWindow, LetsADiscoveryServerSkipWhatConcernsOthers) {
-  SequenceWindow window;
+  constexpr bool kServersAreUsed = true;
+  SequenceWindow window(kServersAreUsed);
   const GuidPrefix server{0x44, 0x53, 0x00, 0x5f, 0x45, 0x50, 0x52, 0x4f, 0x53, 0x49, 0x4d, 0x41};
   const EntityId announcements{0x00, 0x00, 0x03, 0xc2};
   EXPECT_TRUE(window.admit(server, announcements, 5, kSecond_ns));
   EXPECT_TRUE(window.admit(server, announcements, 50'000, kSecond_ns));
   EXPECT_FALSE(window.admit(server, announcements, 1U << 20U, kSecond_ns));
+  SequenceWindow without_servers;
+  EXPECT_TRUE(without_servers.admit(server, announcements, 5, kSecond_ns));
+  EXPECT_FALSE(without_servers.admit(server, announcements, 50'000, kSecond_ns))
+      << "anybody may take such a prefix";
 }
 
 // A receiver that was held up for 0.3 s reads what its socket kept, 100 samples of a writer at 1 kHz, and then the newest.
