@@ -184,6 +184,8 @@ TEST_F(SwarmFlight, FliesVehiclesOfTwoFilesFromTheirPlaces) {
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const json report = json::parse(result.output);
   EXPECT_EQ(report.at("completed"), true);
+  EXPECT_NE(result.errors.find("without monitor, because it is not in real time"), std::string::npos)
+      << result.errors;
   EXPECT_EQ(report.at("vehicles")[0].at("vehicle"), "crazyflie2");
   EXPECT_EQ(report.at("vehicles")[1].at("vehicle"), "kaylion");
   EXPECT_EQ(report.at("vehicles")[0].at("start_m"), json({0.5, -1.0}));
@@ -211,6 +213,7 @@ TEST_F(SwarmFlight, StartsWithinTwoMillisecondsInRealTime) {
   for (int attempt = 0; attempt < 5 && !(a.is_certain && b.is_certain); ++attempt) {
     const ProgramResult result = fly(fleet("crazyflie2"), {"--mcap", "--replace"});
     ASSERT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_EQ(result.errors.find("without monitor"), std::string::npos) << result.errors;
     a = start_of(recorded("/a/command"), recorded("/a/imu"));
     b = start_of(recorded("/b/command"), recorded("/b/imu"));
   }
