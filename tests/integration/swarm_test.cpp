@@ -344,7 +344,7 @@ class RunningSwarm : public testing::Test {
 TEST_F(RunningSwarm, MovesAsOneAndLands) {
   hover(kNames);
   const Eigen::Vector3d a = position("a"), b = position("b"), c = position("c");
-  const ProgramResult moved = swiftlet({"fleet", "goto", "0.5", "1.2", "-1.4", "--skew", "20"});
+  const ProgramResult moved = swiftlet({"fleet", "goto", "0.5", "1.2", "-1.4"});
   ASSERT_EQ(moved.exit_code, 0) << moved.errors;
   const Eigen::Vector3d move = Eigen::Vector3d(0.5, 1.2, -1.4) - (a + b + c) / 3.0;
   EXPECT_LT((position("a") - a - move).norm(), 0.06);
