@@ -16,6 +16,7 @@ using Eigen::Vector3d;
 
 constexpr double kShortestMove_s = 0.5;  // of control/guidance
 constexpr double kLower_m = 0.05;
+constexpr double kSkewStep_s = 0.01;
 
 // Rests for a while, then moves as `goto` does.
 FlightPath path_of(const Vector3d& from_ned, const Vector3d& to_ned, const FormationMove& move,
@@ -67,6 +68,22 @@ std::string formation_refusal(const std::vector<FormationVehicle>& vehicles,
     }
   }
   return "";
+}
+
+// Bisects: all move by the same way, so the later one begins, the further it is behind.
+double longest_skew_s(const std::vector<FormationVehicle>& vehicles, const std::vector<Vector3d>& targets_ned,
+                      FormationMove move, const Ellipsoid& safety, double longest_s) {
+  double allowed_s = move.skew_s;
+  double refused_s = longest_s;
+  move.skew_s = longest_s;
+  if (longest_s > allowed_s && formation_refusal(vehicles, targets_ned, move, safety).empty())
+    return longest_s;
+  while (refused_s - allowed_s > kSkewStep_s) {
+    move.skew_s = 0.5 * (allowed_s + refused_s);
+    const bool may = formation_refusal(vehicles, targets_ned, move, safety).empty();
+    (may ? allowed_s : refused_s) = move.skew_s;
+  }
+  return allowed_s;
 }
 
 std::vector<std::optional<std::size_t>> landing_obstacles(const std::vector<FormationVehicle>& vehicles,

@@ -38,6 +38,11 @@ std::string formation_refusal(const std::vector<FormationVehicle>& vehicles,
                               const std::vector<Eigen::Vector3d>& targets_ned, const FormationMove& move,
                               const Ellipsoid& safety);
 
+// s: by which one may begin later than another without such a refusal, between move.skew_s, at which there is none, and longest_s.
+double longest_skew_s(const std::vector<FormationVehicle>& vehicles,
+                      const std::vector<Eigen::Vector3d>& targets_ned, FormationMove move,
+                      const Ellipsoid& safety, double longest_s);
+
 // Of each vehicle: another one on whose place it would come down if it landed straight, that stands there or flies lower.
 std::vector<std::optional<std::size_t>> landing_obstacles(const std::vector<FormationVehicle>& vehicles,
                                                           const Ellipsoid& safety);

@@ -141,6 +141,9 @@ class DdsWriter final : public Writer, private Endpoint {
     dds::PublicationMatchedStatus last;
     writer->get_publication_matched_status(last);
     changes_before_ += 2 * static_cast<std::uint64_t>(last.total_count);  // all readers unmatched
+    // The destructor of a writer of Fast DDS 2.9 releases samples that its thread for heartbeats still reads if a peer has
+    // not acknowledged them, and that thread may then never end (Fast DDS #4076).
+    writer->clear_history(nullptr);
     session.publisher->delete_datawriter(writer);
   }
   dds::PublicationMatchedStatus readers() const {

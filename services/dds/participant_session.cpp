@@ -1,5 +1,6 @@
 #include "swiftlet/services/dds/participant_session.hpp"
 
+#include <algorithm>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -86,11 +87,15 @@ ParticipantSession::ParticipantSession(const NodeSettings& settings, const Annou
     : spacing_(settings.network.discovery_servers.empty() ? std::chrono::milliseconds(0)
                                                           : kAnnouncementSpacing) {
   set_up_fast_dds();
+  guard->set_participant({});  // of a session before
   participant = join(settings, announcement, guard, listener);
   if (participant == nullptr) {
     throw std::runtime_error("cannot join DDS domain " + std::to_string(settings.domain) +
                              ": no port could be opened or the transport could not be set up");
   }
+  GuidPrefix own{};
+  std::copy_n(participant->guid().guidPrefix.value, own.size(), own.begin());
+  guard->set_participant(own);
   // Fast DDS 3 remembers the addresses of the host from the first participant of the process on; this lets it read them again.
   participant->set_qos(participant->get_qos());
   publisher = participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);

@@ -184,6 +184,8 @@ TEST_F(SwarmFlight, FliesVehiclesOfTwoFilesFromTheirPlaces) {
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const json report = json::parse(result.output);
   EXPECT_EQ(report.at("completed"), true);
+  EXPECT_NE(result.errors.find("without monitor, because it is not in real time"), std::string::npos)
+      << result.errors;
   EXPECT_EQ(report.at("vehicles")[0].at("vehicle"), "crazyflie2");
   EXPECT_EQ(report.at("vehicles")[1].at("vehicle"), "kaylion");
   EXPECT_EQ(report.at("vehicles")[0].at("start_m"), json({0.5, -1.0}));
@@ -211,6 +213,7 @@ TEST_F(SwarmFlight, StartsWithinTwoMillisecondsInRealTime) {
   for (int attempt = 0; attempt < 5 && !(a.is_certain && b.is_certain); ++attempt) {
     const ProgramResult result = fly(fleet("crazyflie2"), {"--mcap", "--replace"});
     ASSERT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_EQ(result.errors.find("without monitor"), std::string::npos) << result.errors;
     a = start_of(recorded("/a/command"), recorded("/a/imu"));
     b = start_of(recorded("/b/command"), recorded("/b/imu"));
   }
@@ -341,7 +344,7 @@ class RunningSwarm : public testing::Test {
 TEST_F(RunningSwarm, MovesAsOneAndLands) {
   hover(kNames);
   const Eigen::Vector3d a = position("a"), b = position("b"), c = position("c");
-  const ProgramResult moved = swiftlet({"fleet", "goto", "0.5", "1.2", "-1.4", "--skew", "20"});
+  const ProgramResult moved = swiftlet({"fleet", "goto", "0.5", "1.2", "-1.4"});
   ASSERT_EQ(moved.exit_code, 0) << moved.errors;
   const Eigen::Vector3d move = Eigen::Vector3d(0.5, 1.2, -1.4) - (a + b + c) / 3.0;
   EXPECT_LT((position("a") - a - move).norm(), 0.06);

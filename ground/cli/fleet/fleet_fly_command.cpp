@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 #include <optional>
 #include <string>
@@ -62,10 +63,19 @@ int run(const Options& options) {
     ++flight.seed;
   }
   if (options.flight.record.empty()) plans.front().folder = default_record_folder(check.fleet.name);
-  // In lockstep the vehicles do not share one moment: each advances as its samples are answered.
+  // In lockstep the vehicles do not share one moment: each advances as its samples are answered. What the monitor sends then
+  // would come at another moment in each run.
   std::optional<FleetMonitor> monitor;
   const bool in_real_time = flight.clock == runtime::Clock::kRealtime && flight.speed.value_or(1.0) <= 1.0;
-  if (in_real_time) monitor.emplace(std::move(monitored));
+  if (in_real_time) {
+    monitor.emplace(std::move(monitored));
+  } else if (names.size() > 1) {
+    std::fprintf(
+        stderr,
+        "%s: flown without monitor, because it is not in real time: a vehicle that is paused or late, or "
+        "leaves its path, is not waited for\n",
+        check.fleet.name.c_str());
+  }
   return fly_vehicles(options.flight, names, std::move(plans), std::move(monitor));
 }
 
@@ -90,9 +100,11 @@ Command add_fleet_fly_command(runtime::CommandLine fleet, const std::string& ver
   for (const char* launch_option : {"--seed", "--clock", "--speed"})
     attach.excludes(app.option(launch_option));
   app.footer(
-      "All missions start at one time. If a vehicle fails, the others land.\nCtrl-C lands; a second Ctrl-C "
-      "ends "
-      "the flight at once.\nexample: swiftlet fleet fly swap6 --clock lockstep");
+      "All missions start at one time. If a vehicle fails, the others land.\nIn real time a monitor keeps "
+      "the "
+      "vehicles apart when one is paused or late, or leaves its path: the others wait or step aside. With "
+      "--clock lockstep, or --speed above 1, it does not run: all fly on as planned.\nCtrl-C lands; a second "
+      "Ctrl-C ends the flight at once.\nexample: swiftlet fleet fly swap6 --clock lockstep");
   return {app, [options] { return run(*options); }};
 }
 

@@ -48,7 +48,7 @@ struct GotoOptions : Options {
   std::optional<double> z_ned_m;
   std::optional<double> height_m;  // instead of z
   double speed = 0.5;
-  double skew_s = FormationMove().skew_s;
+  std::optional<double> skew_s;  // unset: what keeps the ways apart
   std::string control = "motor_lag";
 };
 
@@ -204,8 +204,8 @@ int go_to(const GotoOptions& given) {
     if (!above.accepted) throw InputError(std::string(above.reason) + ": nothing was sent");
     target_of[vehicles[i].name] = targets[i];
   }
-  const std::string refusal =
-      formation_refusal(vehicles, targets, {options.speed, limits, options.skew_s}, options.safety);
+  const FormationMove move{options.speed, limits, options.skew_s.value_or(FormationMove().skew_s)};
+  const std::string refusal = formation_refusal(vehicles, targets, move, options.safety);
   if (!refusal.empty()) throw InputError(refusal + ": nothing was sent");
   VehicleRequest request{
       "goto", [&](Vehicle& vehicle) {
@@ -216,7 +216,8 @@ int go_to(const GotoOptions& given) {
   request.undone = "holds";
   request.not_undone = "does NOT hold";
   request.cause = "did not accept it";
-  request.skew_s = options.skew_s;
+  request.skew_s =
+      options.skew_s.value_or(longest_skew_s(vehicles, targets, move, options.safety, options.timeout_s));
   return run_request(request_to(members, options), request);
 }
 
@@ -357,9 +358,9 @@ Command add_fleet_goto_command(runtime::CommandLine fleet) {
       .excludes(z);
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   app.add_option("--skew", options->skew_s,
-                 "by which one may begin later than another, s; if the last one answers later, all hold")
-      .range(0.0, 60.0)
-      .show_default();
+                 "by which one may begin later than another, s; if the last one answers later, all hold; "
+                 "default: as long as the ways stay apart, at least 0.5 and at most --timeout")
+      .range(0.0, 60.0);
   app.add_option("--control", options->control,
                  "control settings of the vehicles, or the name of a file in config/control: its limits "
                  "say how long they take")

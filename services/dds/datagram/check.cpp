@@ -89,6 +89,7 @@ class DatagramCheck {
   const char* check_next();
   const char* check_encryption(std::uint8_t kind);
   const char* check_body(Submessage& submessage);
+  const char* check_destination(ByteReader body);
   const char* check_acknack(ByteReader body);
   const char* check_heartbeat(ByteReader body);
   const char* check_gap(ByteReader body);
@@ -103,7 +104,8 @@ class DatagramCheck {
   const DatagramLimits& limits_;
   ByteReader rest_;
   CheckedDatagram result_;
-  bool encrypted_ = false;  // with security: what follows is the content of an encrypted message
+  GuidPrefix destination_{};  // of what follows; all zeros: none is named
+  bool encrypted_ = false;    // with security: what follows is the content of an encrypted message
 };
 
 const char* DatagramCheck::check_header() {
@@ -169,8 +171,7 @@ const char* DatagramCheck::check_body(Submessage& submessage) {
       body.skip(24);
       return body.ok() ? nullptr : "HEARTBEAT_FRAG too short (8.3.8.7)";
     case kInfoDestination:
-      body.skip(12);
-      return body.ok() ? nullptr : "INFO_DST too short (8.3.8.8)";
+      return check_destination(body);
     case kInfoTimestamp:
       body.skip(submessage.has(kInvalidateFlag) ? 0 : 8);
       return body.ok() ? nullptr : "INFO_TS too short (8.3.8.11)";
@@ -195,6 +196,16 @@ const char* DatagramCheck::note(const EntityId& writer, std::uint32_t number, st
   }
   if (result_.writer_count == CheckedDatagram::kMostWriters) return "submessages of more than 32 writers";
   result_.writers[result_.writer_count++] = {writer, number, gap_end};
+  return nullptr;
+}
+
+// All zeros leave the destination as it is in Fast DDS.
+const char* DatagramCheck::check_destination(ByteReader body) {
+  GuidPrefix destination{};
+  const std::uint8_t* const bytes = body.take(destination.size());
+  if (bytes == nullptr) return "INFO_DST too short (8.3.8.8)";
+  std::copy_n(bytes, destination.size(), destination.begin());
+  if (destination != GuidPrefix{}) destination_ = destination;
   return nullptr;
 }
 
@@ -249,7 +260,8 @@ const char* DatagramCheck::check_nack_frag(ByteReader body) {
   if (base == 0 || last > limits_.largest_sample_bytes / kSmallestFragment)
     return "NACK_FRAG of fragments that no sample has (9.4.2.8)";
   if (result_.request_count == CheckedDatagram::kMostRequests) return "more than 8 NACK_FRAG";
-  result_.requests[result_.request_count++] = {writer, sample.value, static_cast<std::uint32_t>(last)};
+  result_.requests[result_.request_count++] = {destination_, writer, sample.value,
+                                               static_cast<std::uint32_t>(last)};
   return nullptr;
 }
 

@@ -32,6 +32,7 @@ struct NumberedWriter {
 
 // Fragments of a sample that a NACK_FRAG asks for.
 struct FragmentRequest {
+  GuidPrefix destination{};  // of the writer; all zeros: none is named
   EntityId writer{};
   std::uint32_t number = 0;  // of the sample
   std::uint32_t last = 0;    // fragment

@@ -88,6 +88,11 @@ std::map<GuidPrefix, DatagramGuard::Announcement> DatagramGuard::announcements(c
   return lately;
 }
 
+void DatagramGuard::set_participant(const GuidPrefix& own) {
+  const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
+  replies_.set_participant(own);
+}
+
 std::size_t DatagramGuard::participants_heard(const Now& now) {
   const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
   return participants_.heard_lately(now.steady_ns);

@@ -46,6 +46,9 @@ class DatagramGuard {
                         std::uint32_t port, const Now& now);
   void refuse(const SenderAddress& sender, const char* rule) { refusals_.note(sender, rule); }
 
+  // own: of the participant that receives; all zeros: not known yet (reply_check.hpp).
+  void set_participant(const GuidPrefix& own);
+
   // Participants that have announced themselves to this one within the last seconds.
   std::size_t participants_heard(const Now& now);
 

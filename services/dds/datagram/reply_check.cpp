@@ -66,6 +66,8 @@ std::uint32_t ReplyCheck::acknowledged(const GuidPrefix& participant, const Enti
 const char* ReplyCheck::fault_of(const CheckedDatagram& received) const {
   for (std::size_t i = 0; i < received.request_count; ++i) {
     const FragmentRequest& request = received.requests[i];
+    const bool names_other = request.destination != GuidPrefix{} && request.destination != own_;
+    if (names_other && own_ != GuidPrefix{}) continue;
     const auto samples = fragments_.find(request.writer);
     if (samples == fragments_.end()) return "NACK_FRAG of a writer without fragments (8.3.8.12)";
     const auto sample = samples->second.find(request.number);

@@ -20,6 +20,10 @@ class ReplyCheck {
   // gaps_ahead: of writers of the middleware itself; kGapsAhead unless discovery servers skip announcements.
   explicit ReplyCheck(std::uint32_t gaps_ahead);
 
+  // own: whose requests are checked, and those that name no participant. The middleware ignores requests to others, such as
+  // one that had this port before. All zeros, as at the start: all are checked.
+  void set_participant(const GuidPrefix& own) { own_ = own; }
+
   // Whether a message that is sent holds acknowledgements or fragments.
   static bool concerns_replies(const std::uint8_t* message, std::size_t size);
   // Notes them. Ignores what it cannot read.
@@ -41,6 +45,7 @@ class ReplyCheck {
   std::uint32_t acknowledged(const GuidPrefix& participant, const EntityId& writer) const;
 
   const std::uint32_t gaps_ahead_;
+  GuidPrefix own_{};
   // By hash: of two writers in one place the one is known that was acknowledged last.
   std::vector<Acknowledged> acknowledged_;
   std::map<EntityId, std::map<std::uint32_t, std::uint32_t>>

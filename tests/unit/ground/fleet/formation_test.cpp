@@ -52,6 +52,21 @@ TEST(Formation, LeavesRoomForOneThatBeginsLater) {
   EXPECT_NE(refusal(vehicles, {3, 0, -1}, 0.5, 0.6).find("too near"), std::string::npos);
 }
 
+// The later an answer may come, the fewer moves have to be taken back.
+TEST(Formation, AllowsTheLongestSkewThatKeepsTheWaysApart) {
+  const std::vector<FormationVehicle> vehicles = {flying("a", {0, 0, -1}), flying("b", {0.5, 0, -1})};
+  const auto longest = [&](const Vector3d& centre) {
+    return longest_skew_s(vehicles, formation_targets(vehicles, centre), {0.5, {}, 0.2}, kSafety, 5.0);
+  };
+  EXPECT_EQ(longest({0.25, 3, -1}), 5.0) << "beside each other";
+  // Behind each other, 0.2 m are left, which one flies in 0.4 s at its peak speed.
+  const double behind_s = longest({3, 0, -1});
+  EXPECT_GT(behind_s, 0.4 - 0.01) << "the step of the search";
+  EXPECT_LT(behind_s, 0.41);
+  EXPECT_EQ(refusal(vehicles, {3, 0, -1}, 0.5, behind_s), "");
+  EXPECT_NE(refusal(vehicles, {3, 0, -1}, 0.5, behind_s + 0.02), "");
+}
+
 // The vehicles' limits decide how long the move takes, and so how far one is ahead of another that begins later.
 TEST(Formation, MovesWithinTheLimitsOfTheVehicles) {
   const std::vector<FormationVehicle> vehicles = {flying("a", {0, 0, -1}), flying("b", {0.5, 0, -1})};

@@ -1,5 +1,5 @@
-// A separate process for the tests: joins a domain as "peer", publishes its status and actuator commands of
-// the highest strength until its standard input is closed, then leaves.
+// A separate process for the tests: joins a domain as "peer", receives requests, publishes its status and actuator
+// commands of the highest strength until its standard input is closed, then leaves.
 //   dds_peer DOMAIN udp|shm
 // With "isolated" as DOMAIN, it enters a new network namespace, checks that two nodes discover each other
 // there, and exits with 0, or with 77 if it lacks the permission.
@@ -62,6 +62,7 @@ int run_peer(int domain, Transport transport) {
   settings.domain = domain;
   settings.transport = transport;
   Node node(settings);
+  const Subscription requests = node.subscribe<msg::Command>(topics::kCommand, [](const msg::Command&) {});
   auto state = node.publish(topics::kControlStatus);
   state.publish(example<msg::ControlStatus>());
   auto commands = node.publish(topics::kActuatorCommand, kStrongest);

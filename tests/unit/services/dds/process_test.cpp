@@ -3,8 +3,11 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <iterator>
 #include <memory>
 #include <stdexcept>
@@ -203,6 +206,40 @@ TEST_F(Peers, AreReceivedAgainAfterASuspension) {
 
   EXPECT_TRUE(received.wait_for_count(before + 1500))
       << received.size() - before << " received after it resumed";
+}
+
+// GIVEN requests that a peer does not acknowledge, because it is stopped WHEN their publishers are destroyed THEN they end,
+// whatever heartbeats Fast DDS sends for them meanwhile. Many, since what it guards against is a matter of microseconds.
+TEST_F(Peers, PublishersOfUnacknowledgedRequestsEnd) {
+  constexpr int kNodes = 8;
+  constexpr int kPublishers = 40;  // of each
+  for (int round = 0; round < 5; ++round) {
+    const PeerProcess peer = start();
+    std::vector<std::unique_ptr<Node>> nodes;
+    std::vector<std::vector<Publisher<msg::Command>>> publishers(kNodes);
+    for (auto& of_node : publishers) {
+      nodes.push_back(std::make_unique<Node>(settings()));
+      for (int i = 0; i < kPublishers; ++i) of_node.push_back(nodes.back()->publish(topics::kCommand));
+    }
+    for (const auto& of_node : publishers) {
+      for (const auto& publisher : of_node) ASSERT_TRUE(eventually([&] { return publisher.matched() == 1; }));
+    }
+    peer.stop();
+    std::vector<std::future<void>> ended;
+    for (auto& of_node : publishers) {
+      ended.push_back(std::async(std::launch::async, [&of_node] {
+        for (auto& publisher : of_node) {
+          for (int i = 0; i < kMaxUnacknowledgedRequests; ++i) publisher.publish(example<msg::Command>());
+        }
+        of_node.clear();
+      }));
+    }
+    for (const std::future<void>& end : ended) {
+      if (end.wait_for(swiftlet::tests::kStuck) == std::future_status::ready) continue;
+      std::fputs("the publishers of a node do not end\n", stderr);
+      std::_Exit(EXIT_FAILURE);  // nor would the node
+    }
+  }
 }
 
 TEST_F(Peers, UdpTransportMapsNoSharedMemory) {

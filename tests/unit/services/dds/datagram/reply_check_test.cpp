@@ -45,6 +45,29 @@ TEST(ReplyCheck, AdmitsRequestsOfFragmentsThatWereSent) {
   EXPECT_NE(fault_of(replies, request(1, 1, 1, {0, 0, 7, 3})), "") << "another writer";
 }
 
+// A reader asks the port of a process that has ended, or its own host's at an address that stands for every host, and who
+// receives there now has sent no fragments. Fast DDS ignores what names another participant.
+TEST(ReplyCheck, AdmitsRequestsToOtherParticipants) {
+  const auto request_to = [](const GuidPrefix& destination, const GuidPrefix& then = {}) {
+    ByteWriter out;
+    out.bytes(kUserReader).bytes(kUserWriter).number(0, 1).u32(1).u32(1).zeros(4).u32(1);
+    return RtpsMessage(kBob)
+        .add(0x0e, 0, ByteWriter().bytes(destination))
+        .add(0x0e, 0, ByteWriter().bytes(then))
+        .add(0x12, 0, out);
+  };
+  const GuidPrefix carol{0xca, 0x01};
+  ReplyCheck replies(kGapsAhead);
+  EXPECT_NE(fault_of(replies, request_to(carol)), "") << "it may be the own one, which is not known yet";
+  replies.set_participant(kAlice);
+  EXPECT_EQ(fault_of(replies, request_to(carol)), "");
+  EXPECT_EQ(fault_of(replies, request_to(kAlice, carol)), "");
+  EXPECT_NE(fault_of(replies, request_to(kAlice)), "");
+  EXPECT_NE(fault_of(replies, request_to(carol, kAlice)), "");
+  EXPECT_NE(fault_of(replies, request_to({})), "") << "it names nobody";
+  EXPECT_NE(fault_of(replies, request(1, 1)), "") << "nor does it";
+}
+
 TEST(ReplyCheck, RemembersTheFragmentsOfTheNewestSamples) {
   ReplyCheck replies(kGapsAhead);
   for (std::uint32_t number = 1; number <= 1000; ++number) {
