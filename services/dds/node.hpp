@@ -30,8 +30,9 @@ struct NodeSettings {
   Transport transport = Transport::kUdp;
   bool localhost_only = false;  // loopback interface only, without multicast
   NetworkSettings network{};    // not with localhost_only
-  // With a discovery server: it tells of all processes of the domain. False: only of those that exchange topics with this
-  // one, which keeps the traffic of a fleet in proportion to its vehicles; on_peer() and topics_seen() miss the others.
+  // This process hears of all others of the domain. False: not of those that neither serve a vehicle of its own nor hear of
+  // all, and with a discovery server only of those that exchange topics with it, which keeps the traffic of a fleet in
+  // proportion to its vehicles; on_peer() and topics_seen() miss the others.
   bool hears_of_all = true;
   // File with the keys of the network (io/network_key.hpp): only datagrams of processes with one of them are
   // received. Empty: from everyone.

@@ -40,6 +40,7 @@ Announcement announcement_of(const NodeSettings& settings, const std::string& ve
   announcement.pid = ::getpid();
   announcement.source_of = settings.source_of;
   announcement.since_ns = std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+  announcement.hears_of_own_vehicles = !settings.hears_of_all && settings.network.discovery_servers.empty();
   return announcement;
 }
 
@@ -81,6 +82,7 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
   if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
   if (!settings.security.empty()) refused_peers_.emplace();
   joined_ns_ = Now::read().steady_ns;
+  guard_->ignore_apart_from(to_user_data(announcement_));
   if (settings.network.discovery_servers.empty()) introduced_at_ = Clock::now();
   session_ = std::make_unique<ParticipantSession>(settings, announcement_, guard_, this);
   periodic_task_.emplace(kCheckPeriod, [this] {
@@ -118,6 +120,7 @@ void Participant::Impl::serve(const std::string& vehicle) {
     }
     announcement_.vehicles += (announcement_.vehicles.empty() ? "" : ",") + vehicle;
   }
+  guard_->ignore_apart_from(to_user_data(announcement_));
   announcement_changed_ = true;
   announce_when_due();
 }
@@ -134,6 +137,7 @@ void Participant::Impl::stop_serving(const std::string& vehicle) {
       if (!is_own(peer)) rediscovery_.gone(guid.guidPrefix);
     }
   }
+  guard_->ignore_apart_from(to_user_data(announcement_));
   announcement_changed_ = true;
 }
 

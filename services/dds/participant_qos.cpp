@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "swiftlet/services/dds/datagram/guarded_transport.hpp"
 #include "swiftlet/services/dds/dds_profile.hpp"
@@ -25,7 +26,8 @@ constexpr std::uint32_t kSegmentBytes = 1 << 20;  // of shared memory: fits seve
 }  // namespace
 
 dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uint32_t announced_ports,
-                                          const std::shared_ptr<DatagramGuard>& guard) {
+                                          const std::shared_ptr<DatagramGuard>& guard,
+                                          std::shared_ptr<const std::atomic<bool>> listening) {
   const std::string& file = settings.network.dds_profile;
   const DdsProfile profile = file.empty() ? DdsProfile{} : load_dds_profile(file);
   dds::DomainParticipantQos qos = profile.participant;
@@ -77,7 +79,7 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
   qos.transport().use_builtin_transports = false;
   const bool loses_nothing = settings.localhost_only;
   qos.transport().user_transports.push_back(
-      repeat_discovery(guarded(udp, guard), settings.domain, guard, loses_nothing));
+      repeat_discovery(guarded(udp, guard), settings.domain, guard, std::move(listening), loses_nothing));
 
   if (settings.transport == Transport::kSharedMemory) {
     SharedMemTransportDescriptor shared_memory;

@@ -1,6 +1,8 @@
 #include "swiftlet/services/dds/participant_session.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -30,11 +32,14 @@ dds::DomainParticipant* create_participant(const NodeSettings& settings, const A
                                            const std::shared_ptr<DatagramGuard>& guard,
                                            dds::DomainParticipantListener* listener,
                                            std::uint32_t announced) {
-  dds::DomainParticipantQos qos = participant_qos(settings, announced, guard);
+  const auto listening = std::make_shared<std::atomic<bool>>(false);
+  dds::DomainParticipantQos qos = participant_qos(settings, announced, guard, listening);
   qos.user_data().data_vec(to_user_data(announcement));
-  return dds::DomainParticipantFactory::get_instance()->create_participant(
+  auto* const participant = dds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(settings.domain), qos, listener,
       dds::StatusMask::requested_incompatible_qos() << dds::StatusMask::offered_incompatible_qos());
+  *listening = true;
+  return participant;
 }
 
 // Empty: all addresses of this host.
@@ -55,6 +60,7 @@ dds::DomainParticipant* join(const NodeSettings& settings, const Announcement& a
   const DiscoveryPorts ports = discovery_ports(settings.domain);
   const std::set<std::uint32_t> before = own_discovery_ports(settings.domain);
   const std::uint32_t expected = free_discovery_port(settings.domain, listening_address(settings));
+  guard->expect_participants(expected + 1, Now::read());  // as ports are taken in their order
   const bool announces_to_ports = settings.localhost_only || !settings.network.peers.empty();
   for (const std::uint32_t announced : {announced_ports(ports, expected), ports.count}) {
     dds::DomainParticipant* const participant =

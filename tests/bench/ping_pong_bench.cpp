@@ -111,7 +111,8 @@ class BarePair final : private dds::DataReaderListener {
     const int received_deadline_ms = options.no_deadline ? 0 : received.deadline_ms;
     participant_ = require_created(dds::DomainParticipantFactory::get_instance()->create_participant(
                                        static_cast<std::uint32_t>(domain),
-                                       comms::participant_qos(settings, kProcesses, guard(settings))),
+                                       comms::participant_qos(settings, kProcesses, guard(settings),
+                                                              std::make_shared<std::atomic<bool>>(true))),
                                    "participant");
     auto* const publisher =
         require_created(participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT), "publisher");

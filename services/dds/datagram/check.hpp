@@ -50,6 +50,8 @@ struct CheckedDatagram {
   // Of its lease and built-in endpoints in an announcement; 0 for others, and if another announces it.
   std::uint64_t announcement_digest = 0;
   Announced announced;  // in that announcement; in the datagram that was checked
+  // An announcement of a participant that this process ignores.
+  bool is_ignored = false;
 
   static constexpr std::size_t kMostWriters = 32;
   std::array<NumberedWriter, kMostWriters> writers{};

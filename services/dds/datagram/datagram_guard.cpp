@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <string_view>
+
+#include "swiftlet/services/dds/discovery/announcement.hpp"
 
 namespace swiftlet::comms {
 namespace {
 
 constexpr std::int64_t kLately_ns = 1'000'000'000;  // half the lease of a process
+constexpr std::int64_t kExpected_ns = 20'000'000'000;
 
 }  // namespace
 
@@ -42,8 +46,7 @@ CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size,
   return checked;
 }
 
-const char* DatagramGuard::fault_of(const CheckedDatagram& checked, const SenderAddress& sender,
-                                    const Now& now) {
+const char* DatagramGuard::fault_of(CheckedDatagram& checked, const SenderAddress& sender, const Now& now) {
   const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
   const std::size_t changeable = opener_ ? 0 : checked.writer_count;  // nobody changes what is sealed
   for (std::size_t i = 0; i < changeable; ++i) {
@@ -53,10 +56,24 @@ const char* DatagramGuard::fault_of(const CheckedDatagram& checked, const Sender
   }
   if (const char* const fault = replies_.fault_of(checked)) return fault;
   if (!checked.about_participant) return nullptr;
-  const char* const fault =
-      participants_.admit(checked.source, checked.announcement_digest, sender, now.steady_ns);
-  if (fault == nullptr && limits_.security) note_announcement(checked, now);
-  return fault;
+  const std::uint64_t digest = checked.announcement_digest;
+  const ParticipantNews news{digest, checked.announced.discovery_port,
+                             digest != 0 && concerns_us(checked.announced)};
+  const Admission admission = participants_.admit(checked.source, news, sender, now.steady_ns);
+  if (admission.fault != nullptr) return admission.fault;
+  checked.is_ignored = digest != 0 && !admission.has_joined;
+  if (limits_.security && !checked.is_ignored) note_announcement(checked, now);
+  return nullptr;
+}
+
+bool DatagramGuard::concerns_us(const Announced& said) const {
+  if (own_user_data_.empty() || said.user_data == nullptr) return true;
+  return !are_apart(own_user_data_, {reinterpret_cast<const char*>(said.user_data), said.user_data_size});
+}
+
+void DatagramGuard::ignore_apart_from(const std::vector<std::uint8_t>& own_user_data) {
+  const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
+  own_user_data_.assign(own_user_data.begin(), own_user_data.end());
 }
 
 void DatagramGuard::note_announcement(const CheckedDatagram& checked, const Now& now) {
@@ -95,7 +112,19 @@ void DatagramGuard::set_participant(const GuidPrefix& own) {
 
 std::size_t DatagramGuard::participants_heard(const Now& now) {
   const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
-  return participants_.heard_lately(now.steady_ns);
+  const std::size_t heard = participants_.heard_lately(now.steady_ns);
+  return now.steady_ns < expected_until_ns_ ? std::max(heard, expected_) : heard;
+}
+
+void DatagramGuard::expect_participants(std::size_t count, const Now& now) {
+  const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
+  expected_ = count;
+  expected_until_ns_ = now.steady_ns + kExpected_ns;
+}
+
+std::vector<Joined> DatagramGuard::participants_joined(const Now& now) {
+  const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
+  return participants_.joined(now.steady_ns);
 }
 
 void DatagramGuard::note_sent(const std::uint8_t* data, std::size_t size) {

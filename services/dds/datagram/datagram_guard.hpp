@@ -49,8 +49,15 @@ class DatagramGuard {
   // own: of the participant that receives; all zeros: not known yet (reply_check.hpp).
   void set_participant(const GuidPrefix& own);
 
-  // Participants that have announced themselves to this one within the last seconds.
+  // Has announcements ignored that are_apart() from this one, its user data, unless their participant has joined before.
+  void ignore_apart_from(const std::vector<std::uint8_t>& own_user_data);
+
+  // There are so many participants at least: until all of them have been heard, participants_heard() returns no less.
+  void expect_participants(std::size_t count, const Now& now);
+
+  // Participants that have announced themselves to this one within the last seconds, and those of them that are not ignored.
   std::size_t participants_heard(const Now& now);
+  std::vector<Joined> participants_joined(const Now& now);
 
   // With security: of the participants that have announced themselves within the last second, and not said goodbye.
   std::map<GuidPrefix, Announcement> announcements(const Now& now);
@@ -65,7 +72,9 @@ class DatagramGuard {
   RefusalLog& refusals() { return refusals_; }
 
  private:
-  const char* fault_of(const CheckedDatagram& checked, const SenderAddress& sender, const Now& now);
+  // Sets is_ignored.
+  const char* fault_of(CheckedDatagram& checked, const SenderAddress& sender, const Now& now);
+  bool concerns_us(const Announced& said) const;
 
   void note_announcement(const CheckedDatagram& checked, const Now& now);
 
@@ -78,6 +87,9 @@ class DatagramGuard {
   SequenceWindow sequences_;
   ReplyCheck replies_;
   ParticipantAdmission participants_;
+  std::string own_user_data_;  // empty: nobody is ignored
+  std::size_t expected_ = 0;
+  std::int64_t expected_until_ns_ = 0;
   std::map<GuidPrefix, Announcement> announcements_;  // the longest silent one is replaced
 };
 

@@ -120,7 +120,7 @@ void GuardedTransport::receive(transport::TransportReceiverInterface* next, cons
                                const rtps::Locator_t& remote) {
   const SenderAddress sender = address_of(remote);
   const CheckedDatagram checked = guard_->admit(data, size, sender, local.port, Now::read());
-  if (checked.fault != nullptr) return;
+  if (checked.fault != nullptr || checked.is_ignored) return;
   try {
     if (checked.hidden_count > 0 || checked.fragment) {
       std::vector<rtps::octet> copy(checked.length + kLongestFragment);

@@ -10,7 +10,9 @@ namespace {
 constexpr std::uint16_t kSentinel = 0x0001;
 constexpr std::uint16_t kKeyHash = 0x0070;
 constexpr std::uint16_t kUserData = 0x002c;
+constexpr std::uint16_t kDiscoveryLocator = 0x0032;
 constexpr std::uint16_t kEntityName = 0x0062;
+constexpr std::uint32_t kUdpV4 = 1;       // kind of a locator
 constexpr int kMostParameters = 256;      // of a list
 constexpr std::uint32_t kMostTokens = 8;  // of a handshake
 // A shorter lease of a participant would end between two of its announcements.
@@ -257,6 +259,8 @@ const char* check_discovery_payload(ByteReader payload, const ListContext& conte
     } else if (parameter.id == kUserData) {
       announced.user_data_size = value.u32();
       announced.user_data = value.take(announced.user_data_size);
+    } else if (parameter.id == kDiscoveryLocator && value.u32() == kUdpV4) {
+      announced.discovery_port = value.u32();
     }
     if (parameter.rule->shape != Shape::kHidden) return nullptr;
     if (hidden.count == HiddenParameters::kMost)

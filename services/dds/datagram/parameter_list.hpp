@@ -21,12 +21,13 @@ struct HiddenParameters {
   std::size_t count = 0;
 };
 
-// What a participant announces itself as: its name and its user data; null if it announces none.
+// What a participant announces about itself; null if it does not announce it.
 struct Announced {
   const std::uint8_t* name = nullptr;
   std::size_t name_size = 0;  // with the terminating 0
   const std::uint8_t* user_data = nullptr;
   std::size_t user_data_size = 0;
+  std::uint32_t discovery_port = 0;  // where it receives discovery by UDP; 0: it does not say
 };
 
 // Of the DATA that holds the list.

@@ -20,20 +20,39 @@ constexpr std::size_t kMostEndpoints = 8192;
 // Of a host: an IPv4 or IPv6 address as in a locator.
 using SenderAddress = std::array<std::uint8_t, 16>;
 
+// What the last announcement of a participant said.
+struct ParticipantNews {
+  std::uint64_t digest = 0;  // of the announcement; 0 for other datagrams about the participant
+  std::uint32_t discovery_port = 0;
+  bool concerns_us = true;  // else it is ignored, unless it has joined before
+};
+
+struct Admission {
+  const char* fault = nullptr;  // the broken rule, a string literal
+  bool has_joined = false;      // it has not been ignored once
+};
+
+// A participant that has joined.
+struct Joined {
+  std::uint32_t discovery_port = 0;
+  std::int64_t since_ns = 0;  // of a monotonic clock
+};
+
 // Each host may announce 256 participants at once, and 4 more each second; all hosts together 512, and 16. Allocates
 // only when constructed. Not thread-safe.
 class ParticipantAdmission {
  public:
   ParticipantAdmission();
 
-  // Returns the broken rule, a string literal; nullptr if the participant may join, or announces what it did before. A
-  // different announcement is accepted when it arrives three times in a row. digest: of the announcement; 0 for
-  // other datagrams about it. now_ns: of a monotonic clock.
-  const char* admit(const GuidPrefix& participant, std::uint64_t digest, const SenderAddress& host,
-                    std::int64_t now_ns);
+  // Without fault if the participant may join, or announces what it did before. A different announcement is accepted when it
+  // arrives three times in a row. now_ns: of a monotonic clock.
+  Admission admit(const GuidPrefix& participant, const ParticipantNews& news, const SenderAddress& host,
+                  std::int64_t now_ns);
 
   // Participants that have announced themselves within the last seconds.
   std::size_t heard_lately(std::int64_t now_ns) const;
+  // Those of them that have joined.
+  std::vector<Joined> joined(std::int64_t now_ns) const;
 
  private:
   struct Known {
@@ -42,7 +61,10 @@ class ParticipantAdmission {
     std::uint64_t digest = 0;
     std::uint64_t other_digest = 0;  // of the last announcement, if it differed; else 0
     int repeated = 0;                // how often that was repeated
+    std::uint32_t discovery_port = 0;
+    std::int64_t joined_ns = 0;  // 0: it is ignored
 
+    bool is_heard(std::int64_t now_ns) const;
     bool agrees(std::uint64_t announced);
   };
   struct Host {

@@ -21,8 +21,11 @@ class TokenBucket {
     tokens_ -= 1.0;
     return true;
   }
-  // Of the tokens since the last take().
-  void set_rate(double per_second) { per_second_ = per_second; }
+  // The rate of the tokens since the last take().
+  void set(double size, double per_second) {
+    size_ = size;
+    per_second_ = per_second;
+  }
 
  private:
   double tokens_ = 0.0;

@@ -9,13 +9,21 @@
 namespace swiftlet::comms {
 namespace {
 
-std::string value_of(const std::string& text, const std::string& key) {
-  const std::string begin_of_entry = ";" + key + "=";
-  const std::string entries = ";" + text;
-  const auto found = entries.find(begin_of_entry);
-  if (found == std::string::npos) return {};
-  const auto begin = found + begin_of_entry.size();
-  return entries.substr(begin, entries.find(';', begin) - begin);
+constexpr std::string_view kOwnVehicles = "own";  // value of the key "hears"
+
+// Takes what is before the separator off the text.
+std::string_view take_until(char separator, std::string_view& text) {
+  const std::string_view part = text.substr(0, text.find(separator));
+  text.remove_prefix(std::min(text.size(), part.size() + 1));
+  return part;
+}
+
+std::string_view value_of(std::string_view text, std::string_view key) {
+  while (!text.empty()) {
+    std::string_view value = take_until(';', text);
+    if (take_until('=', value) == key) return value;
+  }
+  return {};
 }
 
 }  // namespace
@@ -23,6 +31,7 @@ std::string value_of(const std::string& text, const std::string& key) {
 std::vector<std::uint8_t> to_user_data(const Announcement& announcement) {
   std::string text = "enclave=/;vehicle=" + announcement.vehicles + ";host=" + announcement.host +
                      ";process=" + std::to_string(announcement.pid) + ";";
+  if (announcement.hears_of_own_vehicles) text += "hears=" + std::string(kOwnVehicles) + ";";
   if (!announcement.source_of.empty()) {
     text += "source_of=" + announcement.source_of + ";since=" + std::to_string(announcement.since_ns) +
             ";established=" + (announcement.is_established ? "1" : "0") + ";";
@@ -35,11 +44,27 @@ Announcement from_user_data(const std::vector<std::uint8_t>& user_data) {
   Announcement announcement;
   announcement.vehicles = value_of(text, "vehicle");
   announcement.host = value_of(text, "host");
-  announcement.pid = std::atoi(value_of(text, "process").c_str());
+  announcement.pid = std::atoi(std::string(value_of(text, "process")).c_str());
   announcement.source_of = value_of(text, "source_of");
-  announcement.since_ns = std::strtoll(value_of(text, "since").c_str(), nullptr, 10);
+  announcement.since_ns = std::strtoll(std::string(value_of(text, "since")).c_str(), nullptr, 10);
   announcement.is_established = value_of(text, "established") == "1";
+  announcement.hears_of_own_vehicles = value_of(text, "hears") == kOwnVehicles;
   return announcement;
+}
+
+bool are_apart(std::string_view own, std::string_view other) {
+  for (const std::string_view text : {own, other}) {
+    if (value_of(text, "hears") != kOwnVehicles || value_of(text, "vehicle").empty()) return false;
+  }
+  std::string_view vehicles = value_of(own, "vehicle");
+  while (!vehicles.empty()) {
+    const std::string_view vehicle = take_until(',', vehicles);
+    std::string_view others = value_of(other, "vehicle");
+    while (!others.empty()) {
+      if (take_until(',', others) == vehicle) return false;
+    }
+  }
+  return true;
 }
 
 bool lists(const std::string& names, const std::string& name) {

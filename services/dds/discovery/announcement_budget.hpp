@@ -17,20 +17,26 @@ constexpr int kAnnouncementCopies = 4;
 
 // Announcements that a process takes in from all others together, per second: these processes share the rate.
 constexpr double kHeardAnnouncements = 300.0;
-// Announcements of a process per second, however many others there are: four within kLivelinessLease.
+// In a domain of many processes, of those that go to anyone, most of whom need not know of each other; and so many that all
+// processes together take in, which may run on one host.
+constexpr double kHeardByAnyone = 100.0;
+constexpr double kHeardByAll = 10'000.0;
+// Announcements per second to a process that is known, however many others there are: four within kLivelinessLease.
 constexpr double kLeastAnnouncements = 2.0;
 
-// Of one process. Not thread-safe.
+// Of one process, for one destination. Not thread-safe.
 class AnnouncementBudget {
  public:
-  // Returns how many copies of an announcement are sent now; 0 if the others share out the rate, and have this one
-  // already. digest: of what it says; one that says something new is always sent, in all copies. processes: in the domain.
-  // now_ns: of a monotonic clock.
-  int copies(std::uint64_t digest, std::size_t processes, std::int64_t now_ns);
+  // Returns how many copies of an announcement are sent now; 0 if the others share out the rate, and the destination has
+  // this one already. digest: of what it says; one that says something new is always sent. processes: in the domain.
+  // joined_ns: when the latest process at the destination was discovered, which is always answered; 0: none is known there,
+  // or the destination is a multicast address. now_ns: of the same monotonic clock.
+  int copies(std::uint64_t digest, std::size_t processes, std::int64_t joined_ns, std::int64_t now_ns);
 
  private:
   TokenBucket tokens_{kBurst, 0.0};
   std::uint64_t last_digest_ = 0;
+  std::int64_t last_ns_ = 0;  // 0: none was sent
 
   static constexpr double kBurst = 20.0;  // the first announcements of a process
 };

@@ -1,6 +1,7 @@
 #include "swiftlet/services/dds/discovery/repeated_discovery.hpp"
 
 #include <algorithm>
+#include <map>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -26,6 +27,8 @@ bool is_discovery_port(int domain, std::uint32_t port) {
 namespace {
 
 constexpr std::size_t kBytesBeforeIds = 4;  // of DATA: flags, and the distance to its inline QoS
+// More than a domain has: forged announcements name others.
+constexpr std::size_t kMostDestinations = 4 * kMostParticipants;
 
 // FNV-1a, 64 bits.
 constexpr std::uint64_t kFnvOffset = 0xcbf29ce484222325U;
@@ -78,6 +81,7 @@ namespace transport = eprosima::fastdds::rtps;
 struct Repetition {
   int domain;
   std::shared_ptr<DatagramGuard> guard;
+  std::shared_ptr<const std::atomic<bool>> listening;
   bool loses_nothing;
 };
 
@@ -88,35 +92,60 @@ class RepeatingChannel final : public OutputChannel {
       : OutputChannel(std::move(below)), repetition_(repetition) {}
 
  private:
+  struct Receiver {
+    rtps::Locator_t locator;
+    int copies;
+  };
+
   bool send_datagram(const OutgoingDatagram& datagram, const Destination& to) override {
     if (*to.begin == *to.end || !is_discovery_port(repetition_.domain, (**to.begin).port))
       return comms::send(below(), datagram, to);
-    std::vector<rtps::Locator_t> receivers;
-    for (; *to.begin != *to.end; ++*to.begin) receivers.push_back(**to.begin);
+    std::vector<Receiver> receivers;
+    for (; *to.begin != *to.end; ++*to.begin) receivers.push_back({**to.begin, 0});
+    set_copies(datagram, receivers);
+    const int most = repetition_.loses_nothing ? 1 : std::max(kEndpointCopies, kAnnouncementCopies);
     bool sent = true;
-    for (int left = copies_of(datagram); left > 0; --left) {
-      rtps::Locators first(receivers.begin());
-      rtps::Locators last(receivers.end());
+    std::vector<rtps::Locator_t> due;
+    for (int copy = 0; copy < most; ++copy) {
+      due.clear();
+      for (const Receiver& receiver : receivers) {
+        if (receiver.copies > copy) due.push_back(receiver.locator);
+      }
+      if (due.empty()) break;
+      rtps::Locators first(due.begin());
+      rtps::Locators last(due.end());
       sent = comms::send(below(), datagram, {&first, &last, to.deadline}) && sent;
     }
     return sent;
   }
 
-  int copies_of(const OutgoingDatagram& datagram) {
+  void set_copies(const OutgoingDatagram& datagram, std::vector<Receiver>& receivers) {
     std::vector<rtps::octet> bytes;
     datagram.copy_to(bytes);
     const auto digest = announcement_digest(bytes.data(), bytes.size());
     const Now now = Now::read();
     const std::size_t processes = repetition_.guard->participants_heard(now);
-    const std::lock_guard<std::mutex> lock(budget_mutex_);
-    const int copies =
-        digest ? budget_.copies(*digest, processes, now.steady_ns) : endpoint_copies(processes);
-    return repetition_.loses_nothing ? std::min(copies, 1) : copies;
+    if (!digest) {
+      for (Receiver& receiver : receivers) receiver.copies = endpoint_copies(processes);
+      return;
+    }
+    if (!*repetition_.listening) return;
+    std::map<std::uint32_t, std::int64_t>
+        joined_ns;  // by port: Fast DDS sends to own hosts by other addresses
+    for (const Joined& joined : repetition_.guard->participants_joined(now))
+      joined_ns[joined.discovery_port] = std::max(joined_ns[joined.discovery_port], joined.since_ns);
+    const std::lock_guard<std::mutex> lock(budgets_mutex_);
+    if (budgets_.size() > kMostDestinations) budgets_.clear();
+    for (Receiver& receiver : receivers) {
+      const auto joined = joined_ns.find(receiver.locator.port);
+      receiver.copies = budgets_[receiver.locator].copies(
+          *digest, processes, joined == joined_ns.end() ? 0 : joined->second, now.steady_ns);
+    }
   }
 
   const Repetition repetition_;
-  std::mutex budget_mutex_;
-  AnnouncementBudget budget_;
+  std::mutex budgets_mutex_;
+  std::map<rtps::Locator_t, AnnouncementBudget> budgets_;
 };
 
 class RepeatingTransport final : public ChainedTransport {
@@ -159,9 +188,10 @@ struct RepeatingDescriptor final : transport::ChainingTransportDescriptor {
 
 std::shared_ptr<transport::TransportDescriptorInterface> repeat_discovery(
     std::shared_ptr<transport::TransportDescriptorInterface> below, int domain,
-    std::shared_ptr<DatagramGuard> guard, bool loses_nothing) {
-  return std::make_shared<RepeatingDescriptor>(std::move(below),
-                                               Repetition{domain, std::move(guard), loses_nothing});
+    std::shared_ptr<DatagramGuard> guard, std::shared_ptr<const std::atomic<bool>> listening,
+    bool loses_nothing) {
+  return std::make_shared<RepeatingDescriptor>(
+      std::move(below), Repetition{domain, std::move(guard), std::move(listening), loses_nothing});
 }
 
 }  // namespace swiftlet::comms

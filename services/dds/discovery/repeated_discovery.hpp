@@ -3,6 +3,7 @@
 // another one hears nothing else is taken for dead after four lost announcements. Receivers ignore the copies.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -21,9 +22,11 @@ bool is_discovery_port(int domain, std::uint32_t port);
 std::optional<std::uint64_t> announcement_digest(const std::uint8_t* message, std::size_t size);
 
 // Descriptor of the transport below, with as many copies as AnnouncementBudget has for the processes that `guard` has heard;
-// one at most if it loses nothing.
+// one at most if it loses nothing. No announcement is sent before `listening` is true: Fast DDS begins to announce a
+// participant before it takes in what the others answer.
 std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> repeat_discovery(
     std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> below, int domain,
-    std::shared_ptr<DatagramGuard> guard, bool loses_nothing);
+    std::shared_ptr<DatagramGuard> guard, std::shared_ptr<const std::atomic<bool>> listening,
+    bool loses_nothing);
 
 }  // namespace swiftlet::comms

@@ -71,6 +71,24 @@ SWIFTLET_TOPIC_OF(Trajectory)
 SWIFTLET_TOPIC_OF(CommandAck)
 #undef SWIFTLET_TOPIC_OF
 
+TEST(Participant, IgnoresProcessesOfOtherVehiclesThatIgnoreIt) {
+  const DomainLock lock;
+  NodeSettings fleet = settings(lock, "plant");
+  fleet.hears_of_all = false;
+  const Participant plant(fleet, {"kl1"});
+  const Participant other_plant(fleet, {"kl2"});
+  const Participant tool(settings(lock, "tool"), {"kl1"});
+  ASSERT_TRUE(eventually([&] { return tool.processes_seen().size() == 2; }))
+      << "both have announced themselves";
+  fleet.name = "mocap";
+  const Participant motion_capture(fleet, {"kl1", "kl2"});
+  for (const Participant* const it : {&plant, &other_plant})
+    ASSERT_TRUE(eventually([&] { return it->processes_seen().size() == 2; })) << "tool and motion capture";
+  for (const Participant* const it : {&plant, &other_plant}) {
+    for (const ProcessIdentity& seen : it->processes_seen()) EXPECT_NE(seen.name, "plant");
+  }
+}
+
 TEST(Node, ACallbackThatThrowsEndsItsSubscriptionAlone) {
   const DomainLock lock;
   Participant there(settings(lock, "there"), {"kl1", "kl2"});

@@ -230,6 +230,59 @@ TEST(DatagramGuard, KnowsWithSecurityWhatParticipantsSaidAboutThemselves) {
   EXPECT_EQ(guard.announcements(now(4 * kSecond_ns + 200)).count(kAlice), 0U) << "the longest silent one";
 }
 
+// Announced by `participant`, which serves the vehicles and receives discovery at the port.
+CheckedDatagram hear(DatagramGuard& guard, const GuidPrefix& participant, const std::string& user_data,
+                     std::int64_t now_ns) {
+  ByteWriter parameters = participant_parameters(participant);
+  parameters.parameter(0x0032, ByteWriter().u32(1).u32(7412).zeros(12).bytes(Bytes{10, 0, 0, 1}));
+  ByteWriter text;
+  text.u32(static_cast<std::uint32_t>(user_data.size()))
+      .bytes(user_data)
+      .zeros((4 - user_data.size() % 4) % 4);
+  const RtpsMessage message = announcement(participant, parameters.parameter(0x002c, text));
+  return guard.admit(message.bytes().data(), message.bytes().size(), kHost, 7411, {now_ns, now_ns});
+}
+
+Bytes user_data_of(const std::string& text) { return {text.begin(), text.end()}; }
+
+TEST(DatagramGuard, IgnoresParticipantsOfOtherVehicles) {
+  DatagramGuard guard;
+  const std::string of_kl2 = "vehicle=kl2;hears=own;";
+  guard.ignore_apart_from(user_data_of("vehicle=kl1;hears=own;"));
+  EXPECT_TRUE(hear(guard, kAlice, of_kl2, kSecond_ns).is_ignored);
+  EXPECT_FALSE(hear(guard, kBob, "vehicle=kl2;", kSecond_ns).is_ignored) << "a tool";
+  EXPECT_EQ(guard.refusals().total(), 0U);
+  const Now now{kSecond_ns, kSecond_ns};
+  EXPECT_EQ(guard.participants_heard(now), 2U);
+  const std::vector<Joined> joined = guard.participants_joined(now);
+  ASSERT_EQ(joined.size(), 1U);
+  EXPECT_EQ(joined.front().discovery_port, 7412U);
+  EXPECT_EQ(joined.front().since_ns, kSecond_ns);
+
+  guard.ignore_apart_from(user_data_of("vehicle=kl1,kl2;hears=own;"));
+  EXPECT_FALSE(hear(guard, kAlice, of_kl2, 2 * kSecond_ns).is_ignored) << "serves its vehicle now";
+  guard.ignore_apart_from(user_data_of("vehicle=kl1;hears=own;"));
+  EXPECT_FALSE(hear(guard, kAlice, of_kl2, 3 * kSecond_ns).is_ignored) << "the middleware knows it";
+}
+
+TEST(DatagramGuard, SaysNothingOfWhomItIgnores) {
+  DatagramLimits limits;
+  limits.security = true;
+  DatagramGuard guard({}, limits);
+  guard.ignore_apart_from(user_data_of("vehicle=kl1;hears=own;"));
+  EXPECT_TRUE(hear(guard, kAlice, "vehicle=kl2;hears=own;", kSecond_ns).is_ignored);
+  EXPECT_TRUE(guard.announcements({kSecond_ns, kSecond_ns}).empty());
+}
+
+TEST(DatagramGuard, CountsTheParticipantsThatItExpects) {
+  DatagramGuard guard;
+  const auto heard = [&](std::int64_t now_ns) { return guard.participants_heard({now_ns, now_ns}); };
+  guard.expect_participants(40, {kSecond_ns, kSecond_ns});
+  hear(guard, kAlice, "", kSecond_ns);
+  EXPECT_EQ(heard(kSecond_ns), 40U);
+  EXPECT_EQ(heard(60 * kSecond_ns), 0U) << "all silent for long";
+}
+
 TEST(DatagramGuard, BoundsTheParticipantsThatAHostAnnounces) {
   DatagramGuard guard;
   std::uint32_t admitted = 0;

@@ -12,7 +12,7 @@ Announcement plant(std::int64_t since_ns, bool is_established) {
 }
 
 TEST(Announcement, ArrivesUnchanged) {
-  const Announcement sent{"kl1,kl2", "lab1", 4711, "imu", 1'700'000'000'123'456'789, true};
+  const Announcement sent{"kl1,kl2", "lab1", 4711, "imu", 1'700'000'000'123'456'789, true, true};
   const Announcement received = from_user_data(to_user_data(sent));
   EXPECT_EQ(received.vehicles, sent.vehicles);
   EXPECT_EQ(received.host, sent.host);
@@ -20,6 +20,7 @@ TEST(Announcement, ArrivesUnchanged) {
   EXPECT_EQ(received.source_of, sent.source_of);
   EXPECT_EQ(received.since_ns, sent.since_ns);
   EXPECT_TRUE(received.is_established);
+  EXPECT_TRUE(received.hears_of_own_vehicles);
 }
 
 TEST(Announcement, OfAnotherProgramLeavesFieldsEmpty) {
@@ -30,6 +31,7 @@ TEST(Announcement, OfAnotherProgramLeavesFieldsEmpty) {
     EXPECT_EQ(received.pid, 0) << text;
     EXPECT_EQ(received.source_of, "") << text;
     EXPECT_FALSE(received.is_established) << text;
+    EXPECT_FALSE(received.hears_of_own_vehicles) << text;
   }
 }
 
@@ -38,6 +40,18 @@ TEST(Announcement, ListsWholeNames) {
   EXPECT_FALSE(lists("kl12", "kl1"));
   EXPECT_EQ(split_names("kl1,,kl2"), (std::vector<std::string>{"kl1", "kl2"}));
   EXPECT_TRUE(split_names("").empty());
+}
+
+TEST(Apart, AreProcessesOfDifferentVehiclesThatNeedNotKnowOfEachOther) {
+  const auto apart = [](const std::string& own, const std::string& other) {
+    return are_apart("enclave=/;" + own, "enclave=/;" + other) && are_apart(other, own);
+  };
+  EXPECT_TRUE(apart("vehicle=kl1;hears=own;", "vehicle=kl2;host=lab;hears=own;"));
+  EXPECT_TRUE(apart("vehicle=kl1,kl2;hears=own;", "vehicle=kl12;hears=own;"));
+  EXPECT_FALSE(apart("vehicle=kl1,kl2;hears=own;", "vehicle=kl3,kl2;hears=own;")) << "both serve kl2";
+  EXPECT_FALSE(apart("vehicle=kl1;hears=own;", "vehicle=kl2;")) << "a tool";
+  EXPECT_FALSE(apart("vehicle=kl1;hears=own;", "vehicle=;hears=own;")) << "of no vehicle yet";
+  EXPECT_FALSE(apart("vehicle=kl1;hears=own;", "")) << "a program of others";
 }
 
 TEST(SourceOrder, ANewOneYieldsToAnEstablishedOne) {
