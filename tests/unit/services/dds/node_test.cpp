@@ -252,25 +252,25 @@ TEST(LastSample, IsReceivedBeforeItsWriterEnds) {
   Node control(settings(lock, "control"));
   std::promise<void> release;
   Inbox<bool> busy;
-  Inbox<msg::GroundLink> inbox;
+  Inbox<msg::MissionStatus> inbox;
   const auto blocked = control.subscribe<msg::Battery>(topics::kBattery, [&](const msg::Battery&) {
     busy.put(true);
     release.get_future().wait();
   });
-  const auto subscription = control.subscribe<msg::GroundLink>(
-      topics::kGroundLink, [&](const msg::GroundLink& message) { inbox.put(message); });
+  const auto subscription = control.subscribe<msg::MissionStatus>(
+      topics::kMissionStatus, [&](const msg::MissionStatus& message) { inbox.put(message); });
   auto battery = ground.publish(topics::kBattery);
-  auto heartbeat = std::make_unique<Publisher<msg::GroundLink>>(ground.publish(topics::kGroundLink));
-  ASSERT_TRUE(eventually([&] { return battery.matched() == 1 && heartbeat->matched() == 1; }));
+  auto state = std::make_unique<Publisher<msg::MissionStatus>>(ground.publish(topics::kMissionStatus));
+  ASSERT_TRUE(eventually([&] { return battery.matched() == 1 && state->matched() == 1; }));
   ASSERT_TRUE(eventually([&] { return blocked.matched() == 1 && subscription.matched() == 1; }));
 
   battery.publish(example<msg::Battery>());
   ASSERT_TRUE(busy.wait_for_count(1));
-  heartbeat->publish(example<msg::GroundLink>());
-  EXPECT_FALSE(heartbeat->wait_until_received(50ms)) << "the only receive thread is busy";
+  state->publish(example<msg::MissionStatus>());
+  EXPECT_FALSE(state->wait_until_received(50ms)) << "the only receive thread is busy";
   release.set_value();
-  EXPECT_TRUE(heartbeat->wait_until_received(5s));
-  heartbeat.reset();
+  EXPECT_TRUE(state->wait_until_received(5s));
+  state.reset();
   EXPECT_TRUE(inbox.wait_for_count(1));
 }
 
