@@ -90,7 +90,8 @@ std::shared_ptr<DatagramGuard> guard_of(const NodeSettings& settings) {
 ParticipantSession::ParticipantSession(const NodeSettings& settings, const Announcement& announcement,
                                        const std::shared_ptr<DatagramGuard>& guard,
                                        dds::DomainParticipantListener* listener)
-    : spacing_(settings.network.discovery_servers.empty() ? std::chrono::milliseconds(0)
+    : guard_(guard),
+      spacing_(settings.network.discovery_servers.empty() ? std::chrono::milliseconds(0)
                                                           : kAnnouncementSpacing) {
   set_up_fast_dds();
   guard->set_participant({});  // of a session before
@@ -103,7 +104,7 @@ ParticipantSession::ParticipantSession(const NodeSettings& settings, const Annou
   std::copy_n(participant->guid().guidPrefix.value, own.size(), own.begin());
   guard->set_participant(own);
   // Fast DDS 3 remembers the addresses of the host from the first participant of the process on; this lets it read them again.
-  participant->set_qos(participant->get_qos());
+  set_qos(participant->get_qos());
   publisher = participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
   subscriber = participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
   if (publisher == nullptr || subscriber == nullptr) {
@@ -117,8 +118,13 @@ ParticipantSession::~ParticipantSession() { end(participant); }
 void ParticipantSession::announce(const Announcement& announcement) {
   dds::DomainParticipantQos qos = participant->get_qos();
   qos.user_data().data_vec(to_user_data(announcement));
-  participant->set_qos(qos);
+  set_qos(qos);
   next_announcement_ = std::chrono::steady_clock::now() + spacing_;
+}
+
+void ParticipantSession::set_qos(const dds::DomainParticipantQos& qos) {
+  const std::lock_guard<std::mutex> lock(guard_->changes_mutex());
+  participant->set_qos(qos);
 }
 
 dds::Topic* ParticipantSession::topic(const std::string& wire_name, const dds::TypeSupport& type) {

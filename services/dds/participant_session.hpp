@@ -56,6 +56,9 @@ class ParticipantSession {
   eprosima::fastdds::dds::Subscriber* subscriber = nullptr;
 
  private:
+  void set_qos(const eprosima::fastdds::dds::DomainParticipantQos& qos);
+
+  const std::shared_ptr<DatagramGuard> guard_;
   const std::chrono::milliseconds spacing_;
   std::chrono::steady_clock::time_point next_announcement_{};
   std::map<std::string, eprosima::fastdds::dds::Topic*> topics_;

@@ -217,8 +217,8 @@ TEST_F(DiscoveryServers, IntroduceNewcomersAfterAKillInFlight) {
   const auto control = start_client("swiftlet-control", {"--clock", "lockstep"});
   const auto request = [&](const std::string& name) {
     const auto program = start_client("swiftlet", {name, "--wait", "60"});
-    EXPECT_EQ(program->wait(kStuck), 0) << name << ": " << program->errors() << control->errors() << plant->errors()
-                                        << server_->output();
+    EXPECT_EQ(program->wait(kStuck), 0)
+        << name << ": " << program->errors() << control->errors() << plant->errors() << server_->output();
   };
   ASSERT_TRUE(eventually([&] { return control->errors().find("mocap available") != std::string::npos; }))
       << control->errors();

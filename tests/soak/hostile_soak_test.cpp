@@ -1,4 +1,6 @@
 // A short form of `./dev soak hostile`.
+#include <ostream>
+
 #include <gtest/gtest.h>
 
 #include "tests/soak/hostile_flight.hpp"
@@ -16,6 +18,8 @@ struct Attack {
   tests::AttackTransport transport;
   bool forges;  // the flight has a network key then: only a key can tell
 };
+
+void PrintTo(const Attack& attack, std::ostream* out) { *out << attack.name; }
 
 class Hostile : public testing::TestWithParam<Attack> {};
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -71,6 +72,11 @@ class DatagramGuard {
 
   RefusalLog& refusals() { return refusals_; }
 
+  // Held while the middleware takes in what a discovery server sent, and while its participant announces a change: Fast DDS
+  // takes two locks in one order for the former (PDPClient::assignRemoteEndpoints), and in the other one for the latter
+  // (RTPSParticipantImpl::update_attributes), and both threads would wait for each other.
+  std::mutex& changes_mutex() { return changes_mutex_; }
+
  private:
   // Sets is_ignored.
   const char* fault_of(CheckedDatagram& checked, const SenderAddress& sender, const Now& now);
@@ -81,6 +87,7 @@ class DatagramGuard {
   const DatagramLimits limits_;
   std::optional<DatagramSealer> sealer_;
   RefusalLog refusals_;
+  std::mutex changes_mutex_;
   runtime::PriorityInheritingMutex
       mutex_;  // guards the rest; all threads that receive take it, for each datagram
   std::optional<DatagramOpener> opener_;

@@ -121,6 +121,8 @@ void GuardedTransport::receive(transport::TransportReceiverInterface* next, cons
   const SenderAddress sender = address_of(remote);
   const CheckedDatagram checked = guard_->admit(data, size, sender, local.port, Now::read());
   if (checked.fault != nullptr || checked.is_ignored) return;
+  std::unique_lock<std::mutex> no_change;
+  if (is_discovery_server(checked.source)) no_change = std::unique_lock(guard_->changes_mutex());
   try {
     if (checked.hidden_count > 0 || checked.fragment) {
       std::vector<rtps::octet> copy(checked.length + kLongestFragment);
