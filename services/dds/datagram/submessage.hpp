@@ -36,10 +36,11 @@ enum SubmessageKind : std::uint8_t {
 constexpr std::uint8_t kLittleEndianFlag = 1;  // of every submessage (9.4.5.1.2)
 constexpr std::size_t kSubmessageHeaderBytes = 4;
 
-// Calls found(kind, body) for each submessage up to the first that reaches to the end of the message. body:
-// runtime::ByteReader in the submessage's byte order. A length of 0 means to the end, but for those that may be empty (9.4.5.1.3).
+// Calls found(kind, body) for each submessage up to the first that reaches to the end of the message; body is a
+// runtime::ByteReader in its byte order. A length of 0 means to the end, but for those that may be empty (9.4.5.1.3). Returns
+// whether the message ends with its last submessage.
 template <class Found>
-void for_each_submessage(const std::uint8_t* message, std::size_t size, const Found& found) {
+bool for_each_submessage(const std::uint8_t* message, std::size_t size, const Found& found) {
   runtime::ByteReader rest(message, size, true);
   rest.skip(kHeaderBytes);
   while (rest.rest() >= kSubmessageHeaderBytes) {
@@ -48,10 +49,10 @@ void for_each_submessage(const std::uint8_t* message, std::size_t size, const Fo
     const std::uint8_t* const length_at = rest.take(2);
     std::size_t length = runtime::ByteReader(length_at, 2, little_endian).u16();
     if (length == 0 && kind != kPad && kind != kInfoTimestamp) length = rest.rest();
-    length = std::min(length, rest.rest());
-    found(kind, runtime::ByteReader(rest.data(), length, little_endian));
+    found(kind, runtime::ByteReader(rest.data(), std::min(length, rest.rest()), little_endian));
     rest.skip(length);
   }
+  return rest.ok() && rest.rest() == 0;
 }
 
 }  // namespace swiftlet::comms

@@ -54,24 +54,14 @@ bool is_of_participant(ByteReader data) {
 }  // namespace
 
 std::optional<std::uint64_t> announcement_digest(const std::uint8_t* message, std::size_t size) {
-  ByteReader rest(message, size, true);
-  rest.skip(kHeaderBytes);
   std::uint64_t digest = kFnvOffset;
-  while (rest.ok() && rest.rest() > 0) {
-    const std::uint8_t kind = rest.u8();
-    const std::uint8_t flags = rest.u8();
-    const std::uint8_t* const length = rest.take(2);
-    if (length == nullptr) return std::nullopt;
-    const std::size_t bytes = ByteReader(length, 2, (flags & kLittleEndianFlag) != 0).u16();
-    // 0: the last submessage, of all bytes that follow.
-    ByteReader body = rest.part(bytes == 0 ? rest.rest() : bytes);
-    if (kind == kInfoDestination || kind == kInfoTimestamp || kind == kStatistics) continue;
-    if (kind != kData || !is_of_participant(body)) return std::nullopt;
-    const std::size_t said = body.rest();
-    digest = fnv(digest, body.take(said), said);
-  }
-  if (!rest.ok()) return std::nullopt;
-  return digest;
+  bool announces_only = true;
+  const bool whole = for_each_submessage(message, size, [&](std::uint8_t kind, const ByteReader& body) {
+    if (kind == kInfoDestination || kind == kInfoTimestamp || kind == kStatistics) return;
+    announces_only = announces_only && kind == kData && is_of_participant(body);
+    digest = fnv(digest, body.data(), body.rest());
+  });
+  return whole && announces_only ? std::optional(digest) : std::nullopt;
 }
 
 namespace {

@@ -45,14 +45,14 @@ bool is_info(std::uint8_t kind) {
 
 std::optional<ParticipantChange> participant_change(const std::uint8_t* message, std::size_t size) {
   std::optional<ParticipantChange> change;
-  for_each_submessage(message, size, [&](std::uint8_t kind, ByteReader body) {
+  const bool whole = for_each_submessage(message, size, [&](std::uint8_t kind, ByteReader body) {
     const auto number = changed(kind, body);
     if (!number) return;
     change.emplace();
     std::copy_n(message + kBytesBeforePrefix, change->participant.size(), change->participant.begin());
     change->sequence_number = *number;
   });
-  return change;
+  return whole ? change : std::nullopt;
 }
 
 std::vector<std::vector<std::uint8_t>> divide_changes(const std::uint8_t* message, std::size_t size) {

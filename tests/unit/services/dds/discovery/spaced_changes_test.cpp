@@ -39,6 +39,8 @@ TEST(ParticipantChange, IsOnlyThatOfAParticipant) {
   EXPECT_FALSE(change_in(RtpsMessage(tests::kAlice)
                              .add(0x15, 4, tests::data_fields(tests::kSedpReader, tests::kSedpWriter, 1))));
   EXPECT_FALSE(change_in(RtpsMessage(tests::kAlice).add(0x15, 4, ByteWriter().zeros(3)))) << "too short";
+  EXPECT_FALSE(change_in(RtpsMessage(tests::kAlice).add(0x15, 4, announcement(1), 200)))
+      << "longer than the message";
   const std::uint8_t header[10] = {};
   EXPECT_FALSE(participant_change(header, sizeof header));
 }
