@@ -52,6 +52,20 @@ rtps::Locator_t udp_locator(const std::string& ipv4, std::uint32_t port) {
   return locator;
 }
 
+rtps::LocatorList_t own_locators(const NodeSettings& settings, std::uint32_t port) {
+  std::vector<std::string> addresses;
+  if (!settings.localhost_only) addresses = addresses_of_interfaces(settings.network.interfaces);
+  if (!settings.localhost_only && addresses.empty()) {
+    for (const Interface& it : interfaces_up()) {
+      if (!it.is_loopback) addresses.push_back(it.address);
+    }
+  }
+  if (addresses.empty()) addresses.emplace_back(kLoopback);
+  rtps::LocatorList_t locators;
+  for (const std::string& address : addresses) locators.push_back(udp_locator(address, port));
+  return locators;
+}
+
 void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
                  eprosima::fastdds::dds::DomainParticipantQos& qos,
                  eprosima::fastdds::rtps::UDPv4TransportDescriptor& udp) {
@@ -63,7 +77,7 @@ void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
   auto& builtin = qos.wire_protocol().builtin;
   const DiscoveryPorts ports = discovery_ports(settings.domain);
   // Instead of the multicast address, only this: the first free port of the domain.
-  builtin.metatrafficUnicastLocatorList.push_back(udp_locator(kAnyAddress, ports.first));
+  builtin.metatrafficUnicastLocatorList = own_locators(settings, ports.first);
   if (network.peers.empty())
     return add_servers(network.discovery_servers, settings.hears_of_all, builtin.discovery_config, udp);
   // The processes of this host.

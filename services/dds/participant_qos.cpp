@@ -75,7 +75,7 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
   // place of the own one, and the others send there.
   auto& addresses = qos.wire_protocol().default_unicast_locator_list;
   if (settings.transport != Transport::kSharedMemory && addresses.empty())
-    addresses.push_back(udp_locator(settings.localhost_only ? kLoopback : kAnyAddress, 0));
+    addresses = own_locators(settings, 0);
   qos.transport().use_builtin_transports = false;
   const bool loses_nothing = settings.localhost_only;
   qos.transport().user_transports.push_back(
