@@ -85,6 +85,8 @@ void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
   for (const std::string& address : own_addresses)
     add_host(address, ports, announced_ports, builtin.initialPeersList);
   for (const std::string& peer : network.peers) {
+    if (const std::string fault = fault_of_host_address(peer); !fault.empty())
+      throw runtime::ConfigError("peer " + fault);
     const HostAddress host = parse_host_address(peer);
     for (const std::string& address : ipv4_addresses_of(host.host)) {
       if (host.port != 0) {

@@ -24,7 +24,7 @@ rtps::LocatorList_t own_locators(const NodeSettings& settings, std::uint32_t por
 
 // Sets the interfaces of the transport, and with peers the addresses of discovery. announced_ports: as for
 // participant_qos(). Throws std::runtime_error for an unknown host or interface, and
-// ConfigError for malformed servers.
+// ConfigError for malformed servers and peers.
 void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
                  eprosima::fastdds::dds::DomainParticipantQos& qos,
                  eprosima::fastdds::rtps::UDPv4TransportDescriptor& udp);

@@ -43,10 +43,7 @@ void apply_environment(NodeSettings& settings) {
   settings.network.discovery_servers = environment("ROS_DISCOVERY_SERVER");
   if (!settings.network.discovery_servers.empty()) return;
   for (const std::string& peer : runtime::split_text(peers, ';')) {
-    if (peer.empty()) continue;
-    if (const std::string fault = fault_of_host_address(peer); !fault.empty())
-      throw runtime::ConfigError("ROS_STATIC_PEERS: a peer " + fault);
-    settings.network.peers.push_back(peer);
+    if (!peer.empty()) settings.network.peers.push_back(peer);
   }
 }
 

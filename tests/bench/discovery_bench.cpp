@@ -23,7 +23,6 @@
 #include <sys/select.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
-#include <thread>
 #include <unistd.h>
 #include <vector>
 
@@ -153,7 +152,8 @@ class ServerProcess {
       settings.domain = network.domain;
       settings.port = comms::kDiscoveryServerPort;
       comms::DiscoveryServer server(settings, [](const comms::DiscoveryServerEvent&) {});
-      std::this_thread::sleep_for(comms::DiscoveryServer::kStartTime);
+      pollfd input{input_[0], POLLIN, 0};
+      ::poll(&input, 1, std::chrono::milliseconds(comms::DiscoveryServer::kStartTime).count());
       server.serve();
       char byte = 'r';
       if (::write(ready[1], &byte, 1) != 1) std::_Exit(1);

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/io/config_error.hpp"
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
@@ -74,6 +75,14 @@ TEST(SetNetwork, AnnouncesTheOwnPortAlsoAfterAChange) {
   EXPECT_EQ(received.items().front(), 7U);
   EXPECT_FALSE(first.has_received());
   EXPECT_FALSE(second.has_received());
+}
+
+// As they may come from the environment, which no option has checked.
+TEST(SetNetwork, RefusesMalformedPeers) {
+  NodeSettings settings;
+  settings.name = "plant";
+  settings.network.peers = {"lab2:0"};
+  EXPECT_THROW(Node{settings}, runtime::ConfigError);
 }
 
 }  // namespace

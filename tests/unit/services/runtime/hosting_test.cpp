@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <map>
 #include <memory>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -13,13 +12,14 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <spdlog/sinks/ostream_sink.h>
-#include <spdlog/spdlog.h>
+
+#include "tests/support/log_text.hpp"
 
 namespace swiftlet::runtime {
 namespace {
 
 using namespace std::chrono_literals;
+using tests::LogText;
 
 // What the test sees of a vehicle that has been destroyed.
 struct Trace {
@@ -148,17 +148,12 @@ TEST(Hosting, OneThatBlocksHoldsUpNoOther) {
 }
 
 TEST(Hosting, SaysHowManyGoOn) {
-  const auto before = spdlog::default_logger();
-  std::ostringstream text;
-  auto sink = std::make_shared<spdlog::sinks::ostream_sink_mt>(text);
-  sink->set_pattern("%v");
-  spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", sink));
+  const LogText logged;
   std::vector<Trace> traces(3);
   EXPECT_EQ(host_all({Fault::kFailsAtOnce, Fault::kFailsAtOnce, Fault::kStopThrows}, traces),
             "3 of 3 vehicles failed: kl1: it cannot start; kl2: it cannot start; kl3: its end failed");
-  spdlog::set_default_logger(before);
   EXPECT_EQ(
-      text.str(),
+      logged.lines(),
       "kl1: it cannot start; this vehicle ends, 1 go on\nkl2: it cannot start; this vehicle ends, 1 go on\n");
 }
 

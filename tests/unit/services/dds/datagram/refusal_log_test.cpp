@@ -2,13 +2,11 @@
 
 #include <chrono>
 #include <cstdint>
-#include <memory>
-#include <sstream>
 #include <string>
 
 #include <gtest/gtest.h>
-#include <spdlog/sinks/ostream_sink.h>
-#include <spdlog/spdlog.h>
+
+#include "tests/support/log_text.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -17,28 +15,20 @@ using namespace std::chrono_literals;
 
 class RefusalLogTest : public testing::Test {
  protected:
-  RefusalLogTest() {
-    auto sink = std::make_shared<spdlog::sinks::ostream_sink_mt>(text_);
-    sink->set_pattern("%v");
-    spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", sink));
-  }
-  ~RefusalLogTest() override { spdlog::set_default_logger(before_); }
-
   void refuse(std::uint8_t host, const char* rule, int times = 1) {
     for (int i = 0; i < times; ++i) log_.note({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 10, 0, 0, host}, rule);
   }
   std::string lines_after(std::chrono::steady_clock::duration time) {
-    text_.str("");
+    text_.clear();
     log_.write_due(start_ + time);
-    return text_.str();
+    return text_.lines();
   }
 
   RefusalLog log_;
 
  private:
-  const std::shared_ptr<spdlog::logger> before_ = spdlog::default_logger();
   const std::chrono::steady_clock::time_point start_{1h};
-  std::ostringstream text_;
+  tests::LogText text_;
 };
 
 TEST_F(RefusalLogTest, NamesEachSenderAndItsLastRuleOnceInAPeriod) {

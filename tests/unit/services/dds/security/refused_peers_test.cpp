@@ -2,16 +2,13 @@
 #include "swiftlet/services/dds/security/refused_peers.hpp"
 
 #include <chrono>
-#include <memory>
-#include <sstream>
 #include <string>
 
 #include <fastdds/dds/log/Log.hpp>
 #include <gtest/gtest.h>
-#include <spdlog/sinks/ostream_sink.h>
-#include <spdlog/spdlog.h>
 
 #include "swiftlet/services/dds/dds_profile.hpp"
+#include "tests/support/log_text.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::comms {
@@ -19,13 +16,6 @@ namespace {
 
 class RefusedPeersTest : public testing::Test {
  protected:
-  RefusedPeersTest() {
-    auto sink = std::make_shared<spdlog::sinks::ostream_sink_mt>(text_);
-    sink->set_pattern("%v");
-    spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", sink));
-  }
-  ~RefusedPeersTest() override { spdlog::set_default_logger(before_); }
-
   // As Fast DDS does: the reason, if it has one, and then the refusal, in one thread.
   void refuse(const std::string& peer, const std::string& logged_reason, const char* given_reason = "") {
     if (!logged_reason.empty()) EPROSIMA_LOG_WARNING(SECURITY_AUTHENTICATION, logged_reason);
@@ -36,14 +26,13 @@ class RefusedPeersTest : public testing::Test {
   std::string lines() {
     eprosima::fastdds::dds::Log::Flush();
     peers_.write_due(now_ + RefusedPeers::kReasonTime);
-    return text_.str();
+    return text_.lines();
   }
 
   static constexpr const char* kExpired = "Invalidation error of certificate  (certificate has expired)";
 
  private:
-  const std::shared_ptr<spdlog::logger> before_ = spdlog::default_logger();
-  std::ostringstream text_;
+  tests::LogText text_;
   static inline std::uint8_t guids_ = 0;  // the log keeps the reasons of all tests
   const RefusedPeers::Time now_ = std::chrono::steady_clock::now();
   RefusedPeers peers_;
