@@ -35,7 +35,7 @@ CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size,
   if (opener_) {
     checked.fault = opener_->verify(data, size, now.since_1970_ns);
     if (checked.fault == nullptr) {
-      const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
+      const std::lock_guard<std::mutex> lock(mutex_);
       checked.fault = opener_->take(data, size, port, now.steady_ns);
     }
     if (checked.fault == kSentTwice) return checked;
@@ -47,7 +47,7 @@ CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size,
 }
 
 const char* DatagramGuard::fault_of(CheckedDatagram& checked, const SenderAddress& sender, const Now& now) {
-  const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(mutex_);
   const std::size_t changeable = opener_ ? 0 : checked.writer_count;  // nobody changes what is sealed
   for (std::size_t i = 0; i < changeable; ++i) {
     const NumberedWriter& writer = checked.writers[i];
@@ -72,7 +72,7 @@ bool DatagramGuard::concerns_us(const Announced& said) const {
 }
 
 void DatagramGuard::ignore_apart_from(const std::vector<std::uint8_t>& own_user_data) {
-  const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(mutex_);
   own_user_data_.assign(own_user_data.begin(), own_user_data.end());
 }
 
@@ -97,7 +97,7 @@ void DatagramGuard::note_announcement(const CheckedDatagram& checked, const Now&
 }
 
 std::map<GuidPrefix, DatagramGuard::Announcement> DatagramGuard::announcements(const Now& now) {
-  const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(mutex_);
   std::map<GuidPrefix, Announcement> lately;
   for (const auto& [participant, said] : announcements_) {
     if (now.steady_ns - said.heard_ns < kLately_ns) lately.emplace(participant, said);
@@ -106,30 +106,30 @@ std::map<GuidPrefix, DatagramGuard::Announcement> DatagramGuard::announcements(c
 }
 
 void DatagramGuard::set_participant(const GuidPrefix& own) {
-  const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(mutex_);
   replies_.set_participant(own);
 }
 
 std::size_t DatagramGuard::participants_heard(const Now& now) {
-  const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(mutex_);
   const std::size_t heard = participants_.heard_lately(now.steady_ns);
   return now.steady_ns < expected_until_ns_ ? std::max(heard, expected_) : heard;
 }
 
 void DatagramGuard::expect_participants(std::size_t count, const Now& now) {
-  const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(mutex_);
   expected_ = count;
   expected_until_ns_ = now.steady_ns + kExpected_ns;
 }
 
 std::vector<Joined> DatagramGuard::participants_joined(const Now& now) {
-  const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(mutex_);
   return participants_.joined(now.steady_ns);
 }
 
 void DatagramGuard::note_sent(const std::uint8_t* data, std::size_t size) {
   if (!ReplyCheck::concerns_replies(data, size)) return;
-  const std::lock_guard<runtime::PriorityInheritingMutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(mutex_);
   replies_.note_sent(data, size);
 }
 

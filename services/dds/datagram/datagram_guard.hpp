@@ -15,7 +15,6 @@
 #include "swiftlet/services/dds/datagram/refusal_log.hpp"
 #include "swiftlet/services/dds/datagram/reply_check.hpp"
 #include "swiftlet/services/dds/datagram/sequence_window.hpp"
-#include "swiftlet/services/runtime/priority_inheriting_mutex.hpp"
 
 namespace swiftlet::comms {
 
@@ -88,8 +87,7 @@ class DatagramGuard {
   std::optional<DatagramSealer> sealer_;
   RefusalLog refusals_;
   std::mutex changes_mutex_;
-  runtime::PriorityInheritingMutex
-      mutex_;  // guards the rest; all threads that receive take it, for each datagram
+  std::mutex mutex_;  // guards the rest; all threads that receive take it, for each datagram
   std::optional<DatagramOpener> opener_;
   SequenceWindow sequences_;
   ReplyCheck replies_;
