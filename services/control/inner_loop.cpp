@@ -161,7 +161,7 @@ void InnerLoop::report(comms::ControllerReport& report) const {
   report.active = role_ == Role::kActive;
   report.ready =
       (report.active && !detecting_airborne()) ||
-      (knows_plan_ && stamp_ns_ - unposed_ns_ >= kSettlingNs && level_choice_.accepted.has(level()));
+      (knows_plan_ && stamp_ns_ - unposed_ns_ >= kReadyAfterNs && level_choice_.accepted.has(level()));
   if (!report.active) return;
   report.flight = controller_.state();
 }

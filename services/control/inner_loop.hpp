@@ -108,7 +108,7 @@ class InnerLoop {
 
   // A standby is ready when it has had a pose without interruption for this long: its estimate has settled, and Fast DDS, which
   // does so after a second, has repeated what the vehicle missed of its topics.
-  static constexpr std::int64_t kSettlingNs = 1'250'000'000;
+  static constexpr std::int64_t kReadyAfterNs = 1'250'000'000;
   // report_due(): this step must publish a controller_state. report() fills in its flight fields.
   bool report_due() const { return report_due_; }
   void report(comms::ControllerReport& report) const;

@@ -82,6 +82,14 @@ pthread_mutex_t* mutex_of(pthread_rwlock_t* lock) {
   return __atomic_load_n(&own->mark, __ATOMIC_RELAXED) == Lock::kMark ? &own->mutex : nullptr;
 }
 
+// Calls a function of the mutex in place of a lock, or the one of glibc.
+template <auto* OfLock, auto* OfMutex, class... Arguments>
+int locked(const char* name, pthread_rwlock_t* lock, Arguments... arguments) {
+  pthread_mutex_t* const mutex = mutex_of(lock);
+  return mutex != nullptr ? OfMutex(mutex, arguments...) : replaced<OfLock>(name)(lock, arguments...);
+}
+#define SWIFTLET_LOCKED(OfLock, OfMutex, ...) locked<&OfLock, &OfMutex>(#OfLock, __VA_ARGS__)
+
 }  // namespace
 
 extern "C" {
@@ -124,52 +132,39 @@ int pthread_rwlock_destroy(pthread_rwlock_t* lock) noexcept {
 }
 
 int pthread_rwlock_rdlock(pthread_rwlock_t* lock) noexcept {
-  pthread_mutex_t* const mutex = mutex_of(lock);
-  return mutex != nullptr ? pthread_mutex_lock(mutex) : SWIFTLET_REPLACED(pthread_rwlock_rdlock)(lock);
+  return SWIFTLET_LOCKED(pthread_rwlock_rdlock, pthread_mutex_lock, lock);
 }
 
 int pthread_rwlock_wrlock(pthread_rwlock_t* lock) noexcept {
-  pthread_mutex_t* const mutex = mutex_of(lock);
-  return mutex != nullptr ? pthread_mutex_lock(mutex) : SWIFTLET_REPLACED(pthread_rwlock_wrlock)(lock);
+  return SWIFTLET_LOCKED(pthread_rwlock_wrlock, pthread_mutex_lock, lock);
 }
 
 int pthread_rwlock_tryrdlock(pthread_rwlock_t* lock) noexcept {
-  pthread_mutex_t* const mutex = mutex_of(lock);
-  return mutex != nullptr ? pthread_mutex_trylock(mutex) : SWIFTLET_REPLACED(pthread_rwlock_tryrdlock)(lock);
+  return SWIFTLET_LOCKED(pthread_rwlock_tryrdlock, pthread_mutex_trylock, lock);
 }
 
 int pthread_rwlock_trywrlock(pthread_rwlock_t* lock) noexcept {
-  pthread_mutex_t* const mutex = mutex_of(lock);
-  return mutex != nullptr ? pthread_mutex_trylock(mutex) : SWIFTLET_REPLACED(pthread_rwlock_trywrlock)(lock);
+  return SWIFTLET_LOCKED(pthread_rwlock_trywrlock, pthread_mutex_trylock, lock);
 }
 
 int pthread_rwlock_timedrdlock(pthread_rwlock_t* lock, const timespec* until) noexcept {
-  pthread_mutex_t* const mutex = mutex_of(lock);
-  return mutex != nullptr ? pthread_mutex_timedlock(mutex, until)
-                          : SWIFTLET_REPLACED(pthread_rwlock_timedrdlock)(lock, until);
+  return SWIFTLET_LOCKED(pthread_rwlock_timedrdlock, pthread_mutex_timedlock, lock, until);
 }
 
 int pthread_rwlock_timedwrlock(pthread_rwlock_t* lock, const timespec* until) noexcept {
-  pthread_mutex_t* const mutex = mutex_of(lock);
-  return mutex != nullptr ? pthread_mutex_timedlock(mutex, until)
-                          : SWIFTLET_REPLACED(pthread_rwlock_timedwrlock)(lock, until);
+  return SWIFTLET_LOCKED(pthread_rwlock_timedwrlock, pthread_mutex_timedlock, lock, until);
 }
 
 int pthread_rwlock_clockrdlock(pthread_rwlock_t* lock, clockid_t clock, const timespec* until) noexcept {
-  pthread_mutex_t* const mutex = mutex_of(lock);
-  return mutex != nullptr ? pthread_mutex_clocklock(mutex, clock, until)
-                          : SWIFTLET_REPLACED(pthread_rwlock_clockrdlock)(lock, clock, until);
+  return SWIFTLET_LOCKED(pthread_rwlock_clockrdlock, pthread_mutex_clocklock, lock, clock, until);
 }
 
 int pthread_rwlock_clockwrlock(pthread_rwlock_t* lock, clockid_t clock, const timespec* until) noexcept {
-  pthread_mutex_t* const mutex = mutex_of(lock);
-  return mutex != nullptr ? pthread_mutex_clocklock(mutex, clock, until)
-                          : SWIFTLET_REPLACED(pthread_rwlock_clockwrlock)(lock, clock, until);
+  return SWIFTLET_LOCKED(pthread_rwlock_clockwrlock, pthread_mutex_clocklock, lock, clock, until);
 }
 
 int pthread_rwlock_unlock(pthread_rwlock_t* lock) noexcept {
-  pthread_mutex_t* const mutex = mutex_of(lock);
-  return mutex != nullptr ? pthread_mutex_unlock(mutex) : SWIFTLET_REPLACED(pthread_rwlock_unlock)(lock);
+  return SWIFTLET_LOCKED(pthread_rwlock_unlock, pthread_mutex_unlock, lock);
 }
 
 }  // extern "C"

@@ -24,6 +24,7 @@
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/runtime/child_process.hpp"
 #include "swiftlet/services/runtime/process.hpp"
+#include "tests/bench/built_programs.hpp"
 #include "tests/bench/longest_steps.hpp"
 #include "tests/bench/process_usage.hpp"
 #include "tests/bench/table.hpp"
@@ -49,26 +50,6 @@ struct Options {
 };
 
 // ---- programs
-
-fs::path program(const std::string& name) {
-  const fs::path here = fs::read_symlink("/proc/self/exe").parent_path();
-  for (const fs::path& path : {here / name, here.parent_path() / "bin" / name}) {
-    if (fs::exists(path)) return path;
-  }
-  throw std::runtime_error(name + " is not built");
-}
-
-// Standard output of a program; throws if the program fails.
-std::string output_of(const std::string& command) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(::popen((command + " 2>/dev/null").c_str(), "r"),
-                                                             ::pclose);
-  if (!pipe) throw std::runtime_error("cannot run " + command);
-  std::string text;
-  std::array<char, 4096> buffer;
-  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe.get()))
-    text.append(buffer.data(), count);
-  return text;
-}
 
 // Loads every core during its lifetime with two processes of arithmetic, memory accesses and system calls.
 class CpuLoad {
@@ -402,26 +383,6 @@ void jitter(Table& table, const Options& options) {
       table.add({name + ", max", figures.control.period_jitter_max_us(), "us", "the period", 2000.0, ""});
     }
   }
-}
-
-// Medians of a Google Benchmark program by name: CPU time and counters.
-json benchmarks(const std::string& name, const std::string& filter) {
-  const json report =
-      json::parse(output_of(program(name).string() + " --benchmark_format=json --benchmark_repetitions=5" +
-                            " --benchmark_report_aggregates_only=true --benchmark_filter='" + filter + "'"));
-  json medians;
-  for (const json& entry : report.at("benchmarks")) {
-    if (entry.value("error_occurred", false))
-      throw std::runtime_error(entry.at("name").get<std::string>() + ": " +
-                               entry.at("error_message").get<std::string>());
-    if (entry.at("aggregate_name") == "median") medians[entry.at("run_name").get<std::string>()] = entry;
-  }
-  return medians;
-}
-
-double cpu_ns(const json& entry) {
-  const std::string unit = entry.at("time_unit");
-  return entry.at("cpu_time").get<double>() * (unit == "us" ? 1e3 : unit == "ms" ? 1e6 : 1.0);
 }
 
 void simulated_time(Table& table) {

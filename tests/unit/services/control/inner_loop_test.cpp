@@ -57,11 +57,11 @@ class StandbyLoop : public testing::Test {
 TEST_F(StandbyLoop, IsReadyWhenItsEstimateHasSettled) {
   follow();
   EXPECT_FALSE(run(1'000'000'000, false));
-  EXPECT_FALSE(run(InnerLoop::kSettlingNs - 20 * kPeriod, true));
+  EXPECT_FALSE(run(InnerLoop::kReadyAfterNs - 20 * kPeriod, true));
   EXPECT_TRUE(run(100 * kPeriod, true));
   EXPECT_FALSE(run(1'000'000'000, false)) << "the poses ceased";
-  EXPECT_FALSE(run(InnerLoop::kSettlingNs / 2, true)) << "they came again";
-  EXPECT_TRUE(run(InnerLoop::kSettlingNs, true));
+  EXPECT_FALSE(run(InnerLoop::kReadyAfterNs / 2, true)) << "they came again";
+  EXPECT_TRUE(run(InnerLoop::kReadyAfterNs, true));
 }
 
 TEST_F(StandbyLoop, IsNotReadyAsLongAsItFollowsNobody) {
