@@ -50,6 +50,7 @@ constexpr double kHalfSmoothing_s = 0.02;  // half the window of the readings at
 constexpr int kFirstIterations = 3;        // with the noise assumed at first
 constexpr int kConverged = 11;             // before, residuals of the IMU are those of the start
 constexpr int kIterations = 15;
+constexpr double kShortestStep = 1e-3;  // part of a step that is tried
 constexpr double kCorrelation_s = 0.5;  // longest that errors of poses are alike
 constexpr double kGate = 45.0;  // of squares of normalised residuals, 6 degrees of freedom: 1 of 1e7 poses
 constexpr double kMostRefused = 0.05;
@@ -350,9 +351,25 @@ class AlignmentFit {
     first_ = states_.front();
   }
 
+  // The full step, or the longest part of it that lowers the cost: with a vehicle that hardly moves, lever arm and misalignment
+  // are next to free, and a full step goes further than the derivatives hold.
   void iterate() {
     eliminate();
-    substitute();
+    const std::vector<Motion> steps = substituted();
+    const double cost_before = cost();
+    const std::vector<State> states = states_;
+    const Sought sought = sought_;
+    for (double part = 1.0; part > kShortestStep; part *= 0.5) {
+      for (std::size_t k = 0; k < states.size(); ++k) {
+        states_[k] = states[k];
+        states_[k].add(part * steps[k]);
+      }
+      sought_ = sought;
+      sought_.add(part * step_);
+      if (cost() <= cost_before) return;
+    }
+    states_ = states;
+    sought_ = sought;
   }
 
   // The noise of the poses from the residuals and the part of their variance that the fit took away, and which poses to refuse.
@@ -501,14 +518,33 @@ class AlignmentFit {
     step_ = solver.solve(c);
   }
 
-  void substitute() {
+  std::vector<Motion> substituted() const {
+    std::vector<Motion> steps(states_.size());
     Motion next = Motion::Zero();
     for (std::size_t k = states_.size(); k-- > 0;) {
       const Eliminated& one = eliminated_[k];
       next = one.value - one.by_parameters * step_ - one.by_next * next;
-      states_[k].add(next);
+      steps[k] = next;
     }
-    sought_.add(step_);
+    return steps;
+  }
+
+  // Sum of squares of all normalised residuals: of poses, motion and what was known before.
+  double cost() const {
+    const Residual variances = noise_.variances();
+    double sum = sought_.vector().cwiseQuotient(parameter_deviation_).squaredNorm() +
+                 first_.minus(states_.front()).cwiseQuotient(first_deviation_).squaredNorm();
+    for (std::size_t k = 0; k < states_.size(); ++k) {
+      if (refused_[k] == 0)
+        sum += observe(recording_.poses[k], states_[k], sought_)
+                   .residual.cwiseAbs2()
+                   .cwiseQuotient(variances)
+                   .sum();
+      if (k + 1 == states_.size()) break;
+      const Propagation step = propagate(states_[k], recording_.intervals[k], sought_, noise_);
+      sum += states_[k + 1].minus(step.state).cwiseAbs2().cwiseQuotient(step.variance).sum();
+    }
+    return sum;
   }
 
   const Recording& recording_;

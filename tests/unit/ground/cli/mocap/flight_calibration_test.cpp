@@ -153,6 +153,31 @@ TEST(FlightCalibration, TellsAllFromTheMissionCalibration) {
   }
 }
 
+// On the ground, for 6 s; body and vehicle have the same axes.
+FlightLog standing(std::uint64_t seed) {
+  plant::RandomStream random(seed, 20261126);
+  FlightLog log;
+  for (int i = 0; i < 3000; ++i) {
+    log.time_s.push_back(0.002 * i);
+    log.specific_force_frd.push_back(Vector3d(0.0, 0.0, -9.80665) + 0.06 * random.normal3());
+    log.body_rates_frd.push_back(0.005 * random.normal3());
+    if (i % 5 == 0)
+      log.poses.push_back(
+          {log.time_s.back(), 5e-5 * random.normal3(), plant::rotation(5e-4 * random.normal3())});
+  }
+  return log;
+}
+
+// Lever arm and yaw are free then. Full steps of the fit would go so far along them that it refuses poses.
+TEST(FlightCalibration, RefusesNoPoseOfAVehicleThatStands) {
+  for (const std::uint64_t seed : {4, 9, 16, 19, 53}) {
+    const BodyAlignment found = align_body(standing(seed), {});
+    EXPECT_EQ(found.refused, 0U) << seed;
+    for (int i = 0; i < 2; ++i)
+      EXPECT_LT(std::abs(found.misalignment.value[i]), 4.0 * found.misalignment.deviation[i]) << seed;
+  }
+}
+
 TEST(FlightCalibration, RefusesPosesOfAnotherMotion) {
   const LaunchConfiguration plan = flight_of("calibration");
   FlightLog log = flown(plan, plan.vehicle, 1);
