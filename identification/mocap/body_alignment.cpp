@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <fmt/core.h>
 
+#include "swiftlet/identification/mocap/motion_recording.hpp"
 #include "swiftlet/math/rotation_vector.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
@@ -40,15 +40,8 @@ using Parameters = Eigen::Matrix<double, kParameters, 1>;
 using ParameterMatrix = Eigen::Matrix<double, kParameters, kParameters>;
 using Residual = Eigen::Matrix<double, 6, 1>;
 
-constexpr double kShortestInterval_s = 0.009;  // between poses that are used
-constexpr double kMostPoses = 20000;
-constexpr double kLongestGap_s = 0.25;  // in the samples or poses, that the motion continues over
-constexpr double kGroundRange_m =
-    0.3;  // more than this between the lowest and the highest pose: it took off or landed
-constexpr double kAirborne_m = 0.1;        // above the lowest pose
-constexpr double kHalfSmoothing_s = 0.02;  // half the window of the readings at a pose
-constexpr int kFirstIterations = 3;        // with the noise assumed at first
-constexpr int kConverged = 11;             // before, residuals of the IMU are those of the start
+constexpr int kFirstIterations = 3;  // with the noise assumed at first
+constexpr int kConverged = 11;       // before, residuals of the IMU are those of the start
 constexpr int kIterations = 15;
 constexpr double kShortestStep = 1e-3;  // part of a step that is tried
 constexpr double kCorrelation_s = 0.5;  // longest that errors of poses are alike
@@ -96,21 +89,6 @@ Matrix3d hat(const Vector3d& v) {
   return matrix;
 }
 
-// Density of white noise, from second differences: the motion has next to none. Their median leaves out impacts.
-double noise_density(const std::vector<double>& time_s, const std::vector<Vector3d>& values, double least) {
-  constexpr double kDeviationOverMedian = 1.4826;  // of the absolute value of a normal distribution
-  std::vector<double> differences;
-  for (std::size_t i = 2; i < values.size(); ++i) {
-    const Vector3d difference = values[i] - 2.0 * values[i - 1] + values[i - 2];
-    for (int axis = 0; axis < 3; ++axis) differences.push_back(std::abs(difference[axis]));
-  }
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  const double deviation = kDeviationOverMedian * *middle / std::sqrt(6.0);
-  const double period_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
-  return std::max(least, deviation * std::sqrt(period_s));
-}
-
 struct State {
   Vector3d position = Vector3d::Zero();
   Vector3d velocity = Vector3d::Zero();
@@ -156,88 +134,6 @@ struct Sought {
   }
 };
 
-// Readings between two poses.
-struct Interval {
-  double duration_s = 0.0;
-  bool is_gap = false;
-  struct Reading {
-    double dt = 0.0;
-    Vector3d force;
-    Vector3d rates;
-  };
-  std::vector<Reading> readings;
-};
-
-struct Recording {
-  std::vector<FlightPose> poses;
-  std::vector<Interval> intervals;  // one less
-  std::vector<Vector3d> force;      // at the poses
-  std::vector<Vector3d> rates;
-};
-
-// Poses in the air: on the ground, samples of the IMU miss most of what the contact does.
-std::vector<FlightPose> airborne(const std::vector<FlightPose>& poses) {
-  if (poses.empty()) return poses;
-  const auto is_higher = [](const FlightPose& a, const FlightPose& b) {
-    return a.position_ned.z() > b.position_ned.z();
-  };
-  const auto [lowest, highest] = std::minmax_element(poses.begin(), poses.end(), is_higher);
-  const double ground_z = lowest->position_ned.z();
-  if (ground_z - highest->position_ned.z() < kGroundRange_m) return poses;
-  const auto flies = [&](const FlightPose& pose) { return ground_z - pose.position_ned.z() > kAirborne_m; };
-  return {std::find_if(poses.begin(), poses.end(), flies),
-          std::find_if(poses.rbegin(), poses.rend(), flies).base()};
-}
-
-// Means around a row, so that their noise does not pass for motion.
-void add_readings(const FlightLog& log, std::size_t row, Recording& out) {
-  std::size_t first = row;
-  std::size_t last = row;
-  while (first > 0 && log.time_s[row] - log.time_s[first - 1] < kHalfSmoothing_s) --first;
-  while (last + 1 < log.size() && log.time_s[last + 1] - log.time_s[row] < kHalfSmoothing_s) ++last;
-  Vector3d force = Vector3d::Zero();
-  Vector3d rates = Vector3d::Zero();
-  for (std::size_t i = first; i <= last; ++i) {
-    force += log.specific_force_frd[i];
-    rates += log.body_rates_frd[i];
-  }
-  const auto count = static_cast<double>(last - first + 1);
-  out.force.push_back(force / count);
-  out.rates.push_back(rates / count);
-}
-
-// Between two samples the mean of both holds.
-Recording recording_of(const FlightLog& log) {
-  Recording out;
-  const double duration_s = log.time_s.back() - log.time_s.front();
-  const double interval_s = std::max(kShortestInterval_s, duration_s / kMostPoses);
-  std::size_t row = 1;
-  for (const FlightPose& pose : airborne(log.poses)) {
-    if (pose.time_s < log.time_s.front()) continue;
-    if (pose.time_s > log.time_s.back()) break;
-    if (!out.poses.empty() && pose.time_s - out.poses.back().time_s < interval_s) continue;
-    Interval interval;
-    double time_s = out.poses.empty() ? pose.time_s : out.poses.back().time_s;
-    interval.duration_s = pose.time_s - time_s;
-    interval.is_gap = interval.duration_s > kLongestGap_s;
-    for (;; ++row) {
-      interval.is_gap = interval.is_gap || log.time_s[row] - log.time_s[row - 1] > kLongestGap_s;
-      const double end_s = std::min(log.time_s[row], pose.time_s);
-      if (end_s > time_s) {
-        interval.readings.push_back({end_s - time_s,
-                                     0.5 * (log.specific_force_frd[row - 1] + log.specific_force_frd[row]),
-                                     0.5 * (log.body_rates_frd[row - 1] + log.body_rates_frd[row])});
-        time_s = end_s;
-      }
-      if (log.time_s[row] >= pose.time_s) break;
-    }
-    if (!out.poses.empty()) out.intervals.push_back(std::move(interval));
-    out.poses.push_back(pose);
-    add_readings(log, row, out);
-  }
-  return out;
-}
-
 // The state after an interval, with the derivatives of its errors and their variances.
 struct Propagation {
   State state;
@@ -246,7 +142,8 @@ struct Propagation {
   Motion variance = Motion::Zero();
 };
 
-Propagation propagate(const State& from, const Interval& interval, const Sought& sought, const Noise& noise) {
+Propagation propagate(const State& from, const MotionRecording::Interval& interval, const Sought& sought,
+                      const Noise& noise) {
   Propagation out;
   out.state = from;
   const double dt = interval.duration_s;
@@ -259,7 +156,7 @@ Propagation propagate(const State& from, const Interval& interval, const Sought&
     return out;
   }
   Vector3d velocity_change = Vector3d::Zero();  // by specific force
-  for (const Interval::Reading& reading : interval.readings) {
+  for (const MotionRecording::Reading& reading : interval.readings) {
     const Vector3d turn = reading.dt * (reading.rates - from.rate_bias);
     const Vector3d force =
         out.state.attitude * plant::rotation(0.5 * turn) * (reading.force - from.force_bias);
@@ -325,7 +222,7 @@ Observation observe(const FlightPose& pose, const State& state, const Sought& so
 // parameters as a border; the states are eliminated one after the other.
 class AlignmentFit {
  public:
-  AlignmentFit(const Recording& recording, const AlignmentPriors& priors, const Noise& noise)
+  AlignmentFit(const MotionRecording& recording, const AlignmentPriors& priors, const Noise& noise)
       : recording_(recording),
         least_(noise),
         noise_(noise),
@@ -547,7 +444,7 @@ class AlignmentFit {
     return sum;
   }
 
-  const Recording& recording_;
+  const MotionRecording& recording_;
   const Noise least_;
   Noise noise_;
   Parameters parameter_deviation_;
@@ -568,18 +465,7 @@ void require_rows(const FlightLog& log) {
                                          duration_s, kShortestAlignment_s));
 }
 
-double rms_rates(const Recording& recording) {
-  Vector3d mean = Vector3d::Zero();
-  double squares = 0.0;
-  for (const Vector3d& rates : recording.rates) {
-    mean += rates;
-    squares += rates.squaredNorm();
-  }
-  const auto count = static_cast<double>(recording.rates.size());
-  return std::sqrt(squares / count - (mean / count).squaredNorm());
-}
-
-void require_poses(const Recording& recording) {
+void require_poses(const MotionRecording& recording) {
   const double duration_s =
       recording.poses.empty() ? 0.0 : recording.poses.back().time_s - recording.poses.front().time_s;
   if (duration_s < kShortestAlignment_s || recording.poses.size() < kLeastPoses)
@@ -601,17 +487,18 @@ void require_one_motion(const BodyAlignment& found) {
       "or units of "
       "one of them wrong ('swiftlet check vehicle --hand')",
       1e3 * found.position_noise_m, 1e3 * found.orientation_noise_rad, found.refused, found.poses,
-      found.force_noise / std::sqrt(kShortestInterval_s), found.rate_noise / std::sqrt(kShortestInterval_s)));
+      found.force_noise / std::sqrt(kShortestPoseInterval_s),
+      found.rate_noise / std::sqrt(kShortestPoseInterval_s)));
 }
 
 }  // namespace
 
 BodyAlignment align_body(const FlightLog& log, const AlignmentPriors& priors) {
   require_rows(log);
-  const Recording recording = recording_of(log);
+  const MotionRecording recording = recording_of(log);
   require_poses(recording);
   // In a calm hover the delay has no effect, and noise would pass for one.
-  const bool tells_delay = rms_rates(recording) > kTurning_rad_s;
+  const bool tells_delay = recording.rms_rates() > kTurning_rad_s;
   AlignmentPriors used = priors;
   if (!tells_delay) used.pose_delay_s = kKnownDelay_s;
   Noise noise;
