@@ -137,7 +137,7 @@ struct Sought {
 // The state after an interval, with the derivatives of its errors and their variances.
 struct Propagation {
   State state;
-  MotionMatrix F = MotionMatrix::Identity();
+  MotionMatrix transition = MotionMatrix::Identity();
   Eigen::Matrix<double, kMotion, 2> by_vertical = Eigen::Matrix<double, kMotion, 2>::Zero();
   Motion variance = Motion::Zero();
 };
@@ -168,7 +168,7 @@ Propagation propagate(const State& from, const MotionRecording::Interval& interv
   }
   out.state.attitude.normalize();
   const Matrix3d from_body = from.attitude.toRotationMatrix();
-  MotionMatrix& F = out.F;
+  MotionMatrix& F = out.transition;
   F.block<3, 3>(kVelocity, kAttitude) = -hat(velocity_change) * from_body;
   F.block<3, 3>(kVelocity, kForceBias) = -dt * from_body;
   F.block<3, 3>(kPosition, kVelocity) = dt * Matrix3d::Identity();
@@ -378,25 +378,25 @@ class AlignmentFit {
         c += seen.by_parameters.transpose() * weights.asDiagonal() * seen.residual;
       }
       MotionMatrix to_next = MotionMatrix::Zero();
-      MotionMatrix next_A = MotionMatrix::Zero();
-      MotionParameters next_B = MotionParameters::Zero();
+      MotionMatrix hessian_of_next = MotionMatrix::Zero();
+      MotionParameters border_of_next = MotionParameters::Zero();
       Motion next_a = Motion::Zero();
       if (k + 1 < states_.size()) {
         const Propagation step = propagate(states_[k], recording_.intervals[k], sought_, noise_);
         const Motion weight = step.variance.cwiseInverse();
         const Motion off =
             step.state.minus(states_[k + 1]);  // = next error - F * error - by_vertical * vertical
-        const MotionMatrix weighted = step.F.transpose() * weight.asDiagonal();
+        const MotionMatrix weighted = step.transition.transpose() * weight.asDiagonal();
         const Eigen::Matrix<double, kMotion, 2> weighted_vertical = weight.asDiagonal() * step.by_vertical;
-        A += weighted * step.F;
+        A += weighted * step.transition;
         a -= weighted * off;
         B.middleCols<2>(kVertical) += weighted * step.by_vertical;
         C.block<2, 2>(kVertical, kVertical) += step.by_vertical.transpose() * weighted_vertical;
         c.segment<2>(kVertical) -= weighted_vertical.transpose() * off;
         to_next = -weighted;
-        next_A = weight.asDiagonal();
+        hessian_of_next = weight.asDiagonal();
         next_a = weight.cwiseProduct(off);
-        next_B.middleCols<2>(kVertical) = -weighted_vertical;
+        border_of_next.middleCols<2>(kVertical) = -weighted_vertical;
       }
       Eliminated& one = eliminated_[k];
       const Eigen::LLT<MotionMatrix> solver(A);
@@ -406,8 +406,8 @@ class AlignmentFit {
       one.value = solver.solve(a);
       C -= B.transpose() * one.by_parameters;
       c -= B.transpose() * one.value;
-      A = next_A - to_next.transpose() * one.by_next;
-      B = next_B - to_next.transpose() * one.by_parameters;
+      A = hessian_of_next - to_next.transpose() * one.by_next;
+      B = border_of_next - to_next.transpose() * one.by_parameters;
       a = next_a - to_next.transpose() * one.value;
     }
     const Eigen::LDLT<ParameterMatrix> solver(C);
