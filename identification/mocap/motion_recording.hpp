@@ -14,7 +14,7 @@ constexpr double kShortestPoseInterval_s = 0.009;  // between poses that are use
 // The poses of a body in flight, and the samples of the IMU between them.
 struct MotionRecording {
   struct Reading {
-    double dt = 0.0;
+    double dt = 0.0;        // s
     Eigen::Vector3d force;  // m/s^2, FRD
     Eigen::Vector3d rates;  // rad/s, FRD
   };
@@ -26,7 +26,7 @@ struct MotionRecording {
   };
 
   std::vector<FlightPose> poses;
-  std::vector<Interval> intervals;     // one less
+  std::vector<Interval> intervals;     // one less than poses
   std::vector<Eigen::Vector3d> force;  // at the poses
   std::vector<Eigen::Vector3d> rates;
 
@@ -34,7 +34,7 @@ struct MotionRecording {
   double rms_rates() const;
 };
 
-// Of the poses in the air, if the log has a take-off or a landing.
+// Of the poses in the air, if the log has a take-off or a landing. The log has at least two samples of the IMU.
 MotionRecording recording_of(const FlightLog& log);
 
 // Density of white noise, in units of the values per square root of Hz, from second differences: the motion has next to none.

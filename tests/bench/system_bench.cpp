@@ -5,9 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
-#include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -49,7 +47,7 @@ struct Options {
   bool json = false;
 };
 
-// ---- programs
+// ---- load
 
 // Loads every core during its lifetime with two processes of arithmetic, memory accesses and system calls.
 class CpuLoad {

@@ -13,6 +13,7 @@
 #include "swiftlet/identification/mocap/body_alignment.hpp"
 #include "swiftlet/math/random.hpp"
 #include "swiftlet/math/rotation_vector.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 #include "tests/support/campaign.hpp"
 #include "tests/unit/ground/identify/identified_flights.hpp"
 
@@ -159,7 +160,7 @@ FlightLog standing(std::uint64_t seed) {
   FlightLog log;
   for (int i = 0; i < 3000; ++i) {
     log.time_s.push_back(0.002 * i);
-    log.specific_force_frd.push_back(Vector3d(0.0, 0.0, -9.80665) + 0.06 * random.normal3());
+    log.specific_force_frd.push_back(Vector3d(0.0, 0.0, -plant::kGravity) + 0.06 * random.normal3());
     log.body_rates_frd.push_back(0.005 * random.normal3());
     if (i % 5 == 0)
       log.poses.push_back(
