@@ -49,6 +49,7 @@ class Processes:
         self.running.append(subprocess.Popen(
             [self.programs / name, *map(str, words), "--domain", str(self.domain), "--localhost-only"], cwd=self.work,
             stdout=path.open("w"), stderr=subprocess.STDOUT))
+        return self.running[-1]
 
     def run(self, name, *words):
         done = subprocess.run([self.programs / name, *words, "--domain", str(self.domain), "--localhost-only"], cwd=self.work,
@@ -119,7 +120,9 @@ class Interop:
             for vehicle, (level, _) in LEVELS.items():
                 processes.start("swiftlet-control", "--vehicle-name", vehicle, "--level", level, "--no-realtime",
                                 log=f"swiftlet-control-{vehicle}")
-            processes.start("swiftlet", "set", "control", "motor_lag")
+            # Requests are volatile: a listener that meets the tool after its request does not hear it, and it sends only one.
+            while listeners["kl1"].poll() is None:
+                processes.start("swiftlet", "set", "control", "motor_lag").wait(PATIENCE_S)
             output = "".join(self.finish(listener, f"listening to {vehicle}") for vehicle, listener in listeners.items())
         return set(output.split())
 
