@@ -224,6 +224,21 @@ inline void set_repair_times(eprosima::fastdds::dds::DataReaderQos& qos, const D
 
 // ---- discovery
 
+// Functions inside of the library, as it exports them: PDP::check_remote_participant_liveliness(ParticipantProxyData*) and
+// PDP::remove_remote_participant(const GUID_t&, ...).
+#if SWIFTLET_FAST_DDS_3
+#define SWIFTLET_PDP_CHECK_LEASE \
+  "_ZN8eprosima7fastdds4rtps3PDP35check_remote_participant_livelinessEPNS1_20ParticipantProxyDataE"
+#define SWIFTLET_PDP_REMOVE_PARTICIPANT \
+  "_ZN8eprosima7fastdds4rtps3PDP25remove_remote_participantERKNS1_6GUID_tENS1_26ParticipantDiscoveryStatusE"
+#else
+#define SWIFTLET_PDP_CHECK_LEASE \
+  "_ZN8eprosima8fastrtps4rtps3PDP35check_remote_participant_livelinessEPNS1_20ParticipantProxyDataE"
+#define SWIFTLET_PDP_REMOVE_PARTICIPANT                                     \
+  "_ZN8eprosima8fastrtps4rtps3PDP25remove_remote_participantERKNS1_6GUID_t" \
+  "ENS1_24ParticipantDiscoveryInfo16DISCOVERY_STATUSE"
+#endif
+
 template <class Qos>
 EndpointQos endpoint_qos(const Qos& qos, bool without_positive_acks) {
   return {qos.reliability().kind, qos.durability().kind, qos.ownership().kind,
