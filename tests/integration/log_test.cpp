@@ -379,12 +379,15 @@ TEST_F(LogTools, PublishTheMessagesAgain) {
   const ProgramResult replayed =
       run_program("swiftlet", on_this_domain({"log", "replay", file_, "--json"}), folder_.path(), kStuck);
   ASSERT_EQ(replayed.exit_code, 0) << replayed.errors;
+  const auto before = heads_of(mcap::Reader(file_));
+  const auto& imu = before.at("/kl1/imu");
+  ASSERT_TRUE(eventually([&] {
+    const auto written = heads_of(mcap::Reader(again, mcap::Access::kScanned));
+    return written.count("/kl1/imu") == 1 && written.at("/kl1/imu").size() == imu.size();
+  }));
   recorder->signal(SIGINT);
   ASSERT_EQ(recorder->wait(kStuck), 0) << recorder->errors();
-  const auto before = heads_of(mcap::Reader(file_));
   const auto after = heads_of(mcap::Reader(again));
-  const auto& imu = before.at("/kl1/imu");
-  ASSERT_EQ(after.at("/kl1/imu").size(), imu.size());
   const auto length_ns = [](const std::vector<mcap::Message>& messages) {
     return messages.back().log_time_ns - messages.front().log_time_ns;
   };
