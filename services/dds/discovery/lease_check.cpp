@@ -1,6 +1,6 @@
 // Fast DDS checks the lease of a participant in its thread for events, and removes one that says goodbye in a thread that
 // receives. If the check waits meanwhile for the lock of what was discovered, it finds nobody afterwards, and an assertion of
-// PDP::check_remote_participant_liveliness() ends the process (PDP.cpp:1140 of 2.9.1, :1476 of 3.1.2). That takes some
+// PDP::check_remote_participant_liveliness() ends the process (PDP.cpp:1140 of 2.9.1, :1477 of 3.1.2). That takes some
 // thousand goodbyes at the right moment: whoever may announce participants has them within seconds.
 //
 // Both functions are exported. A program's own definitions come before those of a shared library, so that Fast DDS calls
