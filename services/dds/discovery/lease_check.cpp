@@ -20,7 +20,7 @@ namespace {
 
 // How ParticipantProxyData of Fast DDS 2.9 to 3.1 begins, which 3.1 does not declare for others.
 struct DiscoveredParticipant {
-  virtual ~DiscoveredParticipant() = default;
+  const void* virtual_functions;
   rtps::ProtocolVersion_t version;
   rtps::GUID_t guid;  // unknown: it was removed
 };
@@ -61,7 +61,7 @@ bool swiftlet_remove_participant(void* pdp, const rtps::GUID_t& guid,
 
 void swiftlet_check_lease(void* pdp, void* participant) {
   const std::lock_guard<std::recursive_mutex> lock(lock_of(pdp));
-  if (static_cast<DiscoveredParticipant*>(participant)->guid != rtps::GUID_t::unknown())
+  if (static_cast<const DiscoveredParticipant*>(participant)->guid != rtps::GUID_t::unknown())
     replaced().check_lease(pdp, participant);
 }
 
