@@ -274,7 +274,7 @@ Command add_mocap_calibrate_command(runtime::CommandLine mocap) {
           .type_name("PATH");
   hover.excludes(log).excludes(rest).excludes(turn);
   log.excludes(rest).excludes(turn);
-  app.add_option("--time", options->time_s, "How long --hover records, s")
+  app.add_option("--time", options->time_s, "How long --hover records, s of the vehicle's clock")
       .range(identification::kShortestAlignment_s, 120.0)
       .show_default()
       .needs(hover);

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <variant>
@@ -30,6 +31,7 @@ using identification::FlightLog;
 using namespace std::chrono_literals;
 
 constexpr double kLongestWait_s = 10.0;
+constexpr double kSlowest = 10.0;  // real time in that of the vehicle
 
 void add_imu(FlightLog& log, double time_s, const Eigen::Vector3d& force, const Eigen::Vector3d& rates) {
   if (!log.time_s.empty() && time_s <= log.time_s.back()) return;
@@ -152,7 +154,16 @@ FlightLog receive_motion(const comms::NodeSettings& settings, double time_s, run
                                            settings.vehicle, kLongestWait_s));
   }
   recorder.restart();
-  record(std::chrono::milliseconds(std::llround(1e3 * time_s)));
+  std::optional<std::int64_t> first_ns;
+  double recorded_s = 0.0;
+  const auto end = std::chrono::steady_clock::now() + kSlowest * std::chrono::duration<double>(time_s);
+  while (recorded_s < time_s && std::chrono::steady_clock::now() < end) {
+    record(50ms);
+    if (const auto imu = recorder.newest_imu()) {
+      first_ns = first_ns.value_or(imu->imu.stamp_ns);
+      recorded_s = 1e-9 * static_cast<double>(imu->imu.stamp_ns - *first_ns);
+    }
+  }
   const VehicleRecording recording = recorder.recording();
   FlightLog log;
   log.name = settings.vehicle;

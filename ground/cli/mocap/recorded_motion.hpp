@@ -16,8 +16,8 @@ namespace swiftlet::ground {
 identification::FlightLog read_motion(const std::string& file, const std::string& vehicle,
                                       std::optional<double> from_s, std::optional<double> until_s);
 
-// Receives for this time, from the first sample of both on. Throws std::runtime_error if one of them does not come, or if
-// interrupted.
+// Receives for this time of the vehicle's clock, from the first sample of both on; at most ten times as long. Throws
+// std::runtime_error if one of them does not come, or if interrupted.
 identification::FlightLog receive_motion(const comms::NodeSettings& settings, double time_s,
                                          runtime::StopSignal& stop);
 
