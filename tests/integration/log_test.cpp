@@ -257,7 +257,7 @@ TEST_F(Log, OnAFullDiskEndsWithAnErrorAndIsReadable) {
   const std::string file = path("full.mcap");
   const ProgramResult recorder = run_program(
       "/usr/bin/prlimit",
-      on_this_domain({"--fsize=100000", SWIFTLET_BIN_DIR "/swiftlet", "record", "--output", file}),
+      on_this_domain({"--fsize=100000", (SWIFTLET_BIN_DIR "/swiftlet"), "record", "--output", file}),
       folder_.path(), kStuck);
   EXPECT_EQ(recorder.exit_code, 1);
   EXPECT_NE(recorder.errors.find(file + ": cannot be written: File too large"), std::string::npos)

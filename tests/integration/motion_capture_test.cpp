@@ -47,7 +47,7 @@ struct Pose {
 // The pose of the body that is fixed to the vehicle like this, with the noise of cameras: they see no pose twice.
 Pose body_of(const comms::msg::GroundTruth& truth) {
   constexpr double kNoiseM = 2e-5;
-  const auto phase = static_cast<double>(truth.stamp_ns() / 1'000'000);
+  const double phase = 1e-6 * static_cast<double>(truth.stamp_ns());
   const Vector3d noise = kNoiseM * Vector3d(std::sin(phase), std::sin(2.0 * phase), std::cos(phase));
   const auto& p = truth.position_ned();
   const auto& q = truth.q_ned_from_frd();
@@ -116,7 +116,7 @@ class MotionCapture : public SeparateProcesses {
     return result.exit_code == 0 ? json::parse(result.output).at("rms_3d_m").get<double>() : 1e9;
   }
   std::string hop() const {
-    const std::string file = (folder_.path() / "hop.yaml").string();
+    std::string file = (folder_.path() / "hop.yaml").string();
     std::ofstream(file) << kHopMission;
     return file;
   }
@@ -300,7 +300,7 @@ class MotionCaptureOptions : public testing::Test {
     EXPECT_EQ(result.exit_code, 2) << result.errors;
     return result.errors;
   }
-  const TemporaryFolder folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(MotionCaptureOptions, ThatDoNotGoTogetherAreRefused) {

@@ -108,7 +108,7 @@ FlightLog cut(const FlightLog& log, double from_s, double until_s) {
 
 // The record of this vehicle: a folder of several has one for each. Throws ConfigError if it is of another one.
 fs::path record_of(const fs::path& file, const std::string& vehicle) {
-  const fs::path record = fs::is_directory(file / vehicle) ? file / vehicle : file;
+  fs::path record = fs::is_directory(file / vehicle) ? file / vehicle : file;
   const fs::path report = (fs::is_directory(record) ? record : record.parent_path()) / "report.json";
   if (!fs::exists(report)) return record;
   const auto json = nlohmann::json::parse(runtime::read_text_file(report.string()), nullptr, false);
