@@ -145,13 +145,15 @@ FlightLog receive_motion(const comms::NodeSettings& settings, double time_s, run
   const auto record = [&](std::chrono::milliseconds time) {
     if (!recorder.record(time, interrupted)) throw std::runtime_error("mocap calibrate: interrupted");
   };
+  const auto missing = [&](const char* topic) {
+    return std::runtime_error(
+        fmt::format("no {} of {} arrived in {:g} s", topic, settings.vehicle, kLongestWait_s));
+  };
   const auto begin = std::chrono::steady_clock::now();
   while (!recorder.newest_imu() || !recorder.newest_tracked_pose()) {
     record(50ms);
     if (std::chrono::steady_clock::now() - begin > std::chrono::duration<double>(kLongestWait_s))
-      throw std::runtime_error(fmt::format("no {} of {} arrived in {:g} s",
-                                           recorder.newest_imu() ? "tracked mocap_pose" : "imu",
-                                           settings.vehicle, kLongestWait_s));
+      throw missing(recorder.newest_imu() ? "tracked mocap_pose" : "imu");
   }
   recorder.restart();
   std::optional<std::int64_t> first_ns;
@@ -159,6 +161,7 @@ FlightLog receive_motion(const comms::NodeSettings& settings, double time_s, run
   const auto end = std::chrono::steady_clock::now() + kSlowest * std::chrono::duration<double>(time_s);
   while (recorded_s < time_s && std::chrono::steady_clock::now() < end) {
     record(50ms);
+    if (1e-9 * static_cast<double>(recorder.imu_silence_ns()) > kLongestWait_s) throw missing("imu");
     if (const auto imu = recorder.newest_imu()) {
       first_ns = first_ns.value_or(imu->imu.stamp_ns);
       recorded_s = 1e-9 * static_cast<double>(imu->imu.stamp_ns - *first_ns);

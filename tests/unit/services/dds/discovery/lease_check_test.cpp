@@ -10,7 +10,6 @@
 #include <pthread.h>
 #include <string>
 #include <sys/socket.h>
-#include <thread>
 #include <unistd.h>
 #include <vector>
 
@@ -30,18 +29,26 @@ namespace {
 using namespace std::chrono_literals;
 using tests::ByteWriter;
 using tests::eventually;
-using Clock = std::chrono::steady_clock;
 
-constexpr auto kLease = 1s;  // the shortest that the check of datagrams lets pass
-constexpr auto kHold = 20ms;
+constexpr auto kLease = 1s;    // the shortest that the check of datagrams lets pass
+constexpr auto kHold = 100ms;  // at most
 
 std::atomic<int> held_checks{0};
+std::atomic<const Participant*> checking{nullptr};
 
 // Whether this is the place where Fast DDS checks a lease and takes the lock of what was discovered.
 bool is_in_lease_check(const void* address) {
   static const auto start = reinterpret_cast<std::uintptr_t>(dlsym(RTLD_NEXT, SWIFTLET_PDP_CHECK_LEASE));
   constexpr std::uintptr_t kBeginning_bytes = 128;
   return reinterpret_cast<std::uintptr_t>(address) - start < kBeginning_bytes;
+}
+
+// Until the participant whose lease is checked is gone. With the replacement it cannot leave meanwhile.
+void hold_check() {
+  const Participant* const participant = checking;
+  if (participant == nullptr) return;
+  ++held_checks;
+  eventually([&] { return participant->processes_seen().empty(); }, kHold);
 }
 
 // A participant of another process, which announces itself to one process and says goodbye.
@@ -87,23 +94,24 @@ class Stranger {
   const std::uint16_t port_;
 };
 
-// Each check begins before the goodbye, and goes on after it. Without the replacement that ends this process.
+// The goodbye is said while the check is held. Without the replacement that ends this process.
 TEST(LeaseCheck, EndsNoProcessIfAParticipantLeavesMeanwhile) {
   constexpr std::uint8_t kStrangers = 5;
   const DomainLock lock;
   const Participant participant(tests::settings_of("tool", lock));
   const DiscoveryPorts ports = discovery_ports(lock.domain());
   const std::uint32_t port = ports.first + *own_discovery_ports(lock.domain()).begin() * ports.gap;
+  checking = &participant;
   for (std::uint8_t i = 0; i < kStrangers; ++i) {
     const Stranger stranger(i, static_cast<std::uint16_t>(port));
-    const auto announced = Clock::now();
+    const int held_before = held_checks;
     stranger.announce();
     EXPECT_TRUE(eventually([&] { return participant.processes_seen().size() == 1; }));
-    std::this_thread::sleep_until(announced + kLease + kHold / 2);
+    EXPECT_TRUE(eventually([&] { return held_checks > held_before; }));
     stranger.say_goodbye();
     EXPECT_TRUE(eventually([&] { return participant.processes_seen().empty(); }));
   }
-  EXPECT_GE(held_checks, kStrangers);
+  checking = nullptr;
 }
 
 }  // namespace
@@ -113,9 +121,6 @@ TEST(LeaseCheck, EndsNoProcessIfAParticipantLeavesMeanwhile) {
 extern "C" int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
   static auto* const lock =
       reinterpret_cast<decltype(&pthread_mutex_lock)>(dlsym(RTLD_NEXT, "pthread_mutex_lock"));
-  if (swiftlet::comms::is_in_lease_check(__builtin_return_address(0))) {
-    ++swiftlet::comms::held_checks;
-    std::this_thread::sleep_for(swiftlet::comms::kHold);
-  }
+  if (swiftlet::comms::is_in_lease_check(__builtin_return_address(0))) swiftlet::comms::hold_check();
   return lock(mutex);
 }
