@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/core.h>
@@ -11,7 +12,6 @@
 #include "swiftlet/ground/client/action.hpp"
 #include "swiftlet/recording/flight_window.hpp"
 #include "swiftlet/recording/tracking.hpp"
-#include "swiftlet/services/dds/clocks/clock_client.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::ground {
@@ -183,21 +183,21 @@ std::int64_t NetworkTransport::at_vehicle_rate(std::int64_t host_ns) const {
   return watch_.speed == 1.0 ? host_ns : std::llround(static_cast<double>(host_ns) * watch_.speed);
 }
 
-void NetworkTransport::learn_clock() {
-  const auto own_ns = [this] { return at_vehicle_rate(runtime::monotonic_ns()); };
-  comms::ClockClient vehicle_clock(client_.node(), own_ns, comms::ClockClient::Reporting::kNone);
+void NetworkTransport::update_clock_offset(comms::ClockClient& vehicle_clock) {
+  vehicle_clock.ask_if_due();
+  const std::int64_t now_ns = at_vehicle_rate(runtime::monotonic_ns());
+  if (const auto stamp_ns = vehicle_clock.to_vehicle(now_ns)) clock_offset_ns_ = *stamp_ns - now_ns;
+}
+
+void NetworkTransport::learn_clock_offset(comms::ClockClient& vehicle_clock) {
   const auto start = Clock::now();
-  std::optional<std::int64_t> stamp_ns;
-  for (Clock::duration asked{}; asked < kClockTime || !stamp_ns; asked = Clock::now() - start) {
+  for (Clock::duration asked{}; asked < kClockTime || !clock_offset_ns_; asked = Clock::now() - start) {
     require_alive();
     if (watch_.interrupts() > 0) abandon("interrupted before take-off");
     if (asked > kClockTimeout)
       abandon("the vehicle does not answer clock_request: vehicles that start together need a common clock");
-    vehicle_clock.ask_if_due();
+    update_clock_offset(vehicle_clock);
     client_.wait(kClockStep, [](const View&) { return false; });
-    const std::int64_t now_ns = own_ns();
-    stamp_ns = vehicle_clock.to_vehicle(now_ns);
-    if (stamp_ns) clock_offset_ns_ = *stamp_ns - now_ns;
   }
 }
 
@@ -208,7 +208,13 @@ Result NetworkTransport::upload() {
 
 void NetworkTransport::wait_for_other_vehicles() {
   if (watch_.barrier == nullptr) return;
-  if (!lockstep_) learn_clock();
+  std::optional<comms::ClockClient> vehicle_clock;
+  if (!lockstep_) {
+    vehicle_clock.emplace(
+        client_.node(), [this] { return at_vehicle_rate(runtime::monotonic_ns()); },
+        comms::ClockClient::Reporting::kNone);
+    learn_clock_offset(*vehicle_clock);
+  }
   if (const Result answer = upload(); !answer.accepted()) {
     require_alive();
     abandon(watch_.interrupts() > 0 ? "interrupted" : "mission refused: " + answer.reason);
@@ -219,10 +225,11 @@ void NetworkTransport::wait_for_other_vehicles() {
     const auto failure = watch_.barrier->failure();
     if (failure || watch_.interrupts() > 0) abandon(failure.value_or("interrupted"));
     progress_.update(kBeforeFlight, "armed, waiting for the other vehicles");
+    if (vehicle_clock) update_clock_offset(*vehicle_clock);
   }
   const std::int64_t all_ready_ns = watch_.barrier->ready_ns();
   start_ns_ = lockstep_ ? all_ready_ns + kStartAheadNs
-                        : at_vehicle_rate(all_ready_ns + kRealtimeStartAheadNs) + clock_offset_ns_;
+                        : at_vehicle_rate(all_ready_ns + kRealtimeStartAheadNs) + *clock_offset_ns_;
 }
 
 MissionTransport::Reply NetworkTransport::start_mission() {

@@ -10,6 +10,7 @@
 #include "swiftlet/ground/terminal/progress.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/recording/flight_record.hpp"
+#include "swiftlet/services/dds/clocks/clock_client.hpp"
 #include "swiftlet/services/runtime/clock.hpp"
 #include "swiftlet/simulation/mission_runner.hpp"
 
@@ -62,7 +63,9 @@ class NetworkTransport final : public MissionTransport {
 
   Result upload();
   std::int64_t at_vehicle_rate(std::int64_t host_ns) const;
-  void learn_clock();
+  // The clocks drift while the other vehicles are awaited: the offset is measured until the start is chosen.
+  void update_clock_offset(comms::ClockClient& vehicle_clock);
+  void learn_clock_offset(comms::ClockClient& vehicle_clock);
   void wait_until(const std::function<bool(const View&)>& holds, const std::string& what_not);
   void wait_until_samples_come();
   void wait_until_paused_at(std::int64_t stamp_ns);
@@ -79,8 +82,8 @@ class NetworkTransport final : public MissionTransport {
   const MissionFile& mission_;
   bool lockstep_;
   std::int64_t paused_at_ns_ = 0;  // in lockstep, before the mission
-  std::int64_t clock_offset_ns_ =
-      0;  // in real time: the vehicle's clock minus the monotonic one of this host at its speed
+  // In real time: the vehicle's clock minus the monotonic one of this host at its speed.
+  std::optional<std::int64_t> clock_offset_ns_;
   std::int64_t start_ns_ = 0;  // on the vehicle's clock; 0: at once
   Result armed_;               // the answer to the last request to arm
   Result start_;               // the answer to the request that started the mission
