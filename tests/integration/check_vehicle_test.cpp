@@ -99,8 +99,14 @@ TEST_F(CheckVehicle, ThePlantPassesAndItsRotorsEndOff) {
 TEST_F(CheckVehicle, SendsNoThrottlesToAVehicleThatDoesNotAcceptThem) {
   plant_ = start("swiftlet-plant", {"--level", "attitude"});
   mocap_ = start("swiftlet-mocap");
-  const ProgramResult result = swiftlet({"check", "vehicle", "--props-off", "--yes", "--json"});
-  EXPECT_EQ(result.exit_code, 1) << result.errors;
+  // A machine that stalls may fail a check of the streams too: then it is checked again, twice at most.
+  ProgramResult result;
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    result = swiftlet({"check", "vehicle", "--props-off", "--yes", "--json"});
+    ASSERT_EQ(result.exit_code, 1) << result.errors;
+    if (json::parse(result.output).at("failed") == 1) break;
+  }
+  EXPECT_EQ(json::parse(result.output).at("failed"), 1) << result.output;
   EXPECT_EQ(finding_of(result, "commands.steps"),
             "fail: the check commands throttles, and the vehicle accepts only level attitude");
 }

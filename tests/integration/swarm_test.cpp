@@ -208,14 +208,20 @@ TEST_F(SwarmFlight, FliesVehiclesOfTwoFilesFromTheirPlaces) {
   }
 }
 
-// Later by what a vehicle's clock has lost just before its start, as on a busy computer.
+// A flight is repeated if a vehicle's clock fell behind before its start, as on a computer that stalls. On one that always does,
+// the starts differ by what the clocks have lost at most.
 TEST_F(SwarmFlight, StartsWithinTwoMillisecondsInRealTime) {
-  const ProgramResult result = fly(fleet("crazyflie2"), {"--mcap", "--replace"});
-  ASSERT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_EQ(result.errors.find("without monitor"), std::string::npos) << result.errors;
-  const Start a = start_of(recorded("/a/command"), recorded("/a/imu"));
-  const Start b = start_of(recorded("/b/command"), recorded("/b/imu"));
-  const double within_ns = 2e6 + a.lost_ns + b.lost_ns;
+  constexpr double kSteady_ns = 0.3e6;
+  Start a, b;
+  for (int attempt = 0; attempt < 5 && (attempt == 0 || a.lost_ns + b.lost_ns > kSteady_ns); ++attempt) {
+    const ProgramResult result = fly(fleet("crazyflie2"), {"--mcap", "--replace"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_EQ(result.errors.find("without monitor"), std::string::npos) << result.errors;
+    a = start_of(recorded("/a/command"), recorded("/a/imu"));
+    b = start_of(recorded("/b/command"), recorded("/b/imu"));
+  }
+  const double lost_ns = a.lost_ns + b.lost_ns;
+  const double within_ns = lost_ns > kSteady_ns ? 2e6 + lost_ns : 2e6;
   EXPECT_NEAR(a.wall_ns, b.wall_ns, within_ns);
   RecordProperty("difference_us", static_cast<int>(1e-3 * std::abs(a.wall_ns - b.wall_ns)));
   expect_same_climb(a, b, within_ns);
