@@ -34,8 +34,7 @@ FlightController::FlightController(FlightController&&) noexcept = default;
 FlightController& FlightController::operator=(FlightController&&) noexcept = default;
 
 const plant::VehicleCommand& FlightController::on_imu(const plant::ImuSample& sample) {
-  ClientInputs none;
-  return on_imu(sample, none);
+  return on_imu(sample, impl_->no_clients);
 }
 
 const plant::VehicleCommand& FlightController::on_imu(const plant::ImuSample& sample, ClientInputs& clients) {
@@ -46,8 +45,7 @@ const plant::VehicleCommand& FlightController::on_imu(const plant::ImuSample& sa
 }
 
 const plant::VehicleCommand& FlightController::on_odometry(const plant::OdometrySample& sample) {
-  ClientInputs none;
-  return on_odometry(sample, none);
+  return on_odometry(sample, impl_->no_clients);
 }
 
 const plant::VehicleCommand& FlightController::on_odometry(const plant::OdometrySample& sample,

@@ -92,6 +92,7 @@ struct FlightController::Impl {
   EstimateSource estimate_source;
   bool brings_odometry = false;  // the vehicle, in place of IMU samples
   PosesAhead poses_ahead;
+  ClientInputs no_clients;  // stays empty
   RotorObserver rotors;
   LiftObserver lift;
   std::int64_t lift_off_ns = 0;  // stamp of the lift-off; 0: not yet

@@ -9,6 +9,7 @@
 #include "swiftlet/control/flight_controller_impl.hpp"
 #include "swiftlet/control/position/thrust_attitude_map.hpp"
 #include "swiftlet/math/euler.hpp"
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/plant/model/airframe.hpp"
 #include "swiftlet/plant/model/rotor.hpp"
 
@@ -26,8 +27,6 @@ constexpr double kDescentLimit = 2.0;  // m/s^2, of that acceleration
 // Of the lag of the attitude loop, by which the law kLead leads. A longer lead helps little more in gusts, and passes
 // on more noise.
 constexpr double kLeadShare = 2.0 / 3.0;
-
-double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 // N m about each axis: of rotors in hover, those on one side at no thrust and the others at twice theirs.
 Vector3d differential_moment(const plant::Vehicle& vehicle) {
@@ -107,8 +106,8 @@ std::optional<plant::ImuSample> FlightController::Impl::predict(const plant::Odo
 void FlightController::Impl::count_unusable(bool usable, std::int64_t stamp_ns) {
   unusable_samples = usable ? 0 : unusable_samples + 1;
   if (unusable_samples == 1) unusable_since_ns = std::min(stamp_ns, last_stamp_ns);
-  unusable_s = usable ? 0.0 : seconds(stamp_ns - unusable_since_ns);
-  const bool started_again = seconds(last_stamp_ns - stamp_ns) > settings.failsafe.imu_timeout_s;
+  unusable_s = usable ? 0.0 : math::seconds(stamp_ns - unusable_since_ns);
+  const bool started_again = math::seconds(last_stamp_ns - stamp_ns) > settings.failsafe.imu_timeout_s;
   if (unusable_samples >= kUnusableToFault || started_again)
     unusable_s = std::numeric_limits<double>::infinity();
 }
@@ -125,7 +124,7 @@ SupervisorInputs FlightController::Impl::inputs() const {
   inputs.pose_jumped = estimate.resets != resets_seen;
   inputs.has_battery = has_battery;
   inputs.supply_voltage_v = supply_voltage_v;
-  inputs.battery_age_s = seconds(estimate.stamp_ns - battery_stamp_ns);
+  inputs.battery_age_s = math::seconds(estimate.stamp_ns - battery_stamp_ns);
   inputs.vertical_specific_force_residual =
       -(specific_force_frd.z() - estimate.accelerometer_bias.z()) - lift_now();
   if (observes_lift_off()) inputs.lift_off_ns = lift.lifted_off() ? lift_off_ns : kNoLiftOffYet;
@@ -140,19 +139,19 @@ SupervisorInputs FlightController::Impl::inputs() const {
   inputs.rotors_running = rotors_running || level == plant::ControlLevel::kActuators;
   if (level != plant::ControlLevel::kActuators && vehicle_fault[0] != '\0') {
     inputs.vehicle_fault = vehicle_fault.data();
-    inputs.vehicle_fault_s = seconds(last_stamp_ns - vehicle_fault_since_ns);
+    inputs.vehicle_fault_s = math::seconds(last_stamp_ns - vehicle_fault_since_ns);
   }
   inputs.gains = &gain_change.to;
   inputs.gains_progress = gain_change.progress(last_stamp_ns);
   inputs.gains_changing_s = gain_change.remaining_s(last_stamp_ns);
-  if (saturated_ns >= 0) inputs.unsaturated_s = seconds(last_stamp_ns - saturated_ns);
+  if (saturated_ns >= 0) inputs.unsaturated_s = math::seconds(last_stamp_ns - saturated_ns);
   return inputs;
 }
 
 // Stores a usable sample and runs the rotor model up to it. Returns the time since the last sample, s.
 double FlightController::Impl::store_sample(const plant::ImuSample& sample) {
   if (!has_battery && last_stamp_ns == 0) battery_stamp_ns = sample.stamp_ns;  // starts the battery time-out
-  imu_gap_s = last_stamp_ns == 0 ? kFirstStep_s : seconds(sample.stamp_ns - last_stamp_ns);
+  imu_gap_s = last_stamp_ns == 0 ? kFirstStep_s : math::seconds(sample.stamp_ns - last_stamp_ns);
   const double dt_s = std::min(imu_gap_s, kMaxStep_s);
   last_stamp_ns = sample.stamp_ns;
   specific_force_frd = sample.specific_force_frd;

@@ -13,6 +13,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "swiftlet/io/nearest_name.hpp"
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::runtime {
@@ -28,7 +29,7 @@ constexpr std::size_t kMaxShownLength = 60;
 // the file.
 constexpr const char* kDocumentEnd = "...\n";
 
-enum class Kind { kMissing, kNull, kScalar, kList, kMap };
+enum class NodeKind { kMissing, kNull, kScalar, kList, kMap };
 
 // A number as a person would write it: 0.1, not 0.10000000000000001.
 std::string format_value(double number) {
@@ -36,8 +37,6 @@ std::string format_value(double number) {
   out << number;
   return out.str();
 }
-
-bool is_printable(char c) { return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f; }
 
 // A text from the file, shortened and without control characters, for messages.
 std::string format_value(std::string_view text) {
@@ -52,7 +51,7 @@ std::string format_value(std::string_view text) {
   return out;
 }
 
-std::string joined(const std::vector<std::string>& names) {
+std::string alternatives(const std::vector<std::string>& names) {
   std::string out;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (i > 0) out += i + 1 == names.size() ? " or " : ", ";
@@ -63,7 +62,7 @@ std::string joined(const std::vector<std::string>& names) {
 
 std::string unknown_key(const std::vector<std::string>& known, const std::string& key) {
   if (known.empty()) return "is unknown, must be left out";
-  return "is unknown, must be one of " + joined(known) + or_nearest(known, key);
+  return "is unknown, must be one of " + alternatives(known) + or_nearest(known, key);
 }
 
 // Refuses what is not a text file before the YAML parser reads it.
@@ -102,7 +101,7 @@ std::string Bounds::to_string() const {
 }
 
 struct ConfigNode::Value {
-  Kind kind = Kind::kNull;
+  NodeKind kind = NodeKind::kNull;
   int line = 0;
   std::string key;  // from the root
   std::string scalar;
@@ -114,16 +113,16 @@ struct ConfigNode::Value {
 
   std::string describe() const {
     switch (kind) {
-      case Kind::kMissing:
+      case NodeKind::kMissing:
         return "missing";
-      case Kind::kNull:
+      case NodeKind::kNull:
         return "empty";
-      case Kind::kScalar:
+      case NodeKind::kScalar:
         return quoted ? '"' + format_value(std::string_view(scalar)) + '"'
                       : format_value(std::string_view(scalar));
-      case Kind::kList:
+      case NodeKind::kList:
         return "a list";
-      case Kind::kMap:
+      case NodeKind::kMap:
         return "a map";
     }
     return "";
@@ -162,7 +161,7 @@ class TreeBuilder final : public YAML::EventHandler {
   }
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    add(mark, "?", anchor, Kind::kNull, "");
+    add(mark, "?", anchor, NodeKind::kNull, "");
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
     fail(mark, "is an alias, must be written out");
@@ -170,16 +169,16 @@ class TreeBuilder final : public YAML::EventHandler {
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& value) override {
     const bool null = tag == "?" && (value.empty() || value == "~" || value == "null");
-    add(mark, tag, anchor, null ? Kind::kNull : Kind::kScalar, value);
+    add(mark, tag, anchor, null ? NodeKind::kNull : NodeKind::kScalar, value);
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                        YAML::EmitterStyle::value) override {
-    open(mark, add(mark, tag, anchor, Kind::kList, ""));
+    open(mark, add(mark, tag, anchor, NodeKind::kList, ""));
   }
   void OnSequenceEnd() override { stack_.pop_back(); }
   void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                   YAML::EmitterStyle::value) override {
-    open(mark, add(mark, tag, anchor, Kind::kMap, ""));
+    open(mark, add(mark, tag, anchor, NodeKind::kMap, ""));
   }
   void OnMapEnd() override { stack_.pop_back(); }
 
@@ -202,14 +201,14 @@ class TreeBuilder final : public YAML::EventHandler {
   }
 
   // Returns null if the scalar is a key of the map.
-  Value* add(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, Kind kind,
+  Value* add(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, NodeKind kind,
              const std::string& text) {
     if (anchor != 0) fail(mark, "has an anchor, must be without");
     if (!tag.empty() && tag != "?" && tag != "!") {
       fail(mark, "has the tag " + format_value(std::string_view(tag)) + ", must be without");
     }
-    if (!stack_.empty() && stack_.back().value->kind == Kind::kMap && !stack_.back().has_name) {
-      if (kind != Kind::kScalar) fail(mark, "has a key that is not a text, must be a plain name");
+    if (!stack_.empty() && stack_.back().value->kind == NodeKind::kMap && !stack_.back().has_name) {
+      if (kind != NodeKind::kScalar) fail(mark, "has a key that is not a text, must be a plain name");
       add_name(mark, text);
       return nullptr;
     }
@@ -225,7 +224,7 @@ class TreeBuilder final : public YAML::EventHandler {
       return raw;
     }
     Frame& frame = stack_.back();
-    if (frame.value->kind == Kind::kMap) {
+    if (frame.value->kind == NodeKind::kMap) {
       const std::string& name = frame.value->names.back();
       raw->key = frame.value->key.empty() ? name : frame.value->key + "." + name;
       raw->line = frame.name_line;
@@ -268,7 +267,7 @@ ConfigError missing_key(const std::string& file, const Value& missing) {
 void reject_unknown(const std::string& file, const Value& value) {
   for (std::size_t i = 0; i < value.children.size(); ++i) {
     const Value& child = *value.children[i];
-    if (value.kind == Kind::kMap && !value.open &&
+    if (value.kind == NodeKind::kMap && !value.open &&
         std::find(value.read_keys.begin(), value.read_keys.end(), value.names[i]) == value.read_keys.end()) {
       throw ConfigError(file, child.line, child.key, unknown_key(value.read_keys, value.names[i]));
     }
@@ -288,11 +287,11 @@ void ConfigNode::fail_type(const std::string& wanted) const {
   fail("is " + value_->describe() + ", must be " + wanted);
 }
 
-bool ConfigNode::is_missing() const { return value_->kind == Kind::kMissing; }
+bool ConfigNode::is_missing() const { return value_->kind == NodeKind::kMissing; }
 
 std::optional<ConfigNode> ConfigNode::find(const std::string& key) const {
   if (is_missing()) return std::nullopt;
-  if (value_->kind != Kind::kMap) fail_type("a map");
+  if (value_->kind != NodeKind::kMap) fail_type("a map");
   value_->mark_read(key);
   Value* const child = value_->child(key);
   if (child == nullptr) return std::nullopt;
@@ -302,7 +301,7 @@ std::optional<ConfigNode> ConfigNode::find(const std::string& key) const {
 ConfigNode ConfigNode::at(const std::string& key) const {
   if (const auto child = find(key)) return *child;
   Value absent;
-  absent.kind = Kind::kMissing;
+  absent.kind = NodeKind::kMissing;
   absent.line = value_->line;
   absent.key = value_->key.empty() ? key : value_->key + "." + key;
   if (!tree_->collects_missing) throw missing_key(tree_->file, absent);
@@ -326,7 +325,7 @@ void ConfigNode::read_known(const std::function<void()>& read) const {
 
 void ConfigNode::allow(std::initializer_list<const char*> keys) const {
   if (is_missing()) return;
-  if (value_->kind != Kind::kMap) fail_type("a map");
+  if (value_->kind != NodeKind::kMap) fail_type("a map");
   const std::vector<std::string> known(keys.begin(), keys.end());
   for (std::size_t i = 0; i < value_->children.size(); ++i) {
     const std::string& name = value_->names[i];
@@ -338,7 +337,7 @@ void ConfigNode::allow(std::initializer_list<const char*> keys) const {
 
 std::vector<std::pair<std::string, ConfigNode>> ConfigNode::entries() const {
   if (is_missing()) return {};
-  if (value_->kind != Kind::kMap) fail_type("a map");
+  if (value_->kind != NodeKind::kMap) fail_type("a map");
   value_->open = true;
   std::vector<std::pair<std::string, ConfigNode>> out;
   for (std::size_t i = 0; i < value_->children.size(); ++i) {
@@ -362,7 +361,7 @@ std::vector<ConfigNode> ConfigNode::items(std::size_t min_count, std::size_t max
   } else if (min_count > 0) {
     wanted += " of at least " + std::to_string(min_count);
   }
-  if (value_->kind != Kind::kList) fail_type(wanted);
+  if (value_->kind != NodeKind::kList) fail_type(wanted);
   if (value_->children.size() < min_count || value_->children.size() > max_count) {
     fail("is a list of " + std::to_string(value_->children.size()) + ", must be " + wanted);
   }
@@ -374,7 +373,7 @@ std::vector<ConfigNode> ConfigNode::items(std::size_t min_count, std::size_t max
 
 double ConfigNode::number(const Bounds& bounds) const {
   if (is_missing()) return 0.0;
-  if (value_->kind != Kind::kScalar || value_->quoted) fail_type("a number");
+  if (value_->kind != NodeKind::kScalar || value_->quoted) fail_type("a number");
   std::string_view text = value_->scalar;
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   double number = 0.0;
@@ -392,7 +391,7 @@ double ConfigNode::number(const Bounds& bounds) const {
 
 std::int64_t ConfigNode::integer(std::int64_t min, std::int64_t max) const {
   if (is_missing()) return min;
-  if (value_->kind != Kind::kScalar || value_->quoted) fail_type("a whole number");
+  if (value_->kind != NodeKind::kScalar || value_->quoted) fail_type("a whole number");
   const std::string& text = value_->scalar;
   std::int64_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -406,7 +405,7 @@ std::int64_t ConfigNode::integer(std::int64_t min, std::int64_t max) const {
 
 bool ConfigNode::boolean() const {
   if (is_missing()) return false;
-  if (value_->kind != Kind::kScalar || value_->quoted ||
+  if (value_->kind != NodeKind::kScalar || value_->quoted ||
       (value_->scalar != "true" && value_->scalar != "false")) {
     fail_type("true or false");
   }
@@ -415,7 +414,7 @@ bool ConfigNode::boolean() const {
 
 std::string ConfigNode::text() const {
   if (is_missing()) return "";
-  if (value_->kind != Kind::kScalar || value_->scalar.empty()) fail_type("a text");
+  if (value_->kind != NodeKind::kScalar || value_->scalar.empty()) fail_type("a text");
   if (!std::all_of(value_->scalar.begin(), value_->scalar.end(), is_printable))
     fail_type("a text of one line");
   return value_->scalar;
@@ -424,10 +423,10 @@ std::string ConfigNode::text() const {
 std::ptrdiff_t ConfigNode::choice_index(const std::vector<std::string>& names) const {
   if (is_missing()) return 0;
   const auto it =
-      value_->kind == Kind::kScalar ? std::find(names.begin(), names.end(), value_->scalar) : names.end();
+      value_->kind == NodeKind::kScalar ? std::find(names.begin(), names.end(), value_->scalar) : names.end();
   if (it == names.end()) {
-    fail("is " + value_->describe() + ", must be " + joined(names) +
-         (value_->kind == Kind::kScalar ? or_nearest(names, value_->scalar) : ""));
+    fail("is " + value_->describe() + ", must be " + alternatives(names) +
+         (value_->kind == NodeKind::kScalar ? or_nearest(names, value_->scalar) : ""));
   }
   return it - names.begin();
 }
@@ -446,16 +445,16 @@ Eigen::Vector3d ConfigNode::vector3(const Bounds& bounds) const {
 
 ConfigNode ConfigNode::quantity(const std::string& unit) const {
   if (is_missing()) return *this;
-  if (value_->kind != Kind::kMap) fail_type("a map {value, unit, source}");
+  if (value_->kind != NodeKind::kMap) fail_type("a map {value, unit, source}");
   ConfigNode value = at("value");
   at("unit").choice<int>({{unit.c_str(), 0}});
   at("source").text();
   return value;
 }
 
-bool ConfigNode::is_map() const { return value_->kind == Kind::kMap; }
-bool ConfigNode::is_list() const { return value_->kind == Kind::kList; }
-bool ConfigNode::is_scalar() const { return value_->kind == Kind::kScalar; }
+bool ConfigNode::is_map() const { return value_->kind == NodeKind::kMap; }
+bool ConfigNode::is_list() const { return value_->kind == NodeKind::kList; }
+bool ConfigNode::is_scalar() const { return value_->kind == NodeKind::kScalar; }
 
 void ConfigNode::reject_unknown_keys() const { reject_unknown(tree_->file, *value_); }
 
@@ -496,9 +495,9 @@ ConfigNode parse_config(std::string_view text, const std::string& file_name) {
   auto tree = std::make_shared<ConfigNode::Tree>();
   tree->file = file_name;
   tree->root = builder.take_root();
-  if (!tree->root || tree->root->kind == Kind::kNull)
+  if (!tree->root || tree->root->kind == NodeKind::kNull)
     throw ConfigError(file_name, 0, "", "is empty, must be a YAML map");
-  if (tree->root->kind != Kind::kMap) {
+  if (tree->root->kind != NodeKind::kMap) {
     throw ConfigError(file_name, tree->root->line, "",
                       "is " + tree->root->describe() + ", must be a YAML map");
   }

@@ -6,26 +6,21 @@
 #include <cmath>
 #include <system_error>
 
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::runtime {
 
 namespace {
 
-constexpr std::size_t kMaxShownLength = 60;
+constexpr std::size_t kMaxShownField = 60;
 
-std::string format_value(std::string_view text) {
+std::string shown_field(std::string_view text) {
   if (text.empty()) return "empty";
   std::string out;
-  for (const char c : text.substr(0, kMaxShownLength)) out += c >= 0x20 && c < 0x7f ? c : '?';
-  if (text.size() > kMaxShownLength) out += "...";
+  for (const char c : text.substr(0, kMaxShownField)) out += c >= 0x20 && c < 0x7f ? c : '?';
+  if (text.size() > kMaxShownField) out += "...";
   return out;
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
 std::vector<std::string_view> fields_of(std::string_view line) {
@@ -42,12 +37,6 @@ std::vector<std::string_view> fields_of(std::string_view line, const CsvForm& fo
   std::vector<std::string_view> fields = fields_of(line);
   if (form.may_end_with_comma && fields.size() > 1 && fields.back().empty()) fields.pop_back();
   return fields;
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string out;
-  for (const std::string& name : names) out += (out.empty() ? "" : ",") + name;
-  return out;
 }
 
 bool read_number(std::string_view field, double& number) {
@@ -98,14 +87,14 @@ void check_header(std::string_view line, const std::string& file, const std::vec
   const std::vector<std::string_view> names = fields_of(line, form);
   double number = 0.0;
   if (read_number(names.front(), number)) {
-    throw ConfigError(file, 1, "", "has no header, the first line must be " + joined(columns));
+    throw ConfigError(file, 1, "", "has no header, the first line must be " + joined(columns, ","));
   }
   if (names.size() == columns.size()) {
     std::size_t i = 0;
     while (i < names.size() && names[i] == columns[i]) ++i;
     if (i == names.size()) return;
   }
-  throw ConfigError(file, 1, "header", "is " + format_value(line) + ", must be " + joined(columns));
+  throw ConfigError(file, 1, "header", "is " + shown_field(line) + ", must be " + joined(columns, ","));
 }
 
 CsvTable read_rows(Lines& lines, const std::string& file_name, const std::vector<std::string>& columns,
@@ -123,12 +112,13 @@ CsvTable read_rows(Lines& lines, const std::string& file_name, const std::vector
     if (fields.size() != columns.size()) {
       throw ConfigError(file_name, lines.number(), "",
                         "has " + std::to_string(trimmed(line).empty() ? 0 : fields.size()) +
-                            " fields, must have " + std::to_string(columns.size()) + ": " + joined(columns));
+                            " fields, must have " + std::to_string(columns.size()) + ": " +
+                            joined(columns, ","));
     }
     for (std::size_t i = 0; i < fields.size(); ++i) {
       if (!read_number(fields[i], numbers[i])) {
         throw ConfigError(file_name, lines.number(), columns[i],
-                          "is " + format_value(fields[i]) + ", must be a finite number");
+                          "is " + shown_field(fields[i]) + ", must be a finite number");
       }
     }
     table.add_row(lines.number(), numbers, fields);
@@ -200,7 +190,8 @@ CsvTable parse_csv(std::string_view text, const std::string& file_name,
   if (lines.only_blank_left()) {
     throw ConfigError(file_name, 0, "",
                       std::string("is empty, must ") +
-                          (form.has_header ? "begin with the header " : "hold rows of ") + joined(columns));
+                          (form.has_header ? "begin with the header " : "hold rows of ") +
+                          joined(columns, ","));
   }
   if (form.has_header) {
     do {
@@ -221,7 +212,7 @@ CsvTable parse_csv_as_headed(std::string_view text, const std::string& file_name
   for (const std::string_view name : fields_of(header)) {
     double number = 0.0;
     if (name.empty() || read_number(name, number))
-      throw ConfigError(file_name, 1, "header", "is " + format_value(header) + ", must name every column");
+      throw ConfigError(file_name, 1, "header", "is " + shown_field(header) + ", must name every column");
     columns.emplace_back(name);
   }
   return read_rows(lines, file_name, columns, min_rows, {});

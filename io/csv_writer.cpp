@@ -1,7 +1,6 @@
 #include "swiftlet/io/csv_writer.hpp"
 
 #include <cerrno>
-#include <iterator>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -25,13 +24,13 @@ void CsvWriter::separate() {
 
 CsvWriter& CsvWriter::number(double value, int significant_digits) {
   separate();
-  fmt::format_to(std::back_inserter(row_), "{:.{}g}", value, significant_digits);
+  row_ += fmt::format("{:.{}g}", value, significant_digits);
   return *this;
 }
 
 CsvWriter& CsvWriter::fixed(double value, int decimals) {
   separate();
-  fmt::format_to(std::back_inserter(row_), "{:.{}f}", value, decimals);
+  row_ += fmt::format("{:.{}f}", value, decimals);
   return *this;
 }
 

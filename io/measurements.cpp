@@ -1,10 +1,12 @@
 #include "swiftlet/io/measurements.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::runtime {
@@ -12,7 +14,6 @@ namespace swiftlet::runtime {
 namespace {
 
 constexpr double kStandardGravity = 9.80665;  // m/s^2, defines the gram-force
-constexpr double kPi = 3.14159265358979323846;
 
 struct Unit {
   const char* name;
@@ -20,7 +21,7 @@ struct Unit {
   std::vector<const char*> also;
 };
 
-struct Kind {
+struct QuantityKind {
   Quantity quantity;
   std::vector<std::string> names;  // accepted names, first the written one
   std::vector<Unit> units;         // accepted units, first the SI one
@@ -34,7 +35,7 @@ const std::vector<std::string> kCommandNames = {"throttle", "delta",       "comm
                                                 "pwm",      "pulse_width", "pulse"};
 
 const std::vector<Unit> kRates = {{"rad/s", 1.0, {"rads/s", "rad s^-1"}},
-                                  {"deg/s", kPi / 180.0, {"dps", "\xc2\xb0/s"}},
+                                  {"deg/s", M_PI / 180.0, {"dps", "\xc2\xb0/s"}},
                                   {"mrad/s", 1e-3, {}}};
 const std::vector<Unit> kAccelerations = {{"m/s^2", 1.0, {"m/s2", "m/s\xc2\xb2", "m s^-2"}},
                                           {"g", kStandardGravity, {"G"}},
@@ -45,8 +46,8 @@ const std::vector<Unit> kShares = {{"1", 1.0, {"-", "0..1"}},
                                    {"0..255", 1.0 / 255.0, {"uint8", "8 bit"}}};
 const std::vector<Unit> kPulses = {{"us", 1.0, {"\xc2\xb5s", "\xce\xbcs"}}, {"ms", 1e3, {}}};
 const std::vector<Unit> kSpeeds = {{"rad/s", 1.0, {"rads/s", "rad s^-1"}},
-                                   {"rpm", 2.0 * kPi / 60.0, {"RPM", "1/min", "rev/min"}},
-                                   {"rev/s", 2.0 * kPi, {"Hz", "rps"}}};
+                                   {"rpm", 2.0 * M_PI / 60.0, {"RPM", "1/min", "rev/min"}},
+                                   {"rev/s", 2.0 * M_PI, {"Hz", "rps"}}};
 
 // Combines each name with each ending: {"acc_x"}, {"_frd", ""} -> acc_x_frd, acc_x.
 std::vector<std::string> with_endings(const std::vector<std::string>& names,
@@ -63,7 +64,7 @@ std::vector<std::string> numbered(const std::vector<std::string>& names, int num
 }
 
 // Adds the quantities of a flight log, per axis and per motor.
-void add_flight(std::vector<Kind>& all) {
+void add_flight(std::vector<QuantityKind>& all) {
   const std::vector<std::string> body = {"_frd", "", "_flu"};
   const std::vector<std::string> world = {"_ned", "", "_enu"};
   const std::vector<std::string> attitude = {"_ned_from_frd", "", "_enu_from_flu"};
@@ -101,8 +102,8 @@ void add_flight(std::vector<Kind>& all) {
   }
 }
 
-std::vector<Kind> all_kinds() {
-  std::vector<Kind> all = {
+std::vector<QuantityKind> all_kinds() {
+  std::vector<QuantityKind> all = {
       {Quantity::kTime, {"time", "t", "timestamp"}, kSeconds},
       {Quantity::kSupplyVoltage,
        {"supply_voltage", "v_s", "vs", "supply", "battery_voltage", "vbat"},
@@ -133,14 +134,14 @@ std::vector<Kind> all_kinds() {
   return all;
 }
 
-const std::vector<Kind>& kinds() {
-  static const std::vector<Kind> all = all_kinds();
+const std::vector<QuantityKind>& kinds() {
+  static const std::vector<QuantityKind> all = all_kinds();
   return all;
 }
 
-const Kind& kind_of(Quantity quantity) {
+const QuantityKind& kind_of(Quantity quantity) {
   return *std::find_if(kinds().begin(), kinds().end(),
-                       [&](const Kind& kind) { return kind.quantity == quantity; });
+                       [&](const QuantityKind& kind) { return kind.quantity == quantity; });
 }
 
 template <typename Names>
@@ -148,16 +149,11 @@ bool is_one_of(const std::string& text, const Names& names) {
   return std::any_of(names.begin(), names.end(), [&](const auto& name) { return text == name; });
 }
 
-std::optional<double> factor_of(const Kind& kind, const std::string& unit) {
+std::optional<double> factor_of(const QuantityKind& kind, const std::string& unit) {
   for (const Unit& candidate : kind.units) {
     if (unit == candidate.name || is_one_of(unit, candidate.also)) return candidate.factor;
   }
   return std::nullopt;
-}
-
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
 std::string lower(std::string text) {
@@ -173,8 +169,10 @@ struct Declaration {
 
 Declaration declaration_of(const std::string& header) {
   const std::size_t open = header.find('[');
-  if (open == std::string::npos || header.back() != ']') return {lower(trimmed(header)), std::nullopt};
-  return {lower(trimmed(header.substr(0, open))), trimmed(header.substr(open + 1, header.size() - open - 2))};
+  if (open == std::string::npos || header.back() != ']')
+    return {lower(std::string(trimmed(header))), std::nullopt};
+  return {lower(std::string(trimmed(header.substr(0, open)))),
+          std::string(trimmed(header.substr(open + 1, header.size() - open - 2)))};
 }
 
 std::string one_of(const std::vector<std::string>& choices) {
@@ -184,9 +182,10 @@ std::string one_of(const std::vector<std::string>& choices) {
   return text;
 }
 
-std::vector<std::string> choices_of(const std::string& name, const std::vector<const Kind*>& candidates) {
+std::vector<std::string> choices_of(const std::string& name,
+                                    const std::vector<const QuantityKind*>& candidates) {
   std::vector<std::string> choices;
-  for (const Kind* kind : candidates) {
+  for (const QuantityKind* kind : candidates) {
     for (const Unit& unit : kind->units) choices.push_back(name + " [" + unit.name + "]");
   }
   return choices;
@@ -199,7 +198,7 @@ struct Column {
 
 Column resolve(const std::string& header, const std::string& file, const std::vector<Quantity>& allowed) {
   const Declaration declared = declaration_of(header);
-  std::vector<const Kind*> candidates;
+  std::vector<const QuantityKind*> candidates;
   for (const Quantity quantity : allowed) {
     if (is_one_of(declared.name, kind_of(quantity).names)) candidates.push_back(&kind_of(quantity));
   }
@@ -212,7 +211,7 @@ Column resolve(const std::string& header, const std::string& file, const std::ve
   // A name that is itself a unit, such as rpm, declares its unit.
   const std::string unit = declared.unit.value_or(declared.name);
   std::vector<Column> meant;
-  for (const Kind* kind : candidates) {
+  for (const QuantityKind* kind : candidates) {
     if (const auto factor = factor_of(*kind, unit)) meant.push_back({kind->quantity, *factor});
   }
   if (meant.size() == 1) return meant.front();
@@ -226,7 +225,7 @@ Column resolve(const std::string& header, const std::string& file, const std::ve
 }  // namespace
 
 std::string header_of(Quantity quantity) {
-  const Kind& kind = kind_of(quantity);
+  const QuantityKind& kind = kind_of(quantity);
   return kind.names.front() + " [" + kind.units.front().name + "]";
 }
 

@@ -15,7 +15,7 @@
 namespace swiftlet::runtime {
 namespace {
 
-constexpr std::size_t kLargestFile = 4096;  // bytes
+constexpr std::size_t kLargestKeyFile = 4096;  // bytes
 
 int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
@@ -47,7 +47,7 @@ NetworkKey random_network_key() {
 
 NetworkKeys read_network_keys(const std::filesystem::path& file) {
   require_owner_only(file);
-  const std::string text = read_text_file(file, kLargestFile);
+  const std::string text = read_text_file(file, kLargestKeyFile);
   NetworkKeys keys;
   int line = 0;
   for (std::size_t begin = 0; begin < text.size();) {

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/text.hpp"
 
 namespace swiftlet::runtime {
 
@@ -16,8 +17,6 @@ namespace {
 [[noreturn]] void fail(const std::string& path) {
   throw ConfigError(path, 0, "", "cannot be read: " + std::generic_category().message(errno));
 }
-
-bool is_printable(char c) { return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f; }
 
 constexpr std::size_t kLongestMessage = 2000;
 

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
+#include "swiftlet/math/angles.hpp"
+
 namespace swiftlet::math {
 namespace {
-
-constexpr double kRadPerDeg = M_PI / 180.0;
 
 // Metres per degree at home.
 struct Scale {
@@ -17,11 +17,12 @@ Scale scale_at(const GeographicPosition& home) {
   constexpr double kEquatorialRadius_m = 6378137.0;
   constexpr double kFlattening = 1.0 / 298.257223563;
   constexpr double kEccentricitySquared = kFlattening * (2.0 - kFlattening);
-  const double sine = std::sin(home.latitude_deg * kRadPerDeg);
+  const double sine = std::sin(home.latitude_deg * math::kRadPerDeg);
   const double w = 1.0 - kEccentricitySquared * sine * sine;
   const double meridian_m = kEquatorialRadius_m * (1.0 - kEccentricitySquared) / (w * std::sqrt(w));
-  const double parallel_m = kEquatorialRadius_m / std::sqrt(w) * std::cos(home.latitude_deg * kRadPerDeg);
-  return {meridian_m * kRadPerDeg, parallel_m * kRadPerDeg};
+  const double parallel_m =
+      kEquatorialRadius_m / std::sqrt(w) * std::cos(home.latitude_deg * math::kRadPerDeg);
+  return {meridian_m * math::kRadPerDeg, parallel_m * math::kRadPerDeg};
 }
 
 }  // namespace

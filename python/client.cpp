@@ -28,19 +28,14 @@ using ground::Vehicle;
 // How long it waits before it looks whether the user wants an end.
 constexpr std::chrono::milliseconds kSignalPeriod{100};
 
-comms::NodeSettings network_of(int domain, bool localhost_only, const std::string& transport,
-                               const std::string& network_key, const std::string& security) {
+comms::NodeSettings network_of(int domain, bool open_network, const std::string& network_key,
+                               const std::string& security) {
   comms::NodeSettings network;
   network.name = "ground";
   network.domain = domain;
-  network.localhost_only = localhost_only;
+  network.open_network = open_network;
   network.network_key_file = network_key;
   network.security = security;
-  if (transport == "shm") {
-    network.transport = comms::Transport::kSharedMemory;
-  } else if (transport != "udp") {
-    refuse("transport is '" + transport + "', must be 'udp' or 'shm'");
-  }
   return network;
 }
 
@@ -228,15 +223,13 @@ void add_streams(py::module_& module) {
 void add_context(py::module_& module) {
   py::class_<Context>(module, "Context",
                       "A participant of a DDS domain, which the vehicles of a program share.")
-      .def(py::init([](int domain, bool localhost_only, const std::string& transport,
-                       const std::string& network_key, const std::string& security) {
-             const comms::NodeSettings network =
-                 network_of(domain, localhost_only, transport, network_key, security);
+      .def(py::init([](int domain, bool open_network, const std::string& network_key,
+                       const std::string& security) {
+             const comms::NodeSettings network = network_of(domain, open_network, network_key, security);
              const py::gil_scoped_release without_gil;
              return std::make_unique<Context>(network);
            }),
-           "domain"_a = 0, py::kw_only(), "localhost_only"_a = false, "transport"_a = "udp",
-           "network_key"_a = "", "security"_a = "")
+           "domain"_a = 0, py::kw_only(), "open_network"_a = false, "network_key"_a = "", "security"_a = "")
       .def("discovered_vehicles", &Context::discovered_vehicles, WithoutGil(),
            "The names of the vehicles found so far, sorted. Discovery takes up to a second.");
 }

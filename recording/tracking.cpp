@@ -6,10 +6,10 @@
 #include <numeric>
 #include <optional>
 
+#include "swiftlet/math/time.hpp"
+
 namespace swiftlet::ground {
 namespace {
-
-double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 template <std::size_t N>
 void blend(const std::array<double, N>& a, const std::array<double, N>& b, double share,
@@ -19,8 +19,8 @@ void blend(const std::array<double, N>& a, const std::array<double, N>& b, doubl
 
 // Between two rows.
 TruthRow interpolated(const TruthRow& a, const TruthRow& b, std::int64_t stamp_ns) {
-  const double h = seconds(b.stamp_ns - a.stamp_ns);
-  const double s = seconds(stamp_ns - a.stamp_ns) / h;
+  const double h = math::seconds(b.stamp_ns - a.stamp_ns);
+  const double s = math::seconds(stamp_ns - a.stamp_ns) / h;
   TruthRow row = a;
   row.stamp_ns = stamp_ns;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -56,7 +56,7 @@ std::optional<TruthRow> truth_at(const Track<TruthRow>& truth, const TruthRow* a
   if (after->stamp_ns == stamp_ns) return *after;
   if (source == TruthSource::kEqualStamps || after == truth.begin()) return std::nullopt;
   const TruthRow& before = *(after - 1);
-  if (seconds(after->stamp_ns - before.stamp_ns) > kLongestInterpolationS) return std::nullopt;
+  if (math::seconds(after->stamp_ns - before.stamp_ns) > kLongestInterpolationS) return std::nullopt;
   return interpolated(before, *after, stamp_ns);
 }
 
@@ -98,11 +98,11 @@ TrackingErrors tracking_errors(const Track<TruthRow>& truth, const Track<Referen
       distance_squared += error * error;
     }
     errors.peak_3d_m = std::max(errors.peak_3d_m, std::sqrt(distance_squared));
-    errors.longest_gap_s = std::max(errors.longest_gap_s, seconds(row.stamp_ns - last_ns));
+    errors.longest_gap_s = std::max(errors.longest_gap_s, math::seconds(row.stamp_ns - last_ns));
     last_ns = row.stamp_ns;
     ++errors.matched;
   }
-  errors.longest_gap_s = std::max(errors.longest_gap_s, seconds(window.to_ns - last_ns));
+  errors.longest_gap_s = std::max(errors.longest_gap_s, math::seconds(window.to_ns - last_ns));
 
   if (errors.matched == 0) {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();

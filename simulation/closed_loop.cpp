@@ -59,7 +59,7 @@ void ClosedLoop::answer() {
       firmware.on_pose(*pose);
     }
   }
-  while (const auto packet = telemetry_path.take(now_ns)) answer(*packet);
+  while (const auto* packet = telemetry_path.take(now_ns)) answer(*packet);
   command = firmware.as_actuators(sent);
 }
 
@@ -87,7 +87,7 @@ void ClosedLoop::record_sensors(const plant::TelemetryPacket& packet) const {
 
 const plant::MotorCommand& ClosedLoop::motor_command() {
   const std::int64_t now_ns = plant.stamp_ns();
-  while (const auto pose = pose_path.take(now_ns)) firmware.on_pose(*pose);
+  while (const auto* pose = pose_path.take(now_ns)) firmware.on_pose(*pose);
   if (const auto arrived = command_path.arrived(now_ns)) firmware.accept(*arrived, now_ns);
   return firmware.motor_command(now_ns);
 }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "swiftlet/math/euler.hpp"
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/plant/model/airframe.hpp"
 #include "swiftlet/plant/model/battery.hpp"
 #include "swiftlet/plant/model/propulsion.hpp"
@@ -16,7 +17,6 @@ namespace {
 using plant::ControlLevel;
 using Rows3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kRateCost = 0.02;         // s/rad, see HoverEnvironment::step()
 constexpr double kLeastClearance_m = 0.1;  // of a start from the ground
 constexpr double kLongestEpisode_s = 3600.0;
@@ -54,7 +54,7 @@ std::vector<plant::Violation> validate(const HoverTask& task, const World& nomin
   plant::RuleChecker check;
   if (check.between("action_period_s", task.action_period_s, 1e-9 * static_cast<double>(simulation.step_ns),
                     simulation.command_hold_s) &&
-      std::llround(1e9 * task.action_period_s) % simulation.step_ns != 0)
+      math::nanoseconds(task.action_period_s) % simulation.step_ns != 0)
     check.add("action_period_s", "is ", task.action_period_s,
               ", must be a whole number of integration steps of ",
               1e-9 * static_cast<double>(simulation.step_ns), " s");
@@ -66,10 +66,10 @@ std::vector<plant::Violation> validate(const HoverTask& task, const World& nomin
     check.add("target_ned", "is ", -task.target_ned.z(), " m above the ground, must be at least ",
               kLeastClearance_m, " m more than start_distance_m, which is ", task.start_distance_m);
   check.between("start_speed_m_s", task.start_speed_m_s, 0.0, 100.0);
-  check.between("start_tilt_rad", task.start_tilt_rad, 0.0, 0.5 * kPi);
+  check.between("start_tilt_rad", task.start_tilt_rad, 0.0, 0.5 * M_PI);
   check.between("start_rate_rad_s", task.start_rate_rad_s, 0.0, 100.0);
   check.above("max_rate_rad_s", task.max_rate_rad_s, 0.0);
-  check.between("max_tilt_rad", task.max_tilt_rad, 0.0, 0.5 * kPi);
+  check.between("max_tilt_rad", task.max_tilt_rad, 0.0, 0.5 * M_PI);
   check.above("max_speed_m_s", task.max_speed_m_s, 0.0);
   check.above("max_yaw_rate_rad_s", task.max_yaw_rate_rad_s, 0.0);
   for (plant::Violation& own : check.take()) violations.push_back(std::move(own));
@@ -88,7 +88,7 @@ ActionBounds action_bounds(const HoverTask& task, const plant::Vehicle& vehicle)
     case ControlLevel::kRates:
       return {{-rate, -rate, -rate, 0.0}, {rate, rate, rate, thrust}};
     case ControlLevel::kAttitude:
-      return {{-tilt, -tilt, -kPi, 0.0}, {tilt, tilt, kPi, thrust}};
+      return {{-tilt, -tilt, -M_PI, 0.0}, {tilt, tilt, M_PI, thrust}};
     case ControlLevel::kTrajectory:
       return {{-speed, -speed, -speed, -task.max_yaw_rate_rad_s},
               {speed, speed, speed, task.max_yaw_rate_rad_s}};
@@ -109,7 +109,7 @@ HoverEnvironment::HoverEnvironment(const World& nominal, const HoverTask& task, 
       dispersion_(dispersion),
       bounds_(action_bounds(task, nominal.vehicle)),
       steps_per_action_(
-          static_cast<int>(std::llround(1e9 * task.action_period_s) / nominal.simulation.step_ns)),
+          static_cast<int>(math::nanoseconds(task.action_period_s) / nominal.simulation.step_ns)),
       actions_per_episode_(static_cast<int>(std::ceil(task.episode_s / task.action_period_s - 1e-9))),
       hover_speed_(plant::hover_speed(nominal.vehicle)),
       episodes_(0, 0),

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "swiftlet/io/csv_writer.hpp"
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/plant/model/esc.hpp"
 #include "swiftlet/plant/simulation/dynamics.hpp"
 
@@ -22,14 +23,10 @@ constexpr double kUnitTolerance = 1e-3;
 constexpr double kLatestTimeS = 1e6;    // keeps nanoseconds exact
 constexpr double kLongestRunS = 600.0;  // bounds the memory of the result
 
-std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
-
 bool finite(const plant::VehicleState& state) {
   return state.position_ned.allFinite() && state.velocity_ned.allFinite() &&
          state.body_rates_frd.allFinite() && state.q_ned_from_frd.coeffs().allFinite();
 }
-
-double seconds(std::int64_t nanoseconds) { return static_cast<double>(nanoseconds) / 1e9; }
 
 // Integrates up to until_ns, in steps that are short enough for the body rate. Throws std::runtime_error if
 // the rate is above kFastestTurn.
@@ -38,9 +35,9 @@ void advance(const plant::Dynamics& dynamics, MotionRow& now, const plant::Motor
   const double dt = static_cast<double>(until_ns - now.time_ns) * 1e-9;
   const double rate = now.state.body_rates_frd.norm();
   if (!(rate < kFastestTurn) || !finite(now.state)) {
-    throw std::runtime_error("the body rate is " + runtime::exact(rate) +
-                             " rad/s at t = " + runtime::exact(seconds(now.time_ns)) + " s, must be below " +
-                             runtime::exact(kFastestTurn) + " rad/s");
+    throw std::runtime_error("the body rate is " + runtime::exact(rate) + " rad/s at t = " +
+                             runtime::exact(static_cast<double>(now.time_ns) / math::kNsPerS) +
+                             " s, must be below " + runtime::exact(kFastestTurn) + " rad/s");
   }
   const int count = static_cast<int>(std::ceil(dt * std::max(1.0 / kMaxStepS, rate / kMaxTurnRad)));
   for (int i = 0; i < count; ++i) dynamics.advance(now.state, drive, Eigen::Vector3d::Zero(), dt / count);
@@ -79,7 +76,7 @@ std::vector<PulseWidths> read_pulses(const runtime::CsvTable& table, const plant
   std::vector<PulseWidths> pulses(table.row_count());
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     pulses[row].time_ns =
-        nanoseconds(table.number(row, 0, runtime::between(-kLatestTimeS, kLatestTimeS), "s"));
+        math::nanoseconds(table.number(row, 0, runtime::between(-kLatestTimeS, kLatestTimeS), "s"));
     if (row > 0 && pulses[row].time_ns <= pulses[row - 1].time_ns) {
       table.fail(row, "t",
                  "is " + runtime::exact(table.number(row, 0)) + ", must be above the row before, " +
@@ -154,7 +151,7 @@ void write_motion(const std::string& path, const std::vector<MotionRow>& rows, i
   columns.insert(columns.begin(), "t");
   runtime::CsvWriter csv(path, columns);
   for (const MotionRow& row : rows) {
-    csv.exact(seconds(row.time_ns));
+    csv.exact(static_cast<double>(row.time_ns) / math::kNsPerS);
     for (const double value : values(row.state, rotor_count)) csv.exact(value);
     csv.end_row();
   }

@@ -77,10 +77,10 @@ class LoopTransport final : public MissionTransport {
 
   // Returns false if the flight is cancelled.
   bool observe() {
-    const bool sampled = runtime::is_telemetry_sample(loop_.plant.imu_count(), imu_period_ns_);
     if (observer_.trace != nullptr) observer_.trace->add(loop_.plant.truth(), loop_.command);
     if (observer_.record != nullptr) record(*observer_.record);
-    return !sampled || !observer_.cancelled || !observer_.cancelled();
+    return !observer_.cancelled || !runtime::is_telemetry_sample(loop_.plant.imu_count(), imu_period_ns_) ||
+           !observer_.cancelled();
   }
 
   // True if control has answered a sample at the telemetry rate since the last call. The first one after a missed sample is

@@ -10,7 +10,6 @@
 namespace swiftlet::control {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // An eigenvalue of the Hamiltonian counts as imaginary if the gain there is one to within this. Rounding
 // moves the eigenvalue by far less. A root search then brings the gain to one.
 constexpr double kGainTolerance = 1e-4;
@@ -52,7 +51,7 @@ std::vector<double> crossovers(const Loop& loop) {
 double phase_margin_deg(const Loop& loop) {
   double margin = std::numeric_limits<double>::infinity();
   for (const double omega : crossovers(loop)) {
-    const double here = std::arg(-frequency_response(loop, omega)) * 180.0 / kPi;
+    const double here = std::arg(-frequency_response(loop, omega)) * 180.0 / M_PI;
     if (std::abs(here) < std::abs(margin)) margin = here;
   }
   return margin;

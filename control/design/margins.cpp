@@ -11,7 +11,6 @@
 namespace swiftlet::control {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kNearAxis = 1e-3;      // real over imaginary part up to which a zero may lie on the axis
 constexpr double kRealResponse = 1e-9;  // imaginary over real part up to which a response counts as real
 constexpr double kLowest = 1e-4;        // rad/s: zeros below count as 0
@@ -81,7 +80,7 @@ LoopMargins margins(const Loop& loop) {
   out.delay_s = std::numeric_limits<double>::infinity();
   for (const double omega : crossovers(loop)) {
     double left = std::arg(-frequency_response(loop, omega));  // phase margin against a delay
-    if (left < 0.0) left += 2.0 * kPi;
+    if (left < 0.0) left += 2.0 * M_PI;
     out.delay_s = std::min(out.delay_s, left / omega);
   }
   out.gain_increase = std::numeric_limits<double>::infinity();

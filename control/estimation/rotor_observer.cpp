@@ -17,9 +17,18 @@ RotorObserver::RotorObserver(const plant::Vehicle& vehicle, double bandwidth)
   wrench_per_square_.leftCols(count_) = vehicle.rotor.thrust * plant::effectiveness(vehicle);  // Eq. (25)
 }
 
+// exp(-dt / tau_m), which hardly ever changes.
+double RotorObserver::kept_over(double dt_s) {
+  if (dt_s != kept_dt_s_) {
+    kept_dt_s_ = dt_s;
+    kept_ = std::exp(-dt_s / motor_.time_constant_s);
+  }
+  return kept_;
+}
+
 // Eq. (18) solved over dt_s for a constant steady speed: Omega_ss + exp(-dt / tau_m) (Omega - Omega_ss).
 void RotorObserver::step(double dt_s, const plant::ActuatorCommand& command, double supply_voltage_v) {
-  const double kept = std::exp(-dt_s / motor_.time_constant_s);
+  const double kept = kept_over(dt_s);
   const bool running = command.rotor_state == plant::RotorState::kRunning;
   for (int i = 0; i < count_; ++i) {
     const auto n = static_cast<std::size_t>(i);
@@ -31,7 +40,7 @@ void RotorObserver::step(double dt_s, const plant::ActuatorCommand& command, dou
 }
 
 void RotorObserver::step(double dt_s, double thrust_n) {
-  const double kept = std::exp(-dt_s / motor_.time_constant_s);
+  const double kept = kept_over(dt_s);
   const double steady = plant::speed_from_thrust(rotor_, thrust_n / count_);
   for (int i = 0; i < count_; ++i) {
     double& speed = speeds_[static_cast<std::size_t>(i)];

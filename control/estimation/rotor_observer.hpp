@@ -38,6 +38,7 @@ class RotorObserver {
 
  private:
   using Speeds = Eigen::Array<double, plant::kMaxRotors, 1>;
+  double kept_over(double dt_s);
   void update_wrench();
 
   plant::Esc esc_;
@@ -46,6 +47,8 @@ class RotorObserver {
   Eigen::Matrix<double, 4, plant::kMaxRotors> wrench_per_square_;  // per speed squared; unused columns: 0
   double bandwidth_;
   int count_ = 0;
+  double kept_dt_s_ = 0.0;        // of kept_
+  double kept_ = 1.0;             // of a difference in speed, over kept_dt_s_
   std::int64_t measured_ns_ = 0;  // stamp of the last measured speeds; 0: none yet
   plant::PerRotor speeds_{};
   Eigen::Vector4d wrench_ = Eigen::Vector4d::Zero();

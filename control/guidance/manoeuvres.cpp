@@ -8,6 +8,7 @@
 #include "swiftlet/control/guidance/setpoint_stream.hpp"
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/planning/waypoint_path.hpp"
+#include "swiftlet/math/time.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -33,8 +34,6 @@ constexpr double kBlindDepth_m = 0.1;      // below the ground, by dead reckonin
 constexpr double kMinMove_s = 0.5;
 constexpr int kJoinAttempts = 16;  // attempts to join a trajectory from motion, each with more time
 constexpr double kJoinStretch = 1.25;
-
-std::int64_t nanoseconds(double s) { return static_cast<std::int64_t>(std::llround(s * 1e9)); }
 
 double yaw_of(const Eigen::Quaterniond& q) {
   return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
@@ -136,7 +135,7 @@ void advance_spool_up(const GuidanceContext& context) {
   const double elapsed = elapsed_s(state.phase_since_ns, context.now_ns);
   const Eigen::Vector3d& place_ned = context.estimate.position_ned;
   const bool on_time = elapsed >= kSpoolUp_s;
-  const std::int64_t due_ns = state.phase_since_ns + nanoseconds(kSpoolUp_s);
+  const std::int64_t due_ns = state.phase_since_ns + math::nanoseconds(kSpoolUp_s);
   if (context.lift_off_ns == 0) {
     if (on_time) climb_from(context, state.path.at(context.now_ns).position_ned, due_ns);
     return;
@@ -224,7 +223,7 @@ void advance_item(const GuidanceContext& context) {
   if (state.item_end_ns != 0 || !arrived(context)) return;
   const bool awaited = item.acceptance_radius_m > 0.0;
   state.item_end_ns =
-      (awaited ? state.path.path_ns(context.now_ns) : state.path.end_ns) + nanoseconds(item.hold_s);
+      (awaited ? state.path.path_ns(context.now_ns) : state.path.end_ns) + math::nanoseconds(item.hold_s);
 }
 
 // At the point where the mission was paused: resumes its path from rest.

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "swiftlet/math/time.hpp"
+
 namespace swiftlet::control {
 namespace {
 
@@ -40,7 +42,7 @@ void ReferencePath::follow(const PolynomialSegment& along, std::int64_t from_ns)
   moving = true;
   segment = along;
   start_ns = from_ns;
-  end_ns = from_ns + std::llround(along.duration_s * 1e9);
+  end_ns = from_ns + math::nanoseconds(along.duration_s);
   clock = {};
 }
 

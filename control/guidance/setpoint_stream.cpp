@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 constexpr double kLeastPeriod_s = 0.1;  // shortest blend, for faster streams
 constexpr int kAttempts = 16;           // attempts to blend, each with more time
 constexpr double kStretch = 1.25;
-constexpr double kRounding = 1e-5;
+constexpr double kRoundingError = 1e-5;
 constexpr double kReaction_s = 0.15;         // delay until the thrust acts against the motion
 constexpr double kPastTimeout_s = 0.1;       // coasting outlasts the stream's time-out
 constexpr double kQuinticPeak = 15.0 / 8.0;  // peak over mean of a rest-to-rest quintic's rate
@@ -109,7 +109,8 @@ PolynomialSegment blend(const Limits& limits, const Reference& from, const Setpo
   PolynomialSegment gentlest;
   double least = std::numeric_limits<double>::infinity();  // greatest use of the acceleration and jerk limits
   double duration = period_s;
-  for (int attempt = 0; attempt < kAttempts && least > 1.0 + kRounding; ++attempt, duration *= kStretch) {
+  for (int attempt = 0; attempt < kAttempts && least > 1.0 + kRoundingError;
+       ++attempt, duration *= kStretch) {
     const PolynomialSegment candidate = blend_in(limits, from, to, duration, period_s);
     const LimitUse use = limit_use(candidate, unit);
     const double most = std::max(use.acceleration / acceleration, use.jerk / jerk);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "swiftlet/math/time.hpp"
+
 namespace swiftlet::control {
 namespace {
 
@@ -13,11 +15,9 @@ double integral(const Polynomial& p, double t) {
   return sum * t;
 }
 
-std::int64_t nanoseconds(double s) { return static_cast<std::int64_t>(std::llround(s * 1e9)); }
-
 }  // namespace
 
-std::int64_t TimeScaling::change_end_ns() const { return change_ns + nanoseconds(change_s); }
+std::int64_t TimeScaling::change_end_ns() const { return change_ns + math::nanoseconds(change_s); }
 
 void TimeScaling::turn(bool to_running, double duration_s, std::int64_t now_ns) {
   const PathTime now = at(now_ns);
@@ -39,11 +39,11 @@ TimeScaling TimeScaling::standing_at(std::int64_t path_ns, std::int64_t now_ns) 
 PathTime TimeScaling::at_own_pace(std::int64_t now_ns) const {
   if (!is_changing(now_ns)) {
     const std::int64_t run_ns = runs ? now_ns - change_end_ns() : 0;
-    const std::int64_t changed_ns = change_s > 0.0 ? nanoseconds(integral(rate, change_s)) : 0;
+    const std::int64_t changed_ns = change_s > 0.0 ? math::nanoseconds(integral(rate, change_s)) : 0;
     return {from_ns + changed_ns + run_ns, runs ? 1.0 : 0.0};
   }
   const double t = std::max(static_cast<double>(now_ns - change_ns) * 1e-9, 0.0);
-  PathTime time{from_ns + nanoseconds(integral(rate, t)), 0.0};
+  PathTime time{from_ns + math::nanoseconds(integral(rate, t)), 0.0};
   for (std::size_t i = rate.size(); i-- > 0;) {  // Horner's scheme, the k-th derivative over k!
     time.snap = time.snap * t + time.jerk;
     time.jerk = time.jerk * t + time.acceleration;

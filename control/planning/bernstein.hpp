@@ -11,6 +11,8 @@ namespace swiftlet::control {
 
 constexpr int kMaxBernsteinDegree = 14;  // the square of a position of degree 7
 
+constexpr double kExtremumPrecision = 1e-6;  // for the checks of extrema, relative to the limit
+
 // Over u = t / duration_s, 0 .. 1.
 struct Bernstein {
   int degree = 0;

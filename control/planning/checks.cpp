@@ -13,7 +13,6 @@ namespace {
 constexpr double kLongestSegment_s = 3600.0;
 constexpr double kPlaceTolerance_m = 1e-9;  // rounding of sums of coefficients
 constexpr double kPlacePrecision_m = 1e-6;  // of extrema
-constexpr double kPrecision = 1e-6;         // of extrema of squares, relative to the squared limit
 
 bool finite(const Polynomial& p) {
   return std::all_of(p.begin(), p.end(), [](double c) { return std::isfinite(c); });
@@ -48,9 +47,9 @@ Outcome check_length(const char* what, const PolynomialSegment& segment, int der
                      const char* unit) {
   const auto axis = [&](const Polynomial& p) { return bernstein(p, segment.duration_s, derivative); };
   const Bernstein square = squared_length(axis(segment.x), axis(segment.y), axis(segment.z));
-  const double highest = (1.0 + kPrecision) * limit * limit;
+  const double highest = (1.0 + kExtremumPrecision) * limit * limit;
   if (square.greatest() <= highest) return accept();
-  const double reached = maximum(square, kPrecision * limit * limit).value;
+  const double reached = maximum(square, kExtremumPrecision * limit * limit).value;
   if (reached <= highest) return accept();
   return refuse("%s reaches %.2f %s, the limit is %.2f %s", what, std::sqrt(reached), unit, limit, unit);
 }
@@ -80,7 +79,7 @@ Outcome check_own_bounds(const char* item, std::size_t number, const PolynomialS
   }
   if (bounds.max_yaw_rate <= 0.0 || yaw_free) return accept();
   const Bernstein rate = bernstein(segment.yaw, segment.duration_s, 1);
-  const double precision = kPrecision * bounds.max_yaw_rate;
+  const double precision = kExtremumPrecision * bounds.max_yaw_rate;
   const double reached = std::max(maximum(rate, precision).value, -minimum(rate, precision).value);
   if (reached <= bounds.max_yaw_rate + precision) return accept();
   return refuse("%s reaches a yaw rate of %.2f rad/s, the limit is %.2f rad/s", what, reached,

@@ -11,7 +11,7 @@ namespace swiftlet::control {
 
 Outcome accept();
 // A refusal. The reason is formatted as by printf and truncated to its size.
-[[gnu::format(printf, 1, 2)]] Outcome refuse(const char* format, ...);
+[[nodiscard, gnu::format(printf, 1, 2)]] Outcome refuse(const char* format, ...);
 
 // `what` names the position in the reason: "item 3", "goto".
 // Where a setpoint may lead: finite, check_height(), check_inside_fence().

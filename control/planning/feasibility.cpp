@@ -18,7 +18,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPrecision = 1e-6;       // of extrema, relative to the limit
 constexpr double kMaxRotorSamples = 1e6;  // most samples of the rotors on a path
 
 constexpr std::array<const char*, 9> kUnits = {"m", "m/s", "m/s^2", "rad/s", "m/s^2", "rad", "N", "N", "N"};
@@ -81,7 +80,7 @@ class Survey {
   }
   void note_root(Demand demand, const Bernstein& square, double factor, const PolynomialSegment& segment) {
     const double limit = of(demand).limit / factor;
-    const Extremum most = maximum(square, kPrecision * limit * limit);
+    const Extremum most = maximum(square, kExtremumPrecision * limit * limit);
     note(demand, factor * std::sqrt(std::max(most.value, 0.0)), segment, most.at * segment.duration_s);
   }
 
@@ -114,14 +113,14 @@ class Survey {
     const Bernstein x = axis(segment.x, 0.0);
     const Bernstein y = axis(segment.y, 0.0);
     const Bernstein z = axis(segment.z, plant::kGravity);
-    const Extremum least = minimum(z, kPrecision * plant::kGravity);
+    const Extremum least = minimum(z, kExtremumPrecision * plant::kGravity);
     note(Demand::kLift, least.value, segment, least.at * segment.duration_s);
     note_root(Demand::kThrust, squared_length(x, y, z), vehicle_.mass_kg, segment);
 
     // The tilt exceeds its limit where the horizontal part is longer than tan(limit) times the vertical one.
     const double tangent = std::tan(limits_.max_tilt_rad);
     const Bernstein beyond = squared_length(x, y) - tangent * tangent * squared_length(z);
-    const double tolerance = kPrecision * plant::kGravity * plant::kGravity;
+    const double tolerance = kExtremumPrecision * plant::kGravity * plant::kGravity;
     const Extremum most = maximum(beyond, tolerance);
     const auto force_at = [&](double at) -> Vector3d {
       const Reference effective = with_drag(evaluate(segment, at * segment.duration_s), drag_per_mass_);
@@ -198,7 +197,7 @@ const char* to_string(Demand demand) {
 const char* unit_of(Demand demand) { return kUnits[static_cast<std::size_t>(demand)]; }
 
 bool WorstDemand::exceeded() const {
-  const double tolerance = 2.0 * kPrecision * std::max(std::abs(limit), 1e-3);
+  const double tolerance = 2.0 * kExtremumPrecision * std::max(std::abs(limit), 1e-3);
   return is_least(demand) ? value < limit - tolerance : value > limit + tolerance;
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLeastDistance_m = 1e-6;
 constexpr double kLeastTurn_rad = 1e-6;
-constexpr double kLeastDuration_s = 1e-9;
+constexpr double kLeastPhase_s = 1e-9;
 
 // Durations of the profile over a distance d from rest to rest.
 struct DoubleS {
@@ -65,7 +65,7 @@ std::vector<PolynomialSegment> limited_jerk_leg(const Eigen::Vector3d& from_ned,
   std::vector<PolynomialSegment> segments;
   double s = 0.0, v = 0.0, a = 0.0;  // distance, speed and acceleration along the leg
   for (const auto& [jerk, duration_s] : pieces) {
-    if (duration_s < kLeastDuration_s) continue;
+    if (duration_s < kLeastPhase_s) continue;
     const auto axis = [&, jerk = jerk](double from, double per_m) {
       return Polynomial{from + per_m * s, per_m * v, per_m * a / 2.0, per_m * jerk / 6.0};
     };

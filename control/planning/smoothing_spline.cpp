@@ -16,7 +16,7 @@ constexpr double kShortestInterval_s = 1e-3;
 constexpr double kRepresentable =
     2.0;  // of the tolerance: greatest residual of a sufficient fit by least squares
 constexpr double kLeastSmoothing = 1e-12;  // relative to the samples, in the fit by least squares
-constexpr int kMaxRefinements = 12;
+constexpr int kMostRefinements = 12;
 // Of the interior-point method.
 constexpr int kMaxSteps = 60;
 constexpr double kGap = 1e-3;  // relative to the roughness
@@ -416,7 +416,7 @@ SmoothedPath smoothing_spline(const std::vector<SplineSample>& samples, bool res
   const auto first = static_cast<std::size_t>(std::ceil(duration_s / kFirstInterval_s));
   std::vector<double> breaks_s =
       even_breaks(begin_s, samples.back().time_s, std::clamp(first, kMinSmoothedSegments, max_segments));
-  for (int i = 0; i < kMaxRefinements; ++i) {
+  for (int i = 0; i < kMostRefinements; ++i) {
     const Grid grid = grid_of(breaks_s, samples);
     Axes axes = axes_on(grid, samples, rests_at_end);
     for (AxisFit& axis : axes) axis.fit_least_squares();
@@ -431,7 +431,7 @@ SmoothedPath smoothing_spline(const std::vector<SplineSample>& samples, bool res
       axis.fit_smoothest();
       greatest = std::max(greatest, axis.greatest_residual());
     }
-    if (greatest > kSmoothingPrecision && i < kMaxRefinements &&
+    if (greatest > kSmoothingPrecision && i < kMostRefinements &&
         refine(grid, axes, kSmoothingPrecision, max_segments, breaks_s))
       continue;
     SmoothedPath path;

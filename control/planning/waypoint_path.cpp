@@ -19,7 +19,6 @@ using Eigen::Vector3d;
 constexpr double kSamePlace_m = 1e-4;
 constexpr double kLeastCorridor_m = 1e-3;
 constexpr double kLeastDuration_s = 1e-3;
-constexpr double kPrecision = 1e-6;  // relative precision of the bounds
 constexpr int kSmoothings = 12;
 constexpr double kSmoothingExponent = 0.15;
 constexpr int kBalancings = 24;
@@ -30,7 +29,7 @@ constexpr double kSlowingExponent = 0.5;    // change of a segment's duration wi
 constexpr double kHasteningExponent = 0.1;  // ... and below 1
 constexpr int kMaxRefinements = 10;         // rounds of points added to keep a spline inside its corridors
 
-[[noreturn]] void refuse(const std::string& sentence) { throw std::invalid_argument(sentence); }
+[[noreturn]] void reject(const std::string& sentence) { throw std::invalid_argument(sentence); }
 
 std::string number(double value) {
   char text[32];
@@ -45,30 +44,30 @@ PositionYaw place_of(const PathPoint& point) {
 void check(const WaypointPath& path) {
   const auto above_zero = [](const char* what, double value) {
     if (!(value > 0.0) || !std::isfinite(value))
-      refuse(std::string("the limit of ") + what + " is " + number(value) + ", must be above 0");
+      reject(std::string("the limit of ") + what + " is " + number(value) + ", must be above 0");
   };
   above_zero("speed", path.limits.speed);
   above_zero("acceleration", path.limits.acceleration);
   above_zero("jerk", path.limits.jerk);
   above_zero("yaw rate", path.limits.yaw_rate);
   if (path.points.size() < 2)
-    refuse("the path has " + std::to_string(path.points.size()) + " points, must have at least 2");
+    reject("the path has " + std::to_string(path.points.size()) + " points, must have at least 2");
   if (path.points.size() > kMaxTrajectorySegments + 1) {
-    refuse("the path has " + std::to_string(path.points.size()) + " points, at most " +
+    reject("the path has " + std::to_string(path.points.size()) + " points, at most " +
            std::to_string(kMaxTrajectorySegments + 1) + " fit");
   }
   if (!path.legs.empty() && path.legs.size() + 1 != path.points.size()) {
-    refuse("the path has " + std::to_string(path.legs.size()) + " legs between " +
+    reject("the path has " + std::to_string(path.legs.size()) + " legs between " +
            std::to_string(path.points.size()) + " points, must be one fewer than points");
   }
   for (std::size_t i = 0; i < path.points.size(); ++i) {
     if (!place_of(path.points[i]).allFinite())
-      refuse("point " + std::to_string(i + 1) + ": a value is not a finite number");
+      reject("point " + std::to_string(i + 1) + ": a value is not a finite number");
   }
   for (std::size_t i = 0; i < path.legs.size(); ++i) {
     const Leg& leg = path.legs[i];
     if (leg.shape == LegShape::kCorridor && !(leg.corridor_m >= kLeastCorridor_m)) {
-      refuse("leg " + std::to_string(i + 1) + ": the corridor is " + number(leg.corridor_m) +
+      reject("leg " + std::to_string(i + 1) + ": the corridor is " + number(leg.corridor_m) +
              " m, must be at least " + number(kLeastCorridor_m) + " m");
     }
   }
@@ -196,7 +195,7 @@ double distance_from_leg(const PolynomialSegment& segment, const Vector3d& from,
            constant(direction.dot(from));
   };
   const Bernstein progress = towards(along);
-  const double tolerance = kPrecision * kLeastCorridor_m;
+  const double tolerance = kExtremumPrecision * kLeastCorridor_m;
   const double beside =
       maximum(squared_length(towards(across), towards(upright)), tolerance * tolerance).value;
   const double before = -minimum(progress, tolerance).value;
@@ -245,11 +244,11 @@ void add_spline(const WaypointPath& path, std::size_t first, std::size_t last, P
     balance(knots, path.smoothness, path.limits);
     segments = spline(path.smoothness, knots.places, knots.durations_s);
     if (planned.segments.size() + segments.size() > kMaxTrajectorySegments) {
-      refuse("the path takes more than " + std::to_string(kMaxTrajectorySegments) + " segments");
+      reject("the path takes more than " + std::to_string(kMaxTrajectorySegments) + " segments");
     }
     if (!refine(knots, segments, path)) break;
     if (round == kMaxRefinements) {
-      refuse("the corridor between points " + std::to_string(first + 1) + " and " + std::to_string(last + 1) +
+      reject("the corridor between points " + std::to_string(first + 1) + " and " + std::to_string(last + 1) +
              " is too narrow to fly through: stop at its corners");
     }
   }
@@ -265,7 +264,7 @@ void add_spline(const WaypointPath& path, std::size_t first, std::size_t last, P
 
 double greatest_length(const PolynomialSegment& segment, int derivative, double limit) {
   const auto axis = [&](const Polynomial& p) { return bernstein(p, segment.duration_s, derivative); };
-  const double tolerance = kPrecision * limit * limit;
+  const double tolerance = kExtremumPrecision * limit * limit;
   const Extremum square =
       maximum(squared_length(axis(segment.x), axis(segment.y), axis(segment.z)), tolerance);
   return std::sqrt(std::max(square.value + tolerance, 0.0)) / limit;
@@ -283,7 +282,7 @@ LimitUse limit_use(const PolynomialSegment& segment, const MotionLimits& limits)
   use.acceleration = greatest_length(segment, 2, limits.acceleration);
   use.jerk = greatest_length(segment, 3, limits.jerk);
   const Bernstein yaw_rate = bernstein(segment.yaw, segment.duration_s, 1);
-  const double tolerance = kPrecision * limits.yaw_rate;
+  const double tolerance = kExtremumPrecision * limits.yaw_rate;
   const double fastest = std::max(maximum(yaw_rate, tolerance).value, -minimum(yaw_rate, tolerance).value);
   use.yaw_rate = (fastest + tolerance) / limits.yaw_rate;
   return use;
@@ -314,9 +313,9 @@ PlannedPath plan(const WaypointPath& path) {
     }
     first = last;
   }
-  if (planned.segments.empty()) refuse("the path has no length: all points are at one place");
+  if (planned.segments.empty()) reject("the path has no length: all points are at one place");
   if (planned.segments.size() > kMaxTrajectorySegments)
-    refuse("the path takes more than " + std::to_string(kMaxTrajectorySegments) + " segments");
+    reject("the path takes more than " + std::to_string(kMaxTrajectorySegments) + " segments");
   for (const PolynomialSegment& segment : planned.segments) planned.duration_s += segment.duration_s;
   return planned;
 }

@@ -11,7 +11,7 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::size_t kMostScatters = 6;
+constexpr std::size_t kScattersOfPage = 6;
 constexpr std::size_t kMostFailed = 100;
 constexpr double kMmPerM = 1e3;
 
@@ -52,7 +52,7 @@ std::string batch_page(const BatchReport& report) {
                   report.vehicle, report.control, report.dispersion, report.first_seed),
       report.completed() ? "quiet" : "warning");
   add_spreads(page, report);
-  if (report.rms_3d_m.count > 0) page.figures({batch_figure(report, kMostScatters)});
+  if (report.rms_3d_m.count > 0) page.figures({batch_figure(report, kScattersOfPage)});
   add_failed(page, report);
   return page.html();
 }

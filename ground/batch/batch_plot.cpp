@@ -14,9 +14,9 @@ namespace {
 using plot::Colour;
 using plot::Style;
 
-constexpr std::size_t kMostScatters = 3;  // side by side
-constexpr std::size_t kFirstScatter = 2;  // its panel
-constexpr double kLongTail = 4.0;         // maximum over median, above which the error axis is logarithmic
+constexpr std::size_t kScattersOfFigure = 3;  // side by side
+constexpr std::size_t kFirstScatter = 2;      // its panel
+constexpr double kLongTail = 4.0;  // maximum over median, above which the error axis is logarithmic
 
 std::string headline(const BatchReport& report) {
   const std::size_t failed = report.batch.failed();
@@ -113,7 +113,7 @@ plot::Figure batch_figure(const BatchReport& report, std::size_t scatters) {
 
 std::string draw_batch(const std::filesystem::path& folder, const BatchReport& report) {
   if (report.rms_3d_m.count == 0) return "no picture was drawn: no run has a tracking error";
-  plot::Figure figure = batch_figure(report, kMostScatters);
+  plot::Figure figure = batch_figure(report, kScattersOfFigure);
   for (std::size_t i = kFirstScatter + 1; i < figure.panels.size(); ++i)
     figure.panels[i].y.label.clear();  // beside it
   return plot::draw_png_if_installed(figure, folder / "batch.png");

@@ -22,20 +22,20 @@ using Json = nlohmann::ordered_json;
 constexpr int kFormat = 1;
 
 // JSON has no numbers that are not finite.
-Json json_of(double number) {
+Json exact_json(double number) {
   if (std::isfinite(number)) return number;
   return std::isnan(number) ? "nan" : number > 0.0 ? "inf" : "-inf";
 }
 
-Json json_of(const std::vector<double>& numbers) {
+Json exact_json(const std::vector<double>& numbers) {
   Json list = Json::array();
-  for (const double number : numbers) list.push_back(json_of(number));
+  for (const double number : numbers) list.push_back(exact_json(number));
   return list;
 }
 
-Json json_of(const control::PhaseMargins& margins_deg) {
+Json exact_json(const control::PhaseMargins& margins_deg) {
   const std::array<double, 6> all = as_array(margins_deg);
-  return json_of(std::vector<double>(all.begin(), all.end()));
+  return exact_json(std::vector<double>(all.begin(), all.end()));
 }
 
 double number_of(const Json& json) {
@@ -58,15 +58,15 @@ control::PhaseMargins margins_of(const Json& json, const char* key) {
   return {all[0], all[1], all[2], all[3], all[4], all[5]};
 }
 
-Json json_of(const BatchRun& run) {
+Json exact_json(const BatchRun& run) {
   return {{"seed", run.seed},
           {"completed", run.completed},
           {"reason", run.reason},
-          {"rms_3d_m", json_of(run.rms_3d_m)},
-          {"peak_3d_m", json_of(run.peak_3d_m)},
-          {"duration_s", json_of(run.duration_s)},
-          {"margins_deg", json_of(run.margins_deg)},
-          {"values", json_of(run.values)}};
+          {"rms_3d_m", exact_json(run.rms_3d_m)},
+          {"peak_3d_m", exact_json(run.peak_3d_m)},
+          {"duration_s", exact_json(run.duration_s)},
+          {"margins_deg", exact_json(run.margins_deg)},
+          {"values", exact_json(run.values)}};
 }
 
 BatchRun run_of(const Json& json, std::size_t values) {
@@ -184,14 +184,14 @@ void write_shard(const fs::path& folder, const ShardResult& result) {
   json["vehicle"] = report.vehicle;
   json["control"] = report.control;
   json["dispersion"] = report.dispersion;
-  json["tolerance_m"] = json_of(report.tolerance_m);
+  json["tolerance_m"] = exact_json(report.tolerance_m);
   json["repeat"] = report.repeat;
   json["draws_rejected"] = report.batch.rejected;
-  json["wall_s"] = json_of(report.batch.wall_s);
-  json["designed_margins_deg"] = json_of(report.batch.designed_deg);
+  json["wall_s"] = exact_json(report.batch.wall_s);
+  json["designed_margins_deg"] = exact_json(report.batch.designed_deg);
   json["parameters"] = report.parameters;
   Json& runs = json["runs"] = Json::array();
-  for (const BatchRun& run : report.batch.runs) runs.push_back(json_of(run));
+  for (const BatchRun& run : report.batch.runs) runs.push_back(exact_json(run));
   json["inputs"] = result.inputs;
   runtime::write_atomically(folder / kShardFile,
                             json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");

@@ -1,4 +1,4 @@
-// The subcommands of `swiftlet`: each function adds one to the command line and returns what runs it.
+// The subcommands of `swiftlet` and its programs: each function adds one to the command line and returns what runs it.
 #pragma once
 
 #include <string>
@@ -52,9 +52,6 @@ Command add_record_command(runtime::CommandLine root, const std::string& version
 Command add_log_command(runtime::CommandLine root);  // `log info`, `log cut`, `log csv` ...
 Command add_report_command(runtime::CommandLine root);
 
-// Vehicle parameters from bench data or flights.
-Command add_identify_command(runtime::CommandLine root, char** argv);  // executes `swiftlet-identify`
-
 // Named configuration files: `config ls`, `config show`.
 Command add_config_command(runtime::CommandLine root);
 
@@ -67,6 +64,10 @@ Command add_manual_command(runtime::CommandLine root);
 
 // Several vehicles in one room: `fleet check`, `fleet fly`. version: of the program, for the record.
 Command add_fleet_command(runtime::CommandLine root, const std::string& version = "swiftlet");
+
+// Groups with commands in several programs.
+constexpr const char* kSimPurpose = "Simulate without DDS, in one process";
+constexpr const char* kMissionPurpose = "Check a mission file, draw it, and fly it with a running vehicle";
 
 // Controller design, mission checks and simulation.
 Command add_tune_command(runtime::CommandLine root);  // `tune plot`

@@ -1,7 +1,7 @@
 #include <cstdio>
 
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/command_text.hpp"
+#include "swiftlet/ground/command_line/programs.hpp"
 
 namespace swiftlet::ground {
 
@@ -12,7 +12,7 @@ Command add_completion_command(runtime::CommandLine root) {
   app.add_option("shell", *shell, "shell that loads the script").required().one_of({"bash", "zsh"});
   app.footer("example: source <(swiftlet completion bash)");
   return {app, [root, shell] {
-            const CommandText program = command_text(root);
+            const CommandText program = text_of_all_programs(root);
             std::fputs((*shell == "zsh" ? zsh_completion(program) : bash_completion(program)).c_str(),
                        stdout);
             return kDone;

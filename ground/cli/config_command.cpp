@@ -99,11 +99,8 @@ Command add_config_command(runtime::CommandLine root) {
       root.add_subcommand("config", "List and print vehicles, control settings, simulations and missions");
   config.require_subcommand(1, 1);
   config.footer("example: swiftlet config ls");
-  const Command list_command = add_list(config);
-  const Command show_command = add_show(config);
-  return {config, [list_command, show_command] {
-            return list_command.app.parsed() ? list_command.run() : show_command.run();
-          }};
+  const std::vector<Command> commands = {add_list(config), add_show(config)};
+  return {config, [commands] { return run_given(commands); }};
 }
 
 }  // namespace swiftlet::ground

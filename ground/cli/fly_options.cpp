@@ -164,6 +164,10 @@ runtime::Option add_launch_options(runtime::CommandLine app, FlyOptions& options
   app.option("--localhost-only")
       .describe(
           "with --attach or --px4: use the loopback interface only, without multicast; otherwise always set");
+  app.option("--open-network")
+      .describe(
+          "with --attach or --px4: use the network without --network-key or --security, where anyone can "
+          "command the vehicles; otherwise without effect");
   app.remove_option("--domain");  // added below with another default
   app.add_option("--domain", options.domain, "DDS domain; default: a free one")
       .environment("ROS_DOMAIN_ID")

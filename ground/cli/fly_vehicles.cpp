@@ -10,20 +10,19 @@
 #include <optional>
 #include <utility>
 
-#include "swiftlet/ground/cli/check/preflight.hpp"
+#include "swiftlet/ground/cli/live_view.hpp"
+#include "swiftlet/ground/cli/preflight.hpp"
 #include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/ground/fleet/fleet_watch.hpp"
 #include "swiftlet/ground/flight/attached_vehicle.hpp"
-#include "swiftlet/ground/flight/fleet_watch.hpp"
 #include "swiftlet/ground/flight/flight_outcome.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/flight/message_record.hpp"
 #include "swiftlet/ground/flight/process_flight.hpp"
 #include "swiftlet/ground/flight/process_group.hpp"
 #include "swiftlet/ground/terminal/fleet_progress.hpp"
-#include "swiftlet/ground/view/view_server.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/discovery/flight_reservation.hpp"
-#include "swiftlet/services/dds/shared_memory.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -57,19 +56,19 @@ void for_each_at_once(std::size_t flights, const Work& work) {
 }
 
 // Flies all vehicles at the same time, ends the processes and writes the records.
-void fly_together(std::deque<ProcessFlight>& flights, ProcessGroup& processes,
-                  std::optional<FleetMonitor> monitor, const Interrupts& interrupts, ProgressLine& progress) {
+void fly_together(std::deque<ProcessFlight>& flights, ProcessGroup& processes, const StartWatch& start_watch,
+                  const Interrupts& interrupts, ProgressLine& progress) {
   std::vector<std::string> names;
   names.reserve(flights.size());
   for (const ProcessFlight& flight : flights) names.push_back(flight.vehicle_name());
   FleetProgress shares(progress, names);
   StartBarrier barrier(flights.size());
-  std::optional<FleetWatch> watch;
-  if (monitor) {
-    std::vector<FleetWatch::Watched> watched;
+  std::shared_ptr<void> watch;
+  if (start_watch) {
+    std::vector<WatchedVehicle> watched;
     for (std::size_t i = 0; i < flights.size(); ++i) watched.push_back({&flights[i].client(), &shares.of(i)});
-    watch.emplace(std::move(*monitor), std::move(watched),
-                  [&] { return barrier.failure().has_value() || interrupts.count() > 0; });
+    watch = start_watch(std::move(watched),
+                        [&] { return barrier.failure().has_value() || interrupts.count() > 0; });
   }
   std::exception_ptr fault;
   try {
@@ -90,32 +89,6 @@ void fly_together(std::deque<ProcessFlight>& flights, ProcessGroup& processes,
   for_each_at_once(flights.size(), [&](std::size_t i) { flights[i].finish(errors, shares.of(i)); });
   if (fault) std::rethrow_exception(fault);
 }
-
-// The live page beside a flight, in threads of its own. Another port than the usual one if that is in use.
-class LiveView {
- public:
-  LiveView(const comms::NodeSettings& network, const std::vector<std::string>& vehicles,
-           const std::string& program, ProgressLine& progress)
-      : context_(network) {
-    const auto say = [](const std::string& sentence) {
-      std::fprintf(stderr, "\nswiftlet: live page: %s\n", sentence.c_str());
-    };
-    ViewSettings settings;
-    settings.vehicles = vehicles;
-    settings.program = program;
-    try {
-      server_.emplace(context_, settings, say);
-    } catch (const std::runtime_error&) {
-      settings.port = 0;
-      server_.emplace(context_, settings, say);
-    }
-    progress.say("live page: " + server_->url());
-  }
-
- private:
-  Context context_;
-  std::optional<ViewServer> server_;
-};
 
 // Completes the plans with what the running vehicles report. Throws unless they are on the ground and can fly their missions
 // from where they stand. What is not known of one is said.
@@ -138,7 +111,7 @@ void plan_for_running(const comms::NodeSettings& network, const std::vector<std:
 }  // namespace
 
 int fly_vehicles(const FlyOptions& options, const std::vector<std::string>& vehicles,
-                 std::vector<LaunchConfiguration> planned, std::optional<FleetMonitor> monitor) {
+                 std::vector<LaunchConfiguration> planned, const StartWatch& start_watch) {
   Fleet fleet{vehicles, std::move(planned), {}, options.program};
   std::vector<LaunchConfiguration>& plans = fleet.plans;
 
@@ -163,7 +136,10 @@ int fly_vehicles(const FlyOptions& options, const std::vector<std::string>& vehi
   std::optional<MessageRecord> messages;  // receives from the first message on
   if (options.mcap) messages.emplace(network, fleet);
   std::optional<LiveView> view;
-  if (options.view) view.emplace(network, vehicles, options.program, progress);
+  if (options.view) {
+    view.emplace(network, vehicles, record->path());
+    progress.say("live page: " + view->url());
+  }
   ProcessGroup processes(ground::processes(fleet, network));
   comms::NodeSettings own = network;
   own.deadlines = options.clock != runtime::Clock::kLockstep;
@@ -177,8 +153,7 @@ int fly_vehicles(const FlyOptions& options, const std::vector<std::string>& vehi
     progress.say("flying " + plan.mission.name +
                  (plan.launch_mode == LaunchMode::kAttached ? "" : " with " + plan.vehicle.name) + ": " +
                  network.vehicle + " in domain " + std::to_string(network.domain) +
-                 (network.localhost_only ? " (--localhost-only)" : "") + ", record in " +
-                 plan.folder.string());
+                 (network.on_loopback() ? " on this host" : "") + ", record in " + plan.folder.string());
     own.vehicle = vehicles[i];
     flights.emplace_back(std::move(plans[i]), own, processes, participant);
   }
@@ -186,13 +161,11 @@ int fly_vehicles(const FlyOptions& options, const std::vector<std::string>& vehi
     flights.front().fly(interrupts, nullptr, progress);
     flights.front().finish(processes.stop(), progress);
   } else {
-    fly_together(flights, processes, std::move(monitor), interrupts, progress);
+    fly_together(flights, processes, start_watch, interrupts, progress);
   }
   std::string incomplete;
   if (messages) incomplete = messages->finish();
   if (!incomplete.empty()) progress.say("swiftlet: the record of the messages is incomplete: " + incomplete);
-  // A killed process leaves its shared memory segments behind.
-  if (network.transport == comms::Transport::kSharedMemory) comms::remove_stale_shared_memory();
 
   if (flights.size() == 1) return print_report(flights.front().report(), options.json, progress);
   std::vector<FlightReport> reports;

@@ -1,19 +1,32 @@
 // Flies planned vehicles at the same time, from one command.
 #pragma once
 
-#include <optional>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "swiftlet/ground/fleet/fleet_monitor.hpp"
+#include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/flight/launch_configuration.hpp"
+#include "swiftlet/ground/terminal/progress.hpp"
 
 namespace swiftlet::ground {
 
+// A vehicle of a flight of several. Client and progress live as long as the flight.
+struct WatchedVehicle {
+  Client* client = nullptr;
+  Progress* progress = nullptr;
+};
+
+// Begins to watch a flight of several vehicles, in the order of the command; what it returns ends the watch when it is destroyed.
+// gives_up: true from when the flight is abandoned, and all are landed. Called from several threads.
+using StartWatch = std::function<std::shared_ptr<void>(std::vector<WatchedVehicle> vehicles,
+                                                       std::function<bool()> gives_up)>;
+
 // Starts the processes, or attaches to running ones, flies the i-th plan with the i-th vehicle, writes the records and
-// prints the reports. options: of the command; the plans were made of them. monitor: of the vehicles in this order; keeps
-// them apart in real time. Returns the program's exit code.
+// prints the reports. options: of the command; the plans were made of them. start_watch: keeps several vehicles apart. Returns
+// the program's exit code.
 int fly_vehicles(const FlyOptions& options, const std::vector<std::string>& vehicles,
-                 std::vector<LaunchConfiguration> planned, std::optional<FleetMonitor> monitor = {});
+                 std::vector<LaunchConfiguration> planned, const StartWatch& start_watch = {});
 
 }  // namespace swiftlet::ground

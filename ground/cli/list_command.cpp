@@ -14,12 +14,12 @@
 #include "swiftlet/ground/client/silence.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
 #include "swiftlet/ground/terminal/state_lines.hpp"
-#include "swiftlet/services/dds/search_text.hpp"
+#include "swiftlet/services/dds/reach.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
-struct Options {
+struct VehicleListOptions {
   comms::NodeSettings network;
   double look_s = 2.0;
   bool json = false;
@@ -44,7 +44,7 @@ std::uint64_t poses(const View& view) {
 }
 
 // Discovers vehicle names for half of the time, then receives the topics of each vehicle for the other half.
-std::vector<Found> discover(const Options& options) {
+std::vector<Found> discover(const VehicleListOptions& options) {
   const Context context(options.network);
   std::this_thread::sleep_for(to_milliseconds(0.5 * options.look_s));
   std::map<std::string, std::unique_ptr<Client>> clients;
@@ -110,7 +110,7 @@ void print(const std::vector<Found>& vehicles) {
   }
 }
 
-int list(const Options& options) {
+int list_vehicles(const VehicleListOptions& options) {
   const std::vector<Found> vehicles = discover(options);
   if (options.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
@@ -134,7 +134,7 @@ int list(const Options& options) {
 }  // namespace
 
 Command add_list_command(runtime::CommandLine root) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<VehicleListOptions>();
   const runtime::CommandLine app = root.add_subcommand(
       "list", "List the vehicles of the domain: who is silent first, then mode, battery and controllers");
   add_network_options(app, options->network);
@@ -143,7 +143,7 @@ Command add_list_command(runtime::CommandLine root) {
   app.add_flag("--json", options->json, "print the list as JSON");
   app.add_flag("--names", options->names, "print only the names, one a line");
   app.footer("example: swiftlet list --json | jq -r .[].vehicle");
-  return {app, [options] { return list(*options); }};
+  return {app, [options] { return list_vehicles(*options); }};
 }
 
 }  // namespace swiftlet::ground

@@ -3,13 +3,13 @@
 #include <filesystem>
 
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/command_text.hpp"
+#include "swiftlet/ground/command_line/programs.hpp"
 #include "swiftlet/io/atomic_write.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
-struct Options {
+struct ManualOptions {
   std::vector<std::string> command;
   std::string folder;
 };
@@ -32,8 +32,8 @@ const CommandText& find(const CommandText& program, const std::vector<std::strin
   return *found;
 }
 
-int run(runtime::CommandLine root, const Options& options) {
-  const CommandText program = command_text(root);
+int write_manual(runtime::CommandLine root, const ManualOptions& options) {
+  const CommandText program = text_of_all_programs(root);
   if (options.folder.empty()) {
     std::fputs(manual_page(find(program, options.command)).c_str(), stdout);
     return kDone;
@@ -46,13 +46,13 @@ int run(runtime::CommandLine root, const Options& options) {
 }  // namespace
 
 Command add_manual_command(runtime::CommandLine root) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ManualOptions>();
   const runtime::CommandLine app =
       root.add_subcommand("man", "Print the manual page of this program or of a command");
   app.add_option("command", options->command, "command, such as: sim fly; default: the program itself");
   app.add_option("--into", options->folder, "folder to which the pages of all commands are written");
   app.footer("example: swiftlet man sim fly | man -l -");
-  return {app, [root, options] { return run(root, *options); }};
+  return {app, [root, options] { return write_manual(root, *options); }};
 }
 
 }  // namespace swiftlet::ground

@@ -13,7 +13,7 @@
 namespace swiftlet::ground {
 namespace {
 
-struct Options {
+struct MissionCheckOptions {
   std::string file;
   ReadingOptions reading;
   std::string vehicle = "kaylion";
@@ -23,7 +23,7 @@ struct Options {
   bool json = false;
 };
 
-int run(const Options& options) {
+int check_missions(const MissionCheckOptions& options) {
   const plant::Vehicle vehicle =
       runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
   const auto settings =
@@ -48,7 +48,7 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_mission_check_command(runtime::CommandLine mission) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MissionCheckOptions>();
   const runtime::CommandLine app = mission.add_subcommand(
       "check", "Check a mission file, and whether the vehicle can fly every part of its path");
   app.footer(
@@ -73,7 +73,7 @@ Command add_mission_check_command(runtime::CommandLine mission) {
                  "battery voltage of the check, V; default: the low-battery threshold")
       .range(0.1, 100.0);
   app.add_flag("--json", options->json, "print JSON");
-  return {app, [options] { return run(*options); }};
+  return {app, [options] { return check_missions(*options); }};
 }
 
 }  // namespace swiftlet::ground

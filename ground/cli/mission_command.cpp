@@ -8,7 +8,7 @@
 namespace swiftlet::ground {
 namespace {
 
-struct Options : RequestOptions {
+struct MissionOptions : RequestOptions {
   std::uint64_t id = 0;
 };
 
@@ -18,7 +18,7 @@ Command add_mission_request(runtime::CommandLine mission, const std::string& nam
                             const std::string& description, Ask ask,
                             OnInterrupt on_interrupt = OnInterrupt::kPauseMission,
                             bool done_when_accepted = false) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MissionOptions>();
   const runtime::CommandLine app =
       add_request_subcommand(mission, name, description, "swiftlet mission " + name, options);
   app.add_option("--id", options->id,
@@ -61,23 +61,16 @@ Command add_mission_clear_command(runtime::CommandLine mission) {
 }
 
 Command add_mission_command(runtime::CommandLine root) {
-  const runtime::CommandLine mission =
-      root.add_subcommand("mission", "Check a mission file, draw it, and fly it with a running vehicle");
+  const runtime::CommandLine mission = root.add_subcommand("mission", kMissionPurpose);
   mission.require_subcommand(1, 1);
   mission.footer("example: swiftlet mission check square && swiftlet mission fly square");
   const std::vector<Command> commands = {
-      add_mission_check_command(mission),  add_mission_plot_command(mission),
-      add_mission_fly_command(mission),    add_mission_upload_command(mission),
-      add_mission_start_command(mission),  add_mission_pause_command(mission),
-      add_mission_resume_command(mission), add_mission_skip_command(mission),
-      add_mission_clear_command(mission),
+      add_mission_check_command(mission),  add_mission_fly_command(mission),
+      add_mission_upload_command(mission), add_mission_start_command(mission),
+      add_mission_pause_command(mission),  add_mission_resume_command(mission),
+      add_mission_skip_command(mission),   add_mission_clear_command(mission),
   };
-  return {mission, [commands] {
-            for (const Command& command : commands) {
-              if (command.app.parsed()) return command.run();
-            }
-            return kBadInput;
-          }};
+  return {mission, [commands] { return run_given(commands); }};
 }
 
 }  // namespace swiftlet::ground

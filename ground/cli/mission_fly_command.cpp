@@ -11,13 +11,13 @@
 namespace swiftlet::ground {
 namespace {
 
-struct Options : CommandOptions {
+struct MissionFlyOptions : CommandOptions {
   SentFileOptions sent;
   bool no_wait = false;
   bool link = false;
 };
 
-int fly_mission(const Options& options) {
+int fly_mission(const MissionFlyOptions& options) {
   const SentFile sent(options.sent);
   const MissionFile mission = sent.mission();
   Vehicle vehicle(options.network);
@@ -56,7 +56,7 @@ int fly_mission(const Options& options) {
 }  // namespace
 
 Command add_mission_fly_command(runtime::CommandLine mission) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MissionFlyOptions>();
   const runtime::CommandLine app = add_vehicle_subcommand(
       mission, "fly", "Upload a mission file, start it and wait until it ends; Ctrl-C pauses it",
       "swiftlet mission fly config/missions/square.yaml", options);

@@ -10,11 +10,11 @@
 namespace swiftlet::ground {
 namespace {
 
-struct Options : CommandOptions {
+struct MissionUploadOptions : CommandOptions {
   SentFileOptions sent;
 };
 
-int upload(const Options& options) {
+int upload(const MissionUploadOptions& options) {
   const SentFile sent(options.sent);
   const MissionFile file = sent.mission();
   Vehicle vehicle(options.network);
@@ -38,7 +38,7 @@ int upload(const Options& options) {
 }  // namespace
 
 Command add_mission_upload_command(runtime::CommandLine mission) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MissionUploadOptions>();
   const runtime::CommandLine app = add_vehicle_subcommand(
       mission, "upload", "Upload a mission to the vehicle, to be started with `mission start`",
       "swiftlet mission upload square && swiftlet mission start", options);

@@ -12,13 +12,13 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/cli/log/compression_option.hpp"
+#include "swiftlet/ground/cli/compression_option.hpp"
 #include "swiftlet/ground/client/context.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/recording/flight_recorder.hpp"
 #include "swiftlet/ground/terminal/progress_line.hpp"
-#include "swiftlet/services/dds/search_text.hpp"
+#include "swiftlet/services/dds/reach.hpp"
 #include "swiftlet/services/dds/vehicle_list.hpp"
 
 namespace swiftlet::ground {
@@ -27,11 +27,10 @@ namespace {
 using namespace std::chrono_literals;
 using Steady = std::chrono::steady_clock;
 
-constexpr auto kStep = 50ms;
+constexpr auto kShownStep = 50ms;
 constexpr auto kLookPeriod = 250ms;
-constexpr double kMegabyte = 1e6;
 
-struct Options {
+struct RecordOptions {
   comms::NodeSettings network;
   bool all = false;
   std::string output;
@@ -42,7 +41,7 @@ struct Options {
   bool json = false;
 };
 
-void require_free(const Options& options) {
+void require_free(const RecordOptions& options) {
   const std::filesystem::path file = options.output;
   if (!std::filesystem::exists(file)) return;
   if (!std::filesystem::is_regular_file(file))
@@ -55,7 +54,7 @@ void require_free(const Options& options) {
 // The vehicles that are recorded: those named, or all that appear.
 class RecordedVehicles {
  public:
-  RecordedVehicles(const Options& options, const Context& context, FlightRecorder& recorder)
+  RecordedVehicles(const RecordOptions& options, const Context& context, FlightRecorder& recorder)
       : context_(context), recorder_(recorder), all_(options.all) {
     if (all_) return;
     for (const std::string& name : comms::vehicles_of_list(options.network.vehicle)) add(name);
@@ -83,7 +82,7 @@ std::string losses(const RecorderTotals& totals) {
   return fmt::format("{} dropped, {} lost", totals.dropped, totals.lost);
 }
 
-void print(const Options& options, const RecorderTotals& totals, double time_s,
+void print(const RecordOptions& options, const RecorderTotals& totals, double time_s,
            const std::optional<std::string>& fault) {
   if (options.json) {
     nlohmann::ordered_json json = {
@@ -98,11 +97,11 @@ void print(const Options& options, const RecorderTotals& totals, double time_s,
   std::printf("record: %s\n",
               fmt::format("{}: {} messages of {} topics in {:.1f} s, {:.1f} MB; {}", options.output,
                           totals.received - totals.dropped, totals.topics, time_s,
-                          static_cast<double>(totals.file_bytes) / kMegabyte, losses(totals))
+                          static_cast<double>(totals.file_bytes) / 1e6, losses(totals))
                   .c_str());
 }
 
-int record(const Options& options) {
+int record(const RecordOptions& options) {
   require_free(options);
   std::signal(SIGXFSZ, SIG_IGN);  // a limit of the file's size is an error of write(), as a full disk is
   const Interrupts interrupts;
@@ -118,11 +117,11 @@ int record(const Options& options) {
   std::optional<std::string> fault;
   while (interrupts.count() == 0 && !fault && !(options.duration_s && time_s() >= *options.duration_s)) {
     vehicles.look();
-    std::this_thread::sleep_for(kStep);
+    std::this_thread::sleep_for(kShownStep);
     const RecorderTotals totals = recorder.totals();
     progress.update(
         0, fmt::format("{:.0f} s  {} messages of {} topics, {:.1f} MB, {}", time_s(), totals.received,
-                       totals.topics, static_cast<double>(totals.file_bytes) / kMegabyte, losses(totals)));
+                       totals.topics, static_cast<double>(totals.file_bytes) / 1e6, losses(totals)));
     fault = recorder.fault();
   }
   const double recorded_s = time_s();
@@ -141,7 +140,7 @@ int record(const Options& options) {
 }  // namespace
 
 Command add_record_command(runtime::CommandLine root, const std::string& version) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RecordOptions>();
   options->recorder.file.library = version;
   const runtime::CommandLine app = root.add_subcommand(
       "record", "Record every message of one or more vehicles as an MCAP file, until Ctrl-C");

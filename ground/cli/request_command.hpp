@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "swiftlet/ground/cli/requests/await_actions.hpp"
+#include "swiftlet/ground/cli/await_actions.hpp"
 #include "swiftlet/ground/client/action.hpp"
 #include "swiftlet/ground/client/vehicle.hpp"
 #include "swiftlet/ground/command_line/command.hpp"

@@ -24,13 +24,13 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::chrono::milliseconds kRestTimeout{1000};
+constexpr std::chrono::milliseconds kTopicTimeout{1000};
 
-struct Options : CommandOptions {
+struct StatusOptions : CommandOptions {
   double watch_s = 1.0;
 };
 
-struct Rates {
+struct TopicRates {
   double estimate_hz = 0.0;
   double reference_hz = 0.0;
   double battery_hz = 0.0;
@@ -42,7 +42,7 @@ double rate_hz(const Latest<T>& before, const Latest<T>& after, double time_s) {
   return static_cast<double>(after.count - before.count) / time_s;
 }
 
-Rates rates_between(const View& before, const View& after, double time_s) {
+TopicRates rates_between(const View& before, const View& after, double time_s) {
   return {rate_hz(before.estimate, after.estimate, time_s),
           rate_hz(before.reference, after.reference, time_s), rate_hz(before.battery, after.battery, time_s),
           rate_hz(before.truth, after.truth, time_s)};
@@ -123,7 +123,7 @@ void print(const LiveControllers& controllers) {
     std::printf("  controller %d more found, which report no state\n", controllers.others);
 }
 
-nlohmann::ordered_json to_json(const View& view, const Rates& rates, const CommandOptions& options) {
+nlohmann::ordered_json to_json(const View& view, const TopicRates& rates, const CommandOptions& options) {
   const auto now = Clock::now();
   const auto& control = view.control.message;
   const auto& mission = view.mission.message;
@@ -270,7 +270,7 @@ void print_vehicle(const msg::VehicleInfo& info) {
       info.fault().size() > 0 ? "; FAULT: " : "", info.fault().c_str());
 }
 
-void print(const View& view, const Rates& rates, const CommandOptions& options) {
+void print(const View& view, const TopicRates& rates, const CommandOptions& options) {
   const auto now = Clock::now();
   const auto& control = view.control.message;
   const auto& mission = view.mission.message;
@@ -347,7 +347,7 @@ bool is_flown_by_autopilot(const View& view) {
   return !view.control.seen() && view.vehicle.seen() && view.vehicle.message.autopilot().size() > 0;
 }
 
-void print_flown_by_autopilot(const View& view, const Rates& rates, const CommandOptions& options) {
+void print_flown_by_autopilot(const View& view, const TopicRates& rates, const CommandOptions& options) {
   const auto now = Clock::now();
   for (const Silence& silence : silences_of(view, now))
     print_alarm(stdout, to_string(silence, std::chrono::system_clock::now()));
@@ -368,7 +368,7 @@ void print_flown_by_autopilot(const View& view, const Rates& rates, const Comman
               age_text(view.truth, now).c_str());
 }
 
-int show_status(const Options& options) {
+int show_status(const StatusOptions& options) {
   Client client(options.network);
   client.hear_controllers();
   if (!client.wait(options.timeout(),
@@ -376,8 +376,8 @@ int show_status(const Options& options) {
     std::fprintf(stderr, "swiftlet: status: %s\n", client.no_control().c_str());
     return kFailed;
   }
-  // Topics that do not arrive within kRestTimeout are shown as missing.
-  client.wait(kRestTimeout, [](const View& view) {
+  // Topics that do not arrive within kTopicTimeout are shown as missing.
+  client.wait(kTopicTimeout, [](const View& view) {
     return view.vehicle.seen() && view.battery.seen() &&
            (is_flown_by_autopilot(view) ? view.truth.seen() : view.estimate.seen() && view.mission.seen());
   });
@@ -385,7 +385,7 @@ int show_status(const Options& options) {
   client.wait(std::chrono::milliseconds(static_cast<std::int64_t>(options.watch_s * 1e3)),
               [](const View&) { return false; });
   const View after = client.view();
-  const Rates rates = rates_between(before, after, options.watch_s);
+  const TopicRates rates = rates_between(before, after, options.watch_s);
   if (options.json) {
     std::printf("%s\n", to_json(after, rates, options).dump(2).c_str());
   } else if (is_flown_by_autopilot(after)) {
@@ -399,7 +399,7 @@ int show_status(const Options& options) {
 }  // namespace
 
 Command add_status_command(runtime::CommandLine root) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<StatusOptions>();
   const runtime::CommandLine app = add_vehicle_subcommand(
       root, "status",
       "Print the state of a vehicle: who is silent first, then mode, position, battery and rates",

@@ -29,13 +29,13 @@ using namespace std::chrono_literals;
 
 constexpr double kLeastRate_hz = 2.0;
 constexpr double kRateTolerance = 1e-6;
-constexpr auto kStep = 2ms;
+constexpr auto kSendStep = 2ms;
 constexpr double kSlack_s = 1.5;  // vehicle clock: longest time until its status says setpoint
 constexpr auto kSilence = 3s;
 constexpr auto kManoeuvreTimeout = 60s;
 constexpr double kThere_m = 0.02;  // from the reference to the first position of a stream
 
-struct Options : CommandOptions {
+struct StreamOptions : CommandOptions {
   std::string file;
   std::optional<double> rate_hz;
   std::optional<MissionFrame> frame;
@@ -101,7 +101,7 @@ SetpointSource at_rate(SetpointSource source, const std::optional<double>& rate_
   return resampled(std::move(source), *rate_hz);
 }
 
-SetpointSource open(const Options& options) {
+SetpointSource open(const StreamOptions& options) {
   const bool piped = options.file == "-";
   const std::string name = piped ? "standard input" : options.file;
   auto file = std::make_shared<std::istringstream>(piped ? "" : runtime::read_text_file(options.file));
@@ -128,7 +128,7 @@ SetpointSource open(const Options& options) {
 
 // Flies to the first setpoint of a stream of positions. Returns a sentence if that fails.
 std::optional<std::string> go_to_start(Vehicle& vehicle, const control::Setpoint& first,
-                                       const Options& options, const Interrupts& interrupts) {
+                                       const StreamOptions& options, const Interrupts& interrupts) {
   if (first.kind != control::SetpointKind::kPosition) return std::nullopt;
   const VehicleState state = vehicle.state();
   if (state.mode != Mode::kHolding ||
@@ -183,7 +183,7 @@ class Streamer {
     double last_s = vehicle_.clock_s();
     while (last_s - begin_s_ < t_s) {
       if (!goes_on()) return false;
-      std::this_thread::sleep_for(kStep);
+      std::this_thread::sleep_for(kSendStep);
       const double now_s = vehicle_.clock_s();
       const auto now = std::chrono::steady_clock::now();
       if (now_s > last_s) moved = now;
@@ -232,7 +232,7 @@ class Streamer {
 };
 
 // Waits until the vehicle holds, or lands it. Returns a sentence if that fails.
-std::optional<std::string> come_to_rest(Vehicle& vehicle, const Options& options) {
+std::optional<std::string> come_to_rest(Vehicle& vehicle, const StreamOptions& options) {
   if (options.land) {
     const ActionResult landed = vehicle.land(0.4, options.timeout()).wait(kManoeuvreTimeout);
     return landed.done() ? std::nullopt : std::optional("the vehicle did not land: " + landed.reason);
@@ -264,7 +264,7 @@ void print(const StreamResult& result, const VehicleState& end, bool json) {
   if (!result.fault.empty()) std::fprintf(stderr, "swiftlet: stream: %s\n", result.fault.c_str());
 }
 
-int stream(const Options& options) {
+int stream(const StreamOptions& options) {
   SetpointSource source = open(options);
   const Interrupts interrupts;
   Vehicle vehicle(options.network);
@@ -298,7 +298,7 @@ int stream(const Options& options) {
 }  // namespace
 
 Command add_stream_command(runtime::CommandLine root) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<StreamOptions>();
   const runtime::CommandLine app = add_vehicle_subcommand(
       root, "stream", "Stream setpoints from a CSV file, timed by the vehicle's clock",
       "swiftlet stream circle.csv --rate 50    (header: t [s],x_ned [m],y_ned [m],z_ned [m])", options);

@@ -7,11 +7,11 @@
 namespace swiftlet::ground {
 namespace {
 
-struct Options : RequestOptions {
+struct TrajectoryOptions : RequestOptions {
   SentFileOptions sent;
 };
 
-int send_trajectory(const Options& options) {
+int send_trajectory(const TrajectoryOptions& options) {
   const SentFile sent(options.sent);
   const TrajectoryFile file = sent.trajectory();
   const control::Trajectory trajectory{0, file.segments};
@@ -24,7 +24,7 @@ int send_trajectory(const Options& options) {
 }  // namespace
 
 Command add_trajectory_command(runtime::CommandLine root) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TrajectoryOptions>();
   const runtime::CommandLine app = add_request_subcommand(
       root, "trajectory", "Fly a trajectory of a CSV file; the vehicle joins it from its motion",
       "swiftlet trajectory config/missions/wave.csv", options, Vehicles::kOne);

@@ -20,14 +20,14 @@ constexpr int kFrame_ms = 100;
 constexpr auto kRateTime = 1s;
 constexpr auto kAnswerTimeout = 2s;
 
-struct Options {
+struct WatchOptions {
   comms::NodeSettings network;
   bool plain = false;
   std::optional<double> duration_s;
 };
 
 // Topic rates over the last second.
-class Rates {
+class WatchedRates {
  public:
   void update(const View& view, WatchFacts& facts) {
     const auto now = Clock::now();
@@ -110,7 +110,7 @@ class Keys {
 
 class Watch {
  public:
-  explicit Watch(const Options& options) : client_(options.network), keys_(client_) {
+  explicit Watch(const WatchOptions& options) : client_(options.network), keys_(client_) {
     client_.hear_controllers();
     facts_.vehicle = options.network.vehicle;
     facts_.domain = options.network.domain;
@@ -163,13 +163,13 @@ class Watch {
   Client client_;
   Keys keys_;
   WatchFacts facts_;
-  Rates rates_;
+  WatchedRates rates_;
   ConnectionWatch connection_;
   bool was_lost_ = false;
   std::optional<Clock::time_point> end_;
 };
 
-int watch(const Options& options) {
+int watch(const WatchOptions& options) {
   Watch watch(options);
   const bool terminal = isatty(STDOUT_FILENO) != 0 && isatty(STDIN_FILENO) != 0;
   return terminal && !options.plain ? watch.on_screen() : watch.in_lines();
@@ -178,7 +178,7 @@ int watch(const Options& options) {
 }  // namespace
 
 Command add_watch_command(runtime::CommandLine root) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<WatchOptions>();
   const runtime::CommandLine app =
       root.add_subcommand("watch", "Show a vehicle full screen, with keys for hold, land and stop");
   add_network_options(app, options->network);

@@ -9,7 +9,7 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::chrono::milliseconds kPollPeriod{100};
+constexpr std::chrono::milliseconds kActionPollPeriod{100};
 constexpr std::chrono::seconds kSilence{3};
 
 bool is_of(const msg::RequestStatus& request, const control::RequestKey& key) {
@@ -81,7 +81,7 @@ ActionResult ActionHandle::wait(std::chrono::milliseconds timeout) const {
       if (view.control.seen()) result = action_result_by(view.control.message, answer_);
       return result || silent;
     };
-    client_->wait(std::min(kPollPeriod, timeout), ended);
+    client_->wait(std::min(kActionPollPeriod, timeout), ended);
     if (result) return *result;
     if (silent)
       return {ActionResult::Kind::kLost,

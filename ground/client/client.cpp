@@ -8,7 +8,7 @@
 #include "swiftlet/control/estimation/estimator.hpp"
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/client/discovery.hpp"
-#include "swiftlet/services/dds/search_text.hpp"
+#include "swiftlet/services/dds/reach.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 
 namespace swiftlet::ground {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "swiftlet/services/runtime/command_line.hpp"
 
@@ -20,6 +21,9 @@ struct Command {
   // Returns kDone, kFailed or kBadInput. Throws InputError for bad input, another exception for a failure.
   std::function<int()> run;
 };
+
+// Runs the command that was given, one of the subcommands of a command that requires one; kBadInput if none was.
+int run_given(const std::vector<Command>& commands);
 
 // Bad input. what() is one sentence for the user.
 class InputError : public std::runtime_error {

@@ -5,7 +5,7 @@
 namespace swiftlet::ground {
 namespace {
 
-// Parses a CLI11 type such as "TEXT:{udp,shm}" into value, choices and facts.
+// Parses a CLI11 type such as "TEXT:{realtime,lockstep}" into value, choices and facts.
 void read_type(const std::string& type, OptionText& option) {
   const std::size_t colon = type.find(':');
   option.value = type.substr(0, colon);

@@ -29,6 +29,10 @@ struct CommandText {
 // Returns the command with all its subcommands.
 CommandText command_text(runtime::CommandLine command);
 
+// The command with all its subcommands as JSON, and back. command_text_of_json() throws std::runtime_error for another text.
+std::string json_of(const CommandText& command);
+CommandText command_text_of_json(const std::string& text);
+
 std::string bash_completion(const CommandText& program);
 std::string zsh_completion(const CommandText& program);
 

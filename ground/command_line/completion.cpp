@@ -5,6 +5,7 @@
 
 #include "swiftlet/ground/command_line/command_text.hpp"
 #include "swiftlet/io/configuration.hpp"
+#include "swiftlet/io/text.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -21,19 +22,13 @@ void for_each(const CommandText& command, const std::function<void(const Command
   for (const CommandText& sub : command.commands) for_each(sub, visit);
 }
 
-std::string joined(const std::vector<std::string>& words, const std::string& between) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
-  return text;
-}
-
 // Patterns of a shell `case`, one for each subcommand.
 std::string command_patterns(const CommandText& program) {
   std::vector<std::string> patterns;
   for_each(program, [&](const CommandText& command) {
     if (command.words.size() > 1) patterns.push_back(path_of(command));
   });
-  return joined(patterns, " | ");
+  return runtime::joined(patterns, " | ");
 }
 
 // "/fly --clock" for each name of an option that takes a value.
@@ -73,17 +68,17 @@ std::string values_after_options(const CommandText& program, const std::string& 
       if (patterns.empty()) continue;
       const std::string asked = names_command(option);
       const std::string choices =
-          asked.empty() ? joined(option.choices, " ") : output_of(program_word, asked);
+          asked.empty() ? runtime::joined(option.choices, " ") : output_of(program_word, asked);
       if (choices.empty()) {
         others.insert(others.end(), patterns.begin(), patterns.end());
       } else {
-        text += std::string("    ") + open + joined(patterns, " | ") + ") " + list_begin + choices +
+        text += std::string("    ") + open + runtime::joined(patterns, " | ") + ") " + list_begin + choices +
                 list_end + (asked.empty() ? "" : files) + " return ;;\n";
       }
     }
   });
   if (!others.empty())
-    text += std::string("    ") + open + joined(others, " | ") + ") " + files + " return ;;\n";
+    text += std::string("    ") + open + runtime::joined(others, " | ") + ") " + files + " return ;;\n";
   return text;
 }
 
@@ -152,8 +147,9 @@ std::string bash_completion(const CommandText& program) {
       "  local options=\"\" words=\"\"\n"
       "  case \"$chosen\" in\n";
   for_each(program, [&](const CommandText& command) {
-    text += "    \"" + path_of(command) + "\")\n      options=\"" + joined(option_names(command), " ") +
-            "\"\n      words=\"" + joined(plain_words(command), " ");
+    text += "    \"" + path_of(command) + "\")\n      options=\"" +
+            runtime::joined(option_names(command), " ") + "\"\n      words=\"" +
+            runtime::joined(plain_words(command), " ");
     const std::string names = positional_names(command, program_word);
     text += (names.empty() ? "" : " " + names) + "\"\n      ;;\n";
   });

@@ -6,8 +6,13 @@
 
 namespace swiftlet::ground {
 
-// Returns the path of a program of the project in the folder of the running one. Throws std::runtime_error if
-// it does not exist.
+// Returns the path of a program of the project in the folder of the running one. In a build folder it is built first if it was
+// not yet. Throws std::runtime_error if it does not exist.
 std::filesystem::path program_beside(const std::string& name);
+
+bool has_program_beside(const std::string& name);
+
+// One word of a command of the shell.
+std::string shell_quoted(const std::string& word);
 
 }  // namespace swiftlet::ground

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/runtime/command_line.hpp"
@@ -17,6 +18,7 @@ enum class Vehicles { kOne, kSeveral };
 void add_network_options(runtime::CommandLine app, comms::NodeSettings& network,
                          Vehicles vehicles = Vehicles::kOne);
 
-std::string to_string(comms::Transport transport);  // as on the command line
+// The options of a process of this host with these settings, without the name of the vehicle.
+std::vector<std::string> network_arguments(const comms::NodeSettings& network);
 
 }  // namespace swiftlet::ground

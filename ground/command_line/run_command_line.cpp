@@ -16,11 +16,18 @@ int report_error(const std::exception& error, int code) {
   return code;
 }
 
-int run_reporting_errors(runtime::Program& program, int argc, char** argv, const std::function<int()>& run) {
-  using Parsed = runtime::Program::Parsed;
+}  // namespace
+
+int run_given(const std::vector<Command>& commands) {
+  for (const Command& command : commands) {
+    if (command.app.parsed()) return command.run();
+  }
+  return kBadInput;
+}
+
+int run_reporting_errors(const std::function<int()>& run) {
   try {
-    const Parsed parsed = program.parse(argc, argv);
-    return parsed == Parsed::kRun ? run() : parsed == Parsed::kHelp ? kDone : kBadInput;
+    return run();
   } catch (const InputError& error) {
     return report_error(error, kBadInput);
   } catch (const runtime::ConfigError& error) {
@@ -30,11 +37,14 @@ int run_reporting_errors(runtime::Program& program, int argc, char** argv, const
   }
 }
 
-}  // namespace
-
 int run_command_line(runtime::Program& program, int argc, char** argv, const std::function<int()>& run) {
+  using Parsed = runtime::Program::Parsed;
   runtime::log_to_stderr();
-  return runtime::exit_code_after_output("swiftlet", run_reporting_errors(program, argc, argv, run));
+  const int exit_code = run_reporting_errors([&] {
+    const Parsed parsed = program.parse(argc, argv);
+    return parsed == Parsed::kRun ? run() : parsed == Parsed::kHelp ? kDone : kBadInput;
+  });
+  return runtime::exit_code_after_output("swiftlet", exit_code);
 }
 
 }  // namespace swiftlet::ground

@@ -15,14 +15,14 @@ struct Arguments {
   comms::NodeSettings network;
 };
 
-// Reads [VEHICLE] [DOMAIN] [--localhost-only], after the arguments of the example itself, whose names are
+// Reads [VEHICLE] [DOMAIN] [--open-network], after the arguments of the example itself, whose names are
 // `own`. Prints the usage and ends the program if the arguments ask for help (exit code 0) or are wrong (2).
 inline Arguments read_arguments(int argc, char** argv, const std::vector<std::string>& own = {}) {
   const std::vector<std::string> words(argv + 1, argv + argc);
   const auto end_with_usage = [&](std::FILE* out, int exit_code) {
     std::fprintf(out, "usage: %s", argv[0]);
     for (const std::string& name : own) std::fprintf(out, " %s", name.c_str());
-    std::fprintf(out, " [VEHICLE] [DOMAIN] [--localhost-only]\n");
+    std::fprintf(out, " [VEHICLE] [DOMAIN] [--open-network]\n");
     std::exit(exit_code);
   };
   std::vector<std::string> places;
@@ -30,8 +30,8 @@ inline Arguments read_arguments(int argc, char** argv, const std::vector<std::st
   network.name = "example";
   for (const std::string& word : words) {
     if (word == "--help" || word == "-h") end_with_usage(stdout, 0);
-    if (word == "--localhost-only") {
-      network.localhost_only = true;
+    if (word == "--open-network") {
+      network.open_network = true;
     } else if (word.rfind('-', 0) == 0) {
       end_with_usage(stderr, 2);
     } else {

@@ -1,7 +1,7 @@
 // Flies a square with sides of 1 m: arms, takes off, goes to four corners, lands. Default vehicle: kl1.
 //
 //   swiftlet-plant & swiftlet-mocap & swiftlet-control &
-//   example-fly-square [VEHICLE] [DOMAIN] [--localhost-only]
+//   example-fly-square [VEHICLE] [DOMAIN] [--open-network]
 #include <cstdio>
 
 #include <swiftlet/ground/client/vehicle.hpp>

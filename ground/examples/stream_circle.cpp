@@ -2,7 +2,7 @@
 // follows the stream; when the stream stops, it holds.
 //
 //   swiftlet-plant & swiftlet-mocap & swiftlet-control &
-//   example-stream-circle [VEHICLE] [DOMAIN] [--localhost-only]
+//   example-stream-circle [VEHICLE] [DOMAIN] [--open-network]
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -8,7 +8,7 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr double kStep_s = 0.01;          // with which a path is searched for the reference
+constexpr double kSearchStep_s = 0.01;    // with which a path is searched for the reference
 constexpr double kOffPath_m = 0.1;        // the reference of a vehicle on its path is nearer to it
 constexpr double kAtPlace_m = 0.03;       // the reference of a vehicle at a place of its path is nearer to it
 constexpr double kNear_s = 1.0;           // it is back on its path, if it is within kOffPath_m for so long
@@ -69,10 +69,11 @@ RightOfWay::Slack FleetMonitor::least_slack() const {
 void FleetMonitor::follow(std::size_t i, double elapsed_s, const VehicleNews& news) {
   const FlightPath& path = vehicles_[i].path;
   const double from_s = progress_s_[i];
-  const double to_s = std::max(std::min({from_s + elapsed_s, now_s_ + kStep_s, path.duration_s()}), from_s);
+  const double to_s =
+      std::max(std::min({from_s + elapsed_s, now_s_ + kSearchStep_s, path.duration_s()}), from_s);
   double best_s = from_s;
   double best_m = (path.at(from_s) - news.reference_ned).norm();
-  for (double t = from_s; t <= to_s + 0.5 * kStep_s; t += kStep_s) {
+  for (double t = from_s; t <= to_s + 0.5 * kSearchStep_s; t += kSearchStep_s) {
     const double s = std::min(t, to_s);
     const double off_m = (path.at(s) - news.reference_ned).norm();
     if (off_m > best_m + 1e-6) continue;
@@ -102,7 +103,7 @@ bool FleetMonitor::rejoin(std::size_t i, double elapsed_s, const VehicleNews& ne
   if (way_[i] != Way::kBack && paused_s_[i] < vehicles_[i].stop_s) return false;
   const FlightPath& path = vehicles_[i].path;
   double best_s = left_s_[i], best_m = kOffPath_m;
-  for (double t = 0.0; t <= leaving_s_[i] + near_s_[i] + 0.5 * kStep_s; t += kStep_s) {
+  for (double t = 0.0; t <= leaving_s_[i] + near_s_[i] + 0.5 * kSearchStep_s; t += kSearchStep_s) {
     const double off_m = (path.at(left_s_[i] + t) - news.reference_ned).norm();
     if (off_m >= best_m) continue;
     best_m = off_m;
@@ -389,7 +390,7 @@ std::vector<Order> FleetMonitor::step(double now_s, const std::vector<VehicleNew
   Scene scene{news, {}, {}};
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     if (news[i].age_s <= kLost_s && news[i].flies_plan) {
-      if (way_[i] == Way::kPath) follow(i, elapsed_s + 2.0 * kStep_s, news[i]);
+      if (way_[i] == Way::kPath) follow(i, elapsed_s + 2.0 * kSearchStep_s, news[i]);
       if (way_[i] != Way::kPath && rejoin(i, elapsed_s, news[i])) way_[i] = Way::kPath;
     }
     if (!news[i].flies_plan || news[i].rotors_off) way_[i] = Way::kPath;

@@ -15,7 +15,7 @@ namespace {
 using plot::Colour;
 using plot::Style;
 
-constexpr double kStep_s = 0.05;
+constexpr double kDrawnStep_s = 0.05;
 constexpr std::size_t kClearance = 3;  // panel
 constexpr double kFar = 10.0;          // clearance that counts as far
 constexpr std::array kColours = {Colour::kBlue,   Colour::kOrange, Colour::kGreen,
@@ -32,7 +32,7 @@ plot::Figure fleet_figure(const FleetCheck& check) {
       title, {"north x (m)", "east y (m)", "height -z (m)", "least clearance, 1: two touch"},
       check.duration_s);
   plot::Series clearances{Style::kLine, Colour::kInk};
-  const auto steps = static_cast<int>(std::ceil(check.duration_s / kStep_s));
+  const auto steps = static_cast<int>(std::ceil(check.duration_s / kDrawnStep_s));
   for (std::size_t i = 0; i < check.vehicles.size(); ++i) {
     const FleetVehicle& vehicle = check.vehicles[i];
     const plot::Series line{Style::kLine, kColours.at(i % kColours.size())};
@@ -41,7 +41,7 @@ plot::Figure fleet_figure(const FleetCheck& check) {
     }
     figure.panels[plot::kFromAbove].series.back().label = vehicle.member.name;
     for (int k = 0; k <= steps; ++k) {
-      const double t_s = std::min(k * kStep_s, check.duration_s);
+      const double t_s = std::min(k * kDrawnStep_s, check.duration_s);
       const Eigen::Vector3d at = vehicle.path.at(t_s);
       const std::array<double, 3> values = {at.x(), at.y(), -at.z()};
       for (std::size_t axis = 0; axis < values.size(); ++axis)
@@ -51,7 +51,7 @@ plot::Figure fleet_figure(const FleetCheck& check) {
     }
   }
   for (int k = 0; k <= steps && check.vehicles.size() > 1; ++k) {
-    const double t_s = std::min(k * kStep_s, check.duration_s);
+    const double t_s = std::min(k * kDrawnStep_s, check.duration_s);
     double least = kFar;
     for (const FleetPair& pair : check.pairs)
       least = std::min(least,

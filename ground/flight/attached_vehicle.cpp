@@ -13,7 +13,7 @@
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
-#include "swiftlet/services/dds/search_text.hpp"
+#include "swiftlet/services/dds/reach.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -38,10 +38,12 @@ bool finds_nothing(const View& view) {
                                 [](const auto& peer) { return peer.first != "ground" && peer.second > 0; });
 }
 
-// Where it looks for the processes: "lo (127.0.0.1) only; without --localhost-only on ...".
+// Where it looks for the processes: "lo (127.0.0.1) only; with ... on ...".
 std::string interfaces_of(const comms::NodeSettings& network) {
-  if (!network.localhost_only) return comms::interfaces_text(false) + comms::search_text(network);
-  return comms::interfaces_text(true) + " only; without --localhost-only on " + comms::interfaces_text(false);
+  if (!network.on_loopback()) return comms::interfaces_text(false) + comms::search_text(network);
+  return comms::interfaces_text(true) + " only; " +
+         (network.localhost_only ? "without --localhost-only" : "with --network-key FILE or --open-network") +
+         " on " + comms::interfaces_text(false);
 }
 
 std::string flight_of(const View& view) {

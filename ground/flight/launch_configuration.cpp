@@ -91,13 +91,7 @@ std::vector<Group> groups_of(const Fleet& fleet) {
 class ProcessBuilder {
  public:
   ProcessBuilder(const Fleet& fleet, const comms::NodeSettings& network)
-      : fleet_(fleet), first_(fleet.plans.front()) {
-    common_ = {"--domain", std::to_string(network.domain), "--transport", to_string(network.transport)};
-    if (network.localhost_only) common_.emplace_back("--localhost-only");
-    if (!network.network_key_file.empty())
-      append(common_, {"--network-key", absolute_path(network.network_key_file)});
-    if (!network.security.empty()) append(common_, {"--security", absolute_path(network.security)});
-  }
+      : fleet_(fleet), first_(fleet.plans.front()), common_(network_arguments(network)) {}
 
   ProcessSettings plant(const Group& group) const {
     if (first_.px4_instance) {
@@ -176,7 +170,7 @@ class ProcessBuilder {
 
   const Fleet& fleet_;
   const LaunchConfiguration& first_;  // its settings are those of all
-  std::vector<std::string> common_;
+  const std::vector<std::string> common_;
 };
 
 }  // namespace

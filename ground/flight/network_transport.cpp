@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 using ControlMode = control::Mode;
 
 constexpr auto kReadyTimeout = 20s;
-constexpr auto kRequestTimeout = 10s;
+constexpr auto kTransferTimeout = 10s;
 constexpr auto kRetryPeriod = 200ms;
 constexpr auto kStep = 50ms;
 constexpr auto kClockTime = 500ms;  // in which a fleet asks for the clock of a vehicle
@@ -159,7 +159,7 @@ MissionTransport::Reply NetworkTransport::arm() {
   msg::Command command;
   command.kind(msg::Command_Constants::ARM);
   const Result answer = client_.command(
-      command, kRequestTimeout, [this] { return watch_.exited_process() || watch_.interrupts() > 0; });
+      command, kTransferTimeout, [this] { return watch_.exited_process() || watch_.interrupts() > 0; });
   require_alive();
   armed_ = answer;
   if (answer.kind == Result::Kind::kSilence || answer.kind == Result::Kind::kCancelled) {
@@ -202,7 +202,7 @@ void NetworkTransport::learn_clock_offset(comms::ClockClient& vehicle_clock) {
 }
 
 Result NetworkTransport::upload() {
-  return client_.upload(mission_.mission, kRequestTimeout,
+  return client_.upload(mission_.mission, kTransferTimeout,
                         [this] { return watch_.exited_process() || watch_.interrupts() > 0; });
 }
 
@@ -240,7 +240,7 @@ MissionTransport::Reply NetworkTransport::start_mission() {
     start.kind(msg::Command_Constants::MISSION_START);
     start.mission_id(client_.mission_id());
     start.start_ns(start_ns_);
-    answer = client_.command(start, kRequestTimeout, cancelled);
+    answer = client_.command(start, kTransferTimeout, cancelled);
   }
   require_alive();
   start_ = answer;

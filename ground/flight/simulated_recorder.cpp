@@ -126,14 +126,14 @@ void SimulatedRecorder::write_sample(const plant::TelemetryPacket& packet,
 void SimulatedRecorder::write_command(std::int64_t now_ns) {
   std::visit(
       [&](const auto& command) {
-        using Command = std::decay_t<decltype(command)>;
-        if constexpr (std::is_same_v<Command, plant::ActuatorCommand>)
+        using Sent = std::decay_t<decltype(command)>;
+        if constexpr (std::is_same_v<Sent, plant::ActuatorCommand>)
           write(topics::kActuatorCommand, comms::to_message(command), now_ns);
-        if constexpr (std::is_same_v<Command, plant::RatesSetpoint>)
+        if constexpr (std::is_same_v<Sent, plant::RatesSetpoint>)
           write(topics::kRatesSetpoint, comms::to_message(command), now_ns);
-        if constexpr (std::is_same_v<Command, plant::AttitudeSetpoint>)
+        if constexpr (std::is_same_v<Sent, plant::AttitudeSetpoint>)
           write(topics::kAttitudeSetpoint, comms::to_message(command), now_ns);
-        if constexpr (std::is_same_v<Command, plant::TrajectorySetpoint>)
+        if constexpr (std::is_same_v<Sent, plant::TrajectorySetpoint>)
           write(topics::kTrajectorySetpoint, comms::to_message(command), now_ns);
       },
       loop_.sent);

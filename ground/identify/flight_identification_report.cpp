@@ -72,7 +72,7 @@ plot::Figure prediction_figure(const FlightIdentification& found, int quantity, 
   return figure;
 }
 
-plot::Figure thrust_figure(const identification::CommandedThrust& thrust) {
+plot::Figure flown_thrust_figure(const identification::CommandedThrust& thrust) {
   plot::Series band{Style::kBand, Colour::kBlue, "95 % interval"};
   plot::Series weight{Style::kDashes, Colour::kInk, "weight"};
   const std::size_t count = thrust.command.size();
@@ -168,7 +168,7 @@ void add_prediction(pages::Page& page, const FlightIdentification& found) {
   const char* const labels[4] = {"p (rad/s)", "q (rad/s)", "r (rad/s)", "specific force along z (m/s^2)"};
   for (int i = 0; i < 4; ++i) figures.push_back(prediction_figure(found, i, labels[i]));
   if (found.source == SpeedSource::kCommanded) {
-    figures.push_back(thrust_figure(found.thrust));
+    figures.push_back(flown_thrust_figure(found.thrust));
     for (const char* const quantity : {"p", "q", "r"}) figures.push_back(horizon_figure(found, quantity));
   }
   page.figures(figures);

@@ -2,9 +2,13 @@
 // the exit code. They throw the same exceptions as a Command.
 #pragma once
 
+#include <chrono>
+
 #include "swiftlet/ground/identify/identify_options.hpp"
 
 namespace swiftlet::ground {
+
+constexpr std::chrono::milliseconds kProgressAfter{500};  // shorter runs show no progress
 
 int identify_bench(const IdentifyBenchOptions& options);
 int identify_flight(IdentifyFlightOptions options);

@@ -22,8 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::milliseconds kProgressAfter{500};  // shorter runs show no progress
-
 identification::BenchIdentification identify(const Bench& bench, const std::string& folder,
                                              const plant::Vehicle& base) {
   ProgressLine progress;

@@ -24,8 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::milliseconds kProgressAfter{500};  // shorter runs show no progress
-
 struct Base {
   fs::path file;
   bool assumed;  // neither given nor found in a record

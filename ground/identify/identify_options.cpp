@@ -2,12 +2,14 @@
 
 #include <memory>
 
+#include "swiftlet/ground/command_line/programs.hpp"
+#include "swiftlet/ground/identify/identify_actions.hpp"
 #include "swiftlet/io/configuration.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
-Command add_flight_command(runtime::CommandLine identify, const IdentifyActions& actions) {
+Command add_flight_command(runtime::CommandLine identify) {
   const auto options = std::make_shared<IdentifyFlightOptions>();
   const runtime::CommandLine app =
       identify.add_subcommand("flight", "Identify a vehicle from logs of its flights");
@@ -49,10 +51,10 @@ Command add_flight_command(runtime::CommandLine identify, const IdentifyActions&
       "example: swiftlet sim fly identification --sensors --record first && swiftlet identify flight first "
       "--out mine.yaml\n"
       "         swiftlet identify flight tests/data/crazyflie_flight.csv.gz --base crazyflie2");
-  return {app, [options, run = actions.flight] { return run(*options); }};
+  return {app, [options] { return identify_flight(*options); }};
 }
 
-Command add_simulate_command(runtime::CommandLine identify, const IdentifyActions& actions) {
+Command add_simulate_command(runtime::CommandLine identify) {
   const auto options = std::make_shared<IdentifySimulateOptions>();
   const runtime::CommandLine app = identify.add_subcommand(
       "simulate", "Simulate bench data of a known vehicle, to test the identification");
@@ -73,15 +75,16 @@ Command add_simulate_command(runtime::CommandLine identify, const IdentifyAction
   app.add_option("--out", options->out, "folder to write the bench data to").required().type_name("DIR");
   app.footer(
       "example: swiftlet identify simulate --vehicle kaylion --noise 0.01 --outliers 0.02 --out bench");
-  return {app, [options, run = actions.simulate] { return run(*options); }};
+  return {app, [options] { return identify_simulate(*options); }};
 }
 
 }  // namespace
 
-Command add_identify_options(runtime::CommandLine app, const IdentifyActions& actions) {
+Command add_identify_command(runtime::CommandLine root) {
+  const runtime::CommandLine app = root.add_subcommand("identify", purpose_of("identify"));
   const auto options = std::make_shared<IdentifyBenchOptions>();
-  const Command simulate = add_simulate_command(app, actions);
-  const Command flight = add_flight_command(app, actions);
+  const Command simulate = add_simulate_command(app);
+  const Command flight = add_flight_command(app);
   app.require_subcommand(0, 1);
   app.add_option("bench", options->bench, "folder of bench data").type_name("BENCH_DIR");
   app.add_option("--out", options->out, "vehicle file to write").type_name("FILE");
@@ -106,12 +109,12 @@ Command add_identify_options(runtime::CommandLine app, const IdentifyActions& ac
       "and optionally bench.yaml: base_vehicle, name, propeller, instruments (docs/identification.md).\n\n"
       "example: swiftlet identify bench --out mine.yaml --report report.html\n"
       "         swiftlet identify simulate --vehicle kaylion --noise 0.01 --out bench");
-  return {app, [options, simulate, flight, run = actions.bench] {
+  return {app, [options, simulate, flight] {
             if (simulate.app.parsed()) return simulate.run();
             if (flight.app.parsed()) return flight.run();
             if (options->bench.empty()) throw InputError("identify: BENCH_DIR is required");
             if (options->out.empty()) throw InputError("identify: --out is required");
-            return run(*options);
+            return identify_bench(*options);
           }};
 }
 

@@ -1,9 +1,7 @@
-// The command line of `swiftlet identify`. `swiftlet` uses it for help and completion; `swiftlet-identify`
-// runs the actions and is the only program that links the fitting libraries.
+// The command line of `swiftlet identify`.
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -45,16 +43,7 @@ struct IdentifySimulateOptions {
   std::uint64_t seed = 1;
 };
 
-// The actions of the three forms of the command. Each returns the exit code.
-struct IdentifyActions {
-  std::function<int(const IdentifyBenchOptions&)> bench;
-  std::function<int(const IdentifyFlightOptions&)> flight;
-  std::function<int(const IdentifySimulateOptions&)> simulate;
-};
-
-constexpr const char* kIdentifyPurpose = "Identify a vehicle from test bench data, or from flights";
-
-// Adds options and subcommands to the command.
-Command add_identify_options(runtime::CommandLine identify, const IdentifyActions& actions);
+// `swiftlet identify` with its options.
+Command add_identify_command(runtime::CommandLine root);
 
 }  // namespace swiftlet::ground

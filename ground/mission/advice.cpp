@@ -11,13 +11,13 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr double kPrecision = 0.01;  // of a time scale
+constexpr double kScalePrecision = 0.01;  // of a time scale
 constexpr double kFirstTolerance_m = 1e-4, kLargestTolerance_m = 0.05;
 
-class Search {
+class SlowestSearch {
  public:
-  Search(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
-         const CheckConditions& conditions)
+  SlowestSearch(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
+                const CheckConditions& conditions)
       : vehicle_(vehicle), settings_(settings), conditions_(conditions) {}
 
   // The least factor by which the mission must be slowed, 0 if none up to kLargestTimeScale helps.
@@ -29,11 +29,11 @@ class Search {
       flies *= 1.5;
       if (flies > kLargestTimeScale) return 0.0;
     } while (!can_fly_slower(file, flies));
-    while (flies - fails > kPrecision) {
+    while (flies - fails > kScalePrecision) {
       const double middle = 0.5 * (fails + flies);
       (can_fly_slower(file, middle) ? flies : fails) = middle;
     }
-    const double rounded = std::ceil(flies / kPrecision) * kPrecision;
+    const double rounded = std::ceil(flies / kScalePrecision) * kScalePrecision;
     return can_fly_slower(file, rounded) ? rounded : flies;
   }
 
@@ -68,7 +68,7 @@ class Search {
 std::string advice(const MissionFile& file, const std::string& path, const FileOptions& options,
                    const plant::Vehicle& vehicle, const control::ControlSettings& settings,
                    const CheckConditions& conditions) {
-  const Search search(vehicle, settings, conditions);
+  const SlowestSearch search(vehicle, settings, conditions);
   std::string text;
   if (const double slower = search.slower(file); slower > 1.0) text = advice_of(slower, options);
   if (read_source(path, options).format != MissionFormat::kSampledCsv) return text;

@@ -12,7 +12,7 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr double kStep_s = 0.002;         // at most half the shortest segment, so that none is missed, ...
+constexpr double kLongestStep_s = 0.002;  // at most half the shortest segment, so that none is missed, ...
 constexpr double kLeastStep_s = 0.0001;   // ... but at least this
 constexpr double kPatience = 100.0;       // planned durations until it is taken to be endless
 constexpr double kFullBattery_v = 100.0;  // above all thresholds: the dry run does not check the battery
@@ -24,7 +24,7 @@ class DryRunTransport final : public MissionTransport {
                   const Eigen::Vector2d& start_ned)
       : mission_(mission), supervisor_({settings.limits, settings.arming, settings.failsafe}) {
     mission_.id = 1;
-    double step_s = kStep_s;
+    double step_s = kLongestStep_s;
     for (const control::PolynomialSegment& segment : mission_.segments)
       step_s = std::min(step_s, 0.5 * segment.duration_s);
     step_ns_ = std::llround(std::max(step_s, kLeastStep_s) * 1e9);

@@ -8,13 +8,14 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/math/angles.hpp"
+
 namespace swiftlet::ground {
 namespace {
 
 using control::Demand;
 using control::WorstDemand;
 
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 constexpr int kMaxListed = 20;  // exceeded limits listed one by one
 
 const WorstDemand* find(const ItemCheck& item, Demand demand) {
@@ -87,14 +88,14 @@ std::string row_of(const ItemCheck& item, std::size_t index) {
   const WorstDemand& rotor = *find(item, Demand::kRotorMost);
   return row + fmt::format(" {:9.2f} {:9.2f} {:9.1f} {:9.1f}{}\n", find(item, Demand::kSpeed)->value,
                            find(item, Demand::kAcceleration)->value,
-                           find(item, Demand::kTilt)->value * kDegrees, 100.0 * use_of(rotor),
+                           find(item, Demand::kTilt)->value * math::kDegPerRad, 100.0 * use_of(rotor),
                            exceeded ? "  !" : "");
 }
 
 std::string limits_row(const ItemCheck& item) {
   return fmt::format("{:<42} {:9.2f} {:9.2f} {:9.1f} {:9.1f}\n", "       limit",
                      find(item, Demand::kSpeed)->limit, find(item, Demand::kAcceleration)->limit,
-                     find(item, Demand::kTilt)->limit * kDegrees, 100.0);
+                     find(item, Demand::kTilt)->limit * math::kDegPerRad, 100.0);
 }
 
 // The demand closest to its limit. Leaves out the fence, for which a share is not defined.

@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "swiftlet/ground/pages/flight_page.hpp"
+#include "swiftlet/math/angles.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::ground {
@@ -16,8 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStep_s = 0.02;
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+constexpr double kPageStep_s = 0.02;
 constexpr std::array<const char*, 3> kAxes = {"north", "east", "down"};
 
 // The attitude whose thrust gives the acceleration, with the nose at the yaw.
@@ -40,7 +40,7 @@ void add_row(pages::SignalTable& path, double time_s, const control::Reference& 
   add("speed", at.velocity_ned.norm());
   add("acceleration", at.acceleration_ned.norm());
   const Vector3d thrust = at.acceleration_ned - Vector3d(0.0, 0.0, plant::kGravity);
-  add("tilt", kDegrees * std::atan2(thrust.head<2>().norm(), -thrust.z()));
+  add("tilt", math::kDegPerRad * std::atan2(thrust.head<2>().norm(), -thrust.z()));
   const Eigen::Quaterniond q = attitude_of(at);
   const std::array<double, 4> components = {q.w(), q.x(), q.y(), q.z()};
   for (std::size_t i = 0; i < components.size(); ++i) add("q[" + std::to_string(i) + "]", components[i]);
@@ -49,7 +49,7 @@ void add_row(pages::SignalTable& path, double time_s, const control::Reference& 
 pages::SignalTable path_of(const MissionDryRun& dry_run) {
   pages::SignalTable path;
   for (const DryRunLeg& leg : dry_run.legs) {
-    const double steps = std::max(1.0, std::ceil(leg.segment.duration_s / kStep_s));
+    const double steps = std::max(1.0, std::ceil(leg.segment.duration_s / kPageStep_s));
     for (double i = 0.0; i <= steps; i += 1.0) {
       const double t_s = leg.segment.duration_s * i / steps;
       add_row(path, leg.start_s + t_s, control::evaluate(leg.segment, t_s));
@@ -67,10 +67,11 @@ std::string mission_page(const MissionFile& file, const MissionDryRun& dry_run,
   flight.name = file.name;
   flight.tables["path"] = path_of(dry_run);
   flight.end_s = std::max(dry_run.duration_s, flight.tables["path"].time_s.back());
-  flight.tables["limits"] = {{0.0, flight.end_s},
-                             {{"speed", {limits.max_speed, limits.max_speed}},
-                              {"acceleration", {limits.max_acceleration, limits.max_acceleration}},
-                              {"tilt", {kDegrees * limits.max_tilt_rad, kDegrees * limits.max_tilt_rad}}}};
+  flight.tables["limits"] = {
+      {0.0, flight.end_s},
+      {{"speed", {limits.max_speed, limits.max_speed}},
+       {"acceleration", {limits.max_acceleration, limits.max_acceleration}},
+       {"tilt", {math::kDegPerRad * limits.max_tilt_rad, math::kDegPerRad * limits.max_tilt_rad}}}};
   flight.fence.emplace();
   for (int i = 0; i < 3; ++i) {
     flight.fence->min_ned.at(i) = limits.fence_min_ned[i];

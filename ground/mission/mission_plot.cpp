@@ -10,6 +10,7 @@
 #include "swiftlet/ground/plot/gnuplot.hpp"
 #include "swiftlet/ground/plot/path_figure.hpp"
 #include "swiftlet/io/format.hpp"
+#include "swiftlet/math/angles.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::ground {
@@ -18,8 +19,7 @@ namespace {
 using plot::Colour;
 using plot::Style;
 
-constexpr double kStep_s = 0.02;
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+constexpr double kFigureStep_s = 0.02;
 constexpr std::size_t kMaxLabels = 40;  // of places; more places get no labels
 
 plot::Point seen(const Eigen::Vector3d& position_ned) {
@@ -30,14 +30,14 @@ plot::Point seen(const Eigen::Vector3d& position_ned) {
 void add_motion(plot::Figure& figure, const MissionDryRun& dry_run) {
   for (plot::Panel& panel : figure.panels) panel.series.emplace_back();
   for (const DryRunLeg& leg : dry_run.legs) {
-    const double steps = std::ceil(leg.segment.duration_s / kStep_s);
+    const double steps = std::ceil(leg.segment.duration_s / kFigureStep_s);
     for (double i = 0.0; i <= steps; i += 1.0) {
       const double t_s = leg.segment.duration_s * i / steps;
       const control::Reference at = control::evaluate(leg.segment, t_s);
       const Eigen::Vector3d thrust = at.acceleration_ned - Eigen::Vector3d(0.0, 0.0, plant::kGravity);
-      const std::array<double, 4> values = {-at.position_ned.z(), at.velocity_ned.norm(),
-                                            at.acceleration_ned.norm(),
-                                            std::atan2(thrust.head<2>().norm(), -thrust.z()) * kDegrees};
+      const std::array<double, 4> values = {
+          -at.position_ned.z(), at.velocity_ned.norm(), at.acceleration_ned.norm(),
+          std::atan2(thrust.head<2>().norm(), -thrust.z()) * math::kDegPerRad};
       for (std::size_t k = 0; k < values.size(); ++k)
         figure.panels[k].series.back().points.push_back({leg.start_s + t_s, values[k]});
       for (const std::size_t view : {plot::kFromAbove, plot::kInSpace})
@@ -123,7 +123,7 @@ plot::Figure mission_figure(const MissionFile& file, const MissionDryRun& dry_ru
   figure.panels[0].series.push_back(starts);
   add_limit(figure.panels[1], limits.max_speed, "limit");
   add_limit(figure.panels[2], limits.max_acceleration, "limit");
-  add_limit(figure.panels[3], limits.max_tilt_rad * kDegrees, "limit");
+  add_limit(figure.panels[3], limits.max_tilt_rad * math::kDegPerRad, "limit");
   for (const std::size_t panel : {1, 2, 3}) figure.panels[panel].y.from = 0.0;
   add_motion(figure, dry_run);
   add_places(figure, dry_run);

@@ -19,13 +19,13 @@ namespace {
 
 constexpr double kLeastTimeScale = 0.01;
 constexpr double kStep = 1.5;  // of the search for a time scale at which the mission can be flown, or not
-constexpr double kPrecision = 1.002;  // ratio of two time scales that are told apart
+constexpr double kScaleRatio = 1.002;  // ratio of two time scales that are told apart
 
 // Which time scales are possible, and what stands against the others.
-class Search {
+class FastestSearch {
  public:
-  Search(const MissionFile& file, const plant::Vehicle& vehicle, const control::ControlSettings& settings,
-         const CheckConditions& conditions)
+  FastestSearch(const MissionFile& file, const plant::Vehicle& vehicle,
+                const control::ControlSettings& settings, const CheckConditions& conditions)
       : file_(file), vehicle_(vehicle), settings_(settings), conditions_(conditions) {}
 
   Pace fastest() const {
@@ -43,7 +43,7 @@ class Search {
       fails /= kStep;
       if (fails < kLeastTimeScale) return {flies, ""};
     }
-    while (flies > kPrecision * fails) {
+    while (flies > kScaleRatio * fails) {
       const double middle = std::sqrt(fails * flies);
       (refusal(middle).empty() ? flies : fails) = middle;
     }
@@ -102,7 +102,7 @@ std::string sentence_of(const Pace& pace, const ReadingOptions& options) {
 
 Pace fastest_pace(const MissionFile& file, const plant::Vehicle& vehicle,
                   const control::ControlSettings& settings, const CheckConditions& conditions) {
-  return Search(file, vehicle, settings, conditions).fastest();
+  return FastestSearch(file, vehicle, settings, conditions).fastest();
 }
 
 MissionFile load_mission(const std::string& path, const ReadingOptions& options,

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
-#include <iterator>
 #include <stdexcept>
 #include <string_view>
 
@@ -63,7 +62,7 @@ set title offset 0,-0.6
 set style boxplot fraction 0.90 outliers pointtype 7
 set pointsize 0.35
 )";
-constexpr const char* kInSpace = R"(set view 62,35
+constexpr const char* kViewInSpace = R"(set view 62,35
 set xyplane at 0
 set xtics offset -0.8,-0.3
 set ytics offset 0.9,-0.1
@@ -176,15 +175,14 @@ void add_panel(std::string& script, const Panel& panel, std::size_t number) {
     x = scale_of(panel, panel.x, &Point::x, span);
     y = scale_of(panel, panel.y, &Point::y, span);
   }
-  const auto out = std::back_inserter(script);
   std::string plots;
   for (const Series& series : panel.series) {
     if (series.points.empty()) continue;
     const std::string name = fmt::format("$panel{}_series{}", number, &series - panel.series.data() + 1);
-    fmt::format_to(out, "{} << EOD\n", name);
+    script += fmt::format("{} << EOD\n", name);
     for (const Point& p : series.points) {
       if (std::isfinite(p.x + p.y + p.z))
-        fmt::format_to(out, "{:.7g} {:.7g} {:.7g}\n", p.x / x.power, p.y / y.power, p.z / z.power);
+        script += fmt::format("{:.7g} {:.7g} {:.7g}\n", p.x / x.power, p.y / y.power, p.z / z.power);
       else
         script += "\n\n";  // interrupts a line
     }
@@ -200,20 +198,20 @@ void add_panel(std::string& script, const Panel& panel, std::size_t number) {
                     colour_of(series.colour), quoted(series.label));
   }
   script += kPanel + axis_commands('x', panel.x, x) + axis_commands('y', panel.y, y);
-  if (panel.in_space) script += axis_commands('z', panel.z, z) + kInSpace;
+  if (panel.in_space) script += axis_commands('z', panel.z, z) + kViewInSpace;
   if (panel.equal) script += panel.in_space ? "set view equal xyz\n" : "set size ratio -1\n";
   if (panel.zero_line) script += "set xzeroaxis lt 1 lc rgb '#777777'\n";
   script += "set title " + quoted(panel.title) + "\n";
   if (panel.box) {
     const Box box =
         panel.equal && panel.in_space ? smaller_if_high(*panel.box, z.span() / x.span()) : *panel.box;
-    fmt::format_to(out, kInBox, box.left, box.right, box.bottom, box.top);
+    script += fmt::format(kInBox, box.left, box.right, box.bottom, box.top);
   }
   for (const Label& label : panel.labels)
-    fmt::format_to(out, "set label {} at {:.7g},{:.7g} {} front tc rgb '{}'\n", quoted(label.text),
-                   label.at.x / x.power, label.at.y / y.power,
-                   label.ends_here ? "right offset -0.6,-0.7" : "left offset 0.6,0.6",
-                   colour_of(label.colour));
+    script += fmt::format("set label {} at {:.7g},{:.7g} {} front tc rgb '{}'\n", quoted(label.text),
+                          label.at.x / x.power, label.at.y / y.power,
+                          label.ends_here ? "right offset -0.6,-0.7" : "left offset 0.6,0.6",
+                          colour_of(label.colour));
   script += (panel.in_space ? "splot" : "plot") + (plots.empty() ? " NaN notitle" : plots) + "\n";
 }
 

@@ -4,12 +4,11 @@
 
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/recording/cdr_writer.hpp"
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/services/dds/payload.hpp"
 
 namespace swiftlet::ground {
 namespace {
-
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 // The definition of foxglove's schemas for ROS 2, without its comments.
 constexpr comms::MessageSchema kLog{
@@ -52,8 +51,8 @@ std::string joined(const std::string& what, const std::string& why) {
 StandardMessage log_message(const std::string& topic, std::int64_t time_ns, LogLevel level,
                             const std::string& name, const std::string& text) {
   CdrWriter out;
-  out.put(static_cast<std::int32_t>(time_ns / kSecond_ns))
-      .put(static_cast<std::uint32_t>(time_ns % kSecond_ns))
+  out.put(static_cast<std::int32_t>(time_ns / math::kSecond_ns))
+      .put(static_cast<std::uint32_t>(time_ns % math::kSecond_ns))
       .put(static_cast<std::uint8_t>(level));
   out.text(text).text(name).text("").put(std::uint32_t{0});
   return {topic, &kLog, out.take()};

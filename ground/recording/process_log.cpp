@@ -2,21 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <ctime>
 #include <optional>
-#include <regex>
 #include <sstream>
 #include <system_error>
 
 #include "swiftlet/ground/recording/event_log.hpp"
 #include "swiftlet/io/text_file.hpp"
+#include "swiftlet/math/time.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kNsPerS = 1e9;
 constexpr double kDay_s = 86400.0;
 constexpr double kHour_s = 3600.0;
 constexpr double kMinute_s = 60.0;
@@ -33,7 +33,7 @@ std::vector<fs::path> logs_in(const fs::path& folder) {
 }
 
 double time_of_day_s(std::int64_t time_ns) {
-  const double time_s = static_cast<double>(time_ns) / kNsPerS;
+  const double time_s = static_cast<double>(time_ns) / math::kNsPerS;
   const auto seconds = static_cast<std::time_t>(std::floor(time_s));
   std::tm local{};
   ::localtime_r(&seconds, &local);
@@ -42,13 +42,20 @@ double time_of_day_s(std::int64_t time_ns) {
 
 // "15:04:27.033 control info: plant joined"
 std::optional<ProcessLogLine> line_in(const std::string& text, std::int64_t near_ns) {
-  static const std::regex form(R"((\d\d):(\d\d):(\d\d\.\d+) (\S+) (\w+): (.*))");
-  std::smatch part;
-  if (!std::regex_match(text, part, form)) return std::nullopt;
-  const double of_day_s = kHour_s * std::stod(part[1]) + kMinute_s * std::stod(part[2]) + std::stod(part[3]);
+  int hours = 0, minutes = 0, end = 0;
+  double seconds = 0.0;
+  char process[64] = {}, level[16] = {};
+  if (std::sscanf(text.c_str(), "%2d:%2d:%lf %63s %15[a-z]:%n", &hours, &minutes, &seconds, process, level,
+                  &end) != 5)
+    return std::nullopt;
+  const bool is_time =
+      hours >= 0 && minutes >= 0 && seconds >= 0.0 && seconds <= kMinute_s;  // not NaN either
+  const auto colon = static_cast<std::size_t>(end);
+  if (!is_time || end == 0 || text.compare(colon, 1, " ") != 0) return std::nullopt;
+  const double of_day_s = kHour_s * hours + kMinute_s * minutes + seconds;
   const double later_s = std::remainder(of_day_s - time_of_day_s(near_ns), kDay_s);
-  return ProcessLogLine{near_ns + static_cast<std::int64_t>(std::llround(later_s * kNsPerS)), part[4],
-                        part[5], part[6]};
+  return ProcessLogLine{near_ns + static_cast<std::int64_t>(std::llround(later_s * math::kNsPerS)), process,
+                        level, text.substr(colon + 1)};
 }
 
 LogLevel level_of(const std::string& name) {

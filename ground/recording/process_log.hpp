@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "swiftlet/ground/recording/standard_message.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 
 namespace swiftlet::ground {
 

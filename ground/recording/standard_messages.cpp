@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "swiftlet/ground/recording/cdr_writer.hpp"
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/services/dds/payload.hpp"
 
 namespace swiftlet::ground {
@@ -21,10 +22,9 @@ constexpr const char* kReferenceTopic = "reference_pose";
 constexpr const char* kImuTopic = "imu_flu";
 constexpr const char* kBatteryTopic = "battery_state";
 constexpr const char* kTransformTopic = "/tf";
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr std::int64_t kPathPeriod_ns = kSecond_ns;
-constexpr std::int64_t kPathStep_ns = kSecond_ns / 10;
-constexpr std::int64_t kPathLength_ns = 30 * kSecond_ns;
+constexpr std::int64_t kPathPeriod_ns = math::kSecond_ns;
+constexpr std::int64_t kPathStep_ns = math::kSecond_ns / 10;
+constexpr std::int64_t kPathLength_ns = 30 * math::kSecond_ns;
 
 // The definitions of ROS 2's common_interfaces, without their comments.
 #define SWIFTLET_SEPARATOR \
@@ -89,8 +89,8 @@ constexpr comms::MessageSchema kBatteryState{
     -1};
 
 void put_header(CdrWriter& out, std::int64_t time_ns, const std::string& frame) {
-  out.put(static_cast<std::int32_t>(time_ns / kSecond_ns))
-      .put(static_cast<std::uint32_t>(time_ns % kSecond_ns));
+  out.put(static_cast<std::int32_t>(time_ns / math::kSecond_ns))
+      .put(static_cast<std::uint32_t>(time_ns % math::kSecond_ns));
   out.text(frame);
 }
 void put_vector(CdrWriter& out, const Vector3d& v) { out.put(v.x()).put(v.y()).put(v.z()); }

@@ -16,6 +16,7 @@
 #include "swiftlet/ground/plot/path_figure.hpp"
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/csv_writer.hpp"
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/recording/tracking.hpp"
 
 namespace swiftlet::ground {
@@ -30,8 +31,6 @@ const Row* row_at(const Row*& at, const Row* end, std::int64_t stamp_ns) {
   while (at != end && at->stamp_ns < stamp_ns) ++at;
   return at != end && at->stamp_ns == stamp_ns ? at : nullptr;
 }
-
-double seconds(std::int64_t duration_ns) { return static_cast<double>(duration_ns) * 1e-9; }
 
 // Whether most references have truth of their stamp, judged by the first ones for which there is truth. That of a vehicle
 // which another process flies (swiftlet-plant --truth-only) has stamps of its own, and some may be equal by accident.
@@ -98,7 +97,7 @@ plot::Figure flight_figure(const FlightRecord& record, const FlightReport& repor
                {Style::kLine, Colour::kPurple, "z", {}, 0.6},
                {Style::kLine, Colour::kInk, "3-D", {}, 1.0}};
   for_each_row(record, [&](const TruthRow& truth, const ReferenceRow* reference, const EstimateRow*) {
-    const double t_s = seconds(truth.stamp_ns - window.from_ns);
+    const double t_s = math::seconds(truth.stamp_ns - window.from_ns);
     const auto add = [&](std::size_t series, const std::array<double, 3>& ned) {
       for (std::size_t i = 0; i < 3; ++i) figure.panels[i].series[series].points.push_back({t_s, ned[i]});
       for (const std::size_t view : {plot::kFromAbove, plot::kInSpace})
@@ -197,7 +196,7 @@ void write_flight_csv(const std::filesystem::path& file, const FlightRecord& rec
 
   for_each_row(record,
                [&](const TruthRow& truth, const ReferenceRow* reference, const EstimateRow* estimate) {
-                 csv.fixed(seconds(truth.stamp_ns - window.from_ns), 6);
+                 csv.fixed(math::seconds(truth.stamp_ns - window.from_ns), 6);
                  if (reference != nullptr) {
                    csv.text(control::to_string(static_cast<control::Mode>(reference->mode)));
                  } else {

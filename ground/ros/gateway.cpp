@@ -6,10 +6,9 @@
 #include <type_traits>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
 #include "swiftlet/services/messages/schemas.hpp"
 #include "swiftlet/services/messages/topics.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::ros {
@@ -90,7 +89,7 @@ void Gateway::forward(const comms::Topic<T>& topic) {
 void Gateway::take_goal(const Bytes& payload) {
   std::string refusal;
   const std::optional<Goal> goal = goal_of(payload, vehicle_.state().position_ned_m.z(), refusal);
-  if (!goal) return spdlog::warn("{}: goal refused: {}", vehicle_.name(), refusal);
+  if (!goal) return runtime::log_warning("{}: goal refused: {}", vehicle_.name(), refusal);
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     goal_ = goal;
@@ -129,10 +128,10 @@ void Gateway::fly_to_goals() {
     const ground::Result answer = action.answer();
     const Eigen::Vector3d& at = goal.position_ned_m;
     if (answer.accepted()) {
-      spdlog::info("{}: goal at {:.2f} {:.2f} {:.2f} m NED accepted", vehicle_.name(), at.x(), at.y(),
-                   at.z());
+      runtime::log_info("{}: goal at {:.2f} {:.2f} {:.2f} m NED accepted", vehicle_.name(), at.x(), at.y(),
+                        at.z());
     } else {
-      spdlog::warn("{}: goal refused: {}", vehicle_.name(), answer.reason);
+      runtime::log_warning("{}: goal refused: {}", vehicle_.name(), answer.reason);
     }
   }
 }

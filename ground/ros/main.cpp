@@ -10,12 +10,12 @@
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include "swiftlet/ground/client/context.hpp"
 #include "swiftlet/ground/recording/cdr_writer.hpp"
 #include "swiftlet/ground/ros/gateway.hpp"
 #include "swiftlet/ground/ros/ros_graph.hpp"
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/services/dds/node_options.hpp"
 #include "swiftlet/services/dds/vehicle_list.hpp"
 #include "swiftlet/services/runtime/log.hpp"
@@ -63,10 +63,9 @@ class ClockPublisher {
       : node_(participant, vehicle), writer_(writer<Clock>(node_, "/clock")) {}
 
   void publish(std::int64_t time_ns) {
-    constexpr std::int64_t kSecond_ns = 1'000'000'000;
     ground::CdrWriter out;
-    out.put(static_cast<std::int32_t>(time_ns / kSecond_ns))
-        .put(static_cast<std::uint32_t>(time_ns % kSecond_ns));
+    out.put(static_cast<std::int32_t>(time_ns / math::kSecond_ns))
+        .put(static_cast<std::uint32_t>(time_ns % math::kSecond_ns));
     writer_(out.take());
   }
 
@@ -92,7 +91,7 @@ void run(const Options& options) {
       keep_time = [&clock](std::int64_t time_ns) { clock->publish(time_ns); };
     gateways.push_back(std::make_unique<Gateway>(context, name, options.gateway, keep_time));
   }
-  spdlog::info("ready: vehicle {} in domain {}", fmt::join(names, ","), options.node.domain);
+  runtime::log_info("ready: vehicle {} in domain {}", fmt::join(names, ","), options.node.domain);
   stop.wait();
 }
 

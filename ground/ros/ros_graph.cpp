@@ -9,14 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include <spdlog/spdlog.h>
-
 #include "swiftlet/ground/recording/cdr_writer.hpp"
 #include "swiftlet/ground/ros/raw_type.hpp"
 #include "swiftlet/services/dds/checked_type_support.hpp"
 #include "swiftlet/services/dds/participant_session.hpp"
 #include "swiftlet/services/dds/periodic_task.hpp"
 #include "swiftlet/services/dds/qos/profiles.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 
 namespace swiftlet::ros {
 namespace {
@@ -178,10 +177,10 @@ class RosGraph::Impl final : public comms::DiscoveryListener {
       announcer = process->second.announcer;
     }
     if (announcer == nullptr) {
-      dds::DataWriterQos qos = comms::writer_qos(comms::Qos::kLatchedLarge, 0, 0, settings_.transport);
+      dds::DataWriterQos qos = comms::writer_qos(comms::Qos::kLatchedLarge, 0, 0);
       comms::state_type_hash(qos, ParticipantEntities::kTypeHash);
       announcer = session_.publisher->create_datawriter(topic_, qos);
-      if (announcer == nullptr) return spdlog::error("cannot publish {}", kTopic);
+      if (announcer == nullptr) return runtime::log_error("cannot publish {}", kTopic);
       const std::lock_guard<std::mutex> lock(mutex_);
       const auto process = processes_.find(participant);
       if (process == processes_.end()) {

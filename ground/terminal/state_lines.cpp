@@ -6,17 +6,16 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/math/angles.hpp"
 #include "swiftlet/math/euler.hpp"
 #include "swiftlet/services/messages/wire.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
-constexpr double kDegreesPerRadian = 57.29577951308232;
-
 // Rounded as it is shown, so that neither -0.0 nor 360.0 appears.
 double tenths_of_degrees(double angle_rad) {
-  return std::round(10.0 * kDegreesPerRadian * angle_rad) / 10.0 + 0.0;
+  return std::round(10.0 * math::kDegPerRad * angle_rad) / 10.0 + 0.0;
 }
 
 }  // namespace
@@ -44,11 +43,10 @@ std::string odometry_text(const comms::msg::ControlStatus& control) {
   const bool in_force = control.estimate_source() == comms::msg::ControlStatus_Constants::ESTIMATE_OF_VEHICLE;
   const bool compared = control.odometry_angle_rad() >= 0.0;
   if (!in_force && !compared && control.odometry_resets() == 0) return {};
-  constexpr double kDegrees = 57.29577951308232;
-  std::string text = compared
-                         ? fmt::format("{:.3f} m and {:.1f} degrees from motion capture",
-                                       control.odometry_distance_m(), kDegrees * control.odometry_angle_rad())
-                         : "no estimate of motion capture to compare with";
+  std::string text =
+      compared ? fmt::format("{:.3f} m and {:.1f} degrees from motion capture", control.odometry_distance_m(),
+                             math::kDegPerRad * control.odometry_angle_rad())
+               : "no estimate of motion capture to compare with";
   if (control.odometry_resets() > 0) text += fmt::format(", {} jumps", control.odometry_resets());
   return text + (in_force ? ", flown by it" : ", flown by that of motion capture");
 }

@@ -8,7 +8,6 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kStepPoints = 600;
 constexpr std::size_t kBodePoints = 240;
@@ -65,7 +64,7 @@ void add_bode(LoopStudy& study, const control::Loop& loop, double centre) {
     const double part = 2.0 * static_cast<double>(i) / (kBodePoints - 1) - 1.0;
     const double omega = centre * std::pow(kBodeRange, part);
     const std::complex<double> response = control::frequency_response(loop, omega);
-    const double wrapped = std::arg(response) * 180.0 / kPi;
+    const double wrapped = std::arg(response) * 180.0 / M_PI;
     phase_deg = wrapped + 360.0 * std::round((phase_deg - wrapped) / 360.0);
     study.omega.push_back(omega);
     study.magnitude_db.push_back(20.0 * std::log10(std::abs(response)));

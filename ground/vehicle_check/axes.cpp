@@ -3,7 +3,10 @@
 #include <cmath>
 #include <cstddef>
 
+#include <Eigen/Geometry>
 #include <fmt/core.h>
+
+#include "swiftlet/math/angles.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -79,6 +82,10 @@ std::string describe(const AxisMap& map) {
   if (map.axis == kInOrder) return describe_signs(map.sign);
   const std::string exchange = describe_exchange(map);
   return exchange.empty() ? describe_all(map) : exchange;
+}
+
+double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return math::kDegPerRad * std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 std::string to_string(const Eigen::Vector3d& vector, int decimals) {

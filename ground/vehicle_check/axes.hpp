@@ -9,6 +9,9 @@
 
 namespace swiftlet::ground {
 
+constexpr double kTilt_deg = 10.0;      // limit for the floor, the IMU and the estimate of a standing vehicle
+constexpr double kAlignment_deg = 5.0;  // limit between motion capture and the vehicle
+
 // Component i of the sensor shows sign[i] times the component axis[i] of the vehicle, in FRD.
 struct AxisMap {
   std::array<int, 3> axis{0, 1, 2};
@@ -24,6 +27,9 @@ std::optional<AxisMap> axis_map(const Eigen::Matrix3d& response, double least);
 
 // The likely defect: "the sign of y is reversed", "x and y are exchanged"; "" for the identity.
 std::string describe(const AxisMap& map);
+
+// Between two directions.
+double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
 // "(0.03, -0.99, 0.05)"
 std::string to_string(const Eigen::Vector3d& vector, int decimals);

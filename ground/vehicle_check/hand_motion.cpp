@@ -14,18 +14,18 @@
 #include "swiftlet/ground/vehicle_check/imu_range.hpp"
 #include "swiftlet/ground/vehicle_check/rate_tracks.hpp"
 #include "swiftlet/ground/vehicle_check/rest.hpp"
+#include "swiftlet/math/angles.hpp"
 #include "swiftlet/math/rotation_vector.hpp"
+#include "swiftlet/math/time.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 constexpr double kLeastTurn_rad = 0.25;
 constexpr double kLeastForce = 0.2;  // of gravity: a tilt of 12 degrees
 constexpr double kLeastMove_m = 0.1;
 constexpr double kMoveClearness = 0.8;  // cosine to the asked direction
 constexpr double kScaleTolerance = 0.1;
-constexpr double kAlignment_deg = 5.0;
 constexpr double kDelay_s = 0.015;
 constexpr double kLongestDelay_s = 0.2;
 constexpr double kLeastCorrelation = 0.8;
@@ -45,17 +45,10 @@ VehicleRecording part_of(const VehicleRecording& recording, const HandSegment& s
 
 // The rest at the begin and at the end of a segment.
 VehicleRecording begin_of(const VehicleRecording& recording, const HandSegment& segment) {
-  return part_of(recording, segment.begin_ns, segment.begin_ns + std::llround(kRest_s * 1e9));
+  return part_of(recording, segment.begin_ns, segment.begin_ns + math::nanoseconds(kRest_s));
 }
 VehicleRecording end_of(const VehicleRecording& recording, const HandSegment& segment) {
-  return part_of(recording, segment.end_ns - std::llround(kRest_s * 1e9), segment.end_ns);
-}
-
-std::optional<plant::PoseSample> last_pose(const VehicleRecording& recording) {
-  const auto& samples = recording.mocap.samples;
-  const auto found = std::find_if(samples.rbegin(), samples.rend(),
-                                  [](const auto& received) { return received.sample.tracked; });
-  return found == samples.rend() ? std::nullopt : std::optional(found->sample);
+  return part_of(recording, segment.end_ns - math::nanoseconds(kRest_s), segment.end_ns);
 }
 
 // From the pose at the begin of a segment to that at its end.
@@ -123,8 +116,8 @@ Turns measure_turns(const VehicleRecording& recording, const std::vector<HandSeg
 std::string scale_finding(double scale) {
   const auto is_near = [&](double value) { return std::abs(scale / value - 1.0) < 0.15; };
   if (std::abs(scale - 1.0) <= kScaleTolerance) return "";
-  if (is_near(kDegrees)) return "gyro in degrees/s: it shows 57 times the turn of motion capture";
-  if (is_near(1.0 / kDegrees))
+  if (is_near(math::kDegPerRad)) return "gyro in degrees/s: it shows 57 times the turn of motion capture";
+  if (is_near(1.0 / math::kDegPerRad))
     return "gyro converted to radians twice: it shows 1/57 of the turn of motion capture";
   return fmt::format("gyro has a wrong scale: it shows {:.3g} times the turn of motion capture", scale);
 }
@@ -185,7 +178,7 @@ double misalignment_deg(const std::vector<RatePair>& pairs) {
   Eigen::Vector3d signs(1.0, 1.0,
                         (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0);
   const Eigen::Matrix3d turn = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-  return kDegrees * Eigen::AngleAxisd(turn).angle();
+  return math::kDegPerRad * Eigen::AngleAxisd(turn).angle();
 }
 
 CheckResult check_delay(const Delay& delay) {
@@ -225,7 +218,7 @@ CheckResults check_wave(const VehicleRecording& wave, const VehicleRecording& re
     return results;
   }
   std::vector<RatePair> pairs;
-  const std::int64_t delay_ns = std::llround(delay.delay_s * 1e9);
+  const std::int64_t delay_ns = math::nanoseconds(delay.delay_s);
   for (const MocapRate& rate : mocap) {
     if (const auto mean = gyro.mean(rate.from_ns - delay_ns, rate.to_ns - delay_ns))
       pairs.push_back(

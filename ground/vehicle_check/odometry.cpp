@@ -9,21 +9,16 @@
 #include <Eigen/Geometry>
 #include <fmt/core.h>
 
+#include "swiftlet/ground/vehicle_check/axes.hpp"
+#include "swiftlet/math/angles.hpp"
+
 namespace swiftlet::ground {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kFewest = 3;
-constexpr double kTilt_deg = 10.0;      // of the floor and of the estimate
-constexpr double kAlignment_deg = 5.0;  // of its vertical and that of motion capture
 constexpr double kSpeed_m_s = 0.1;
 constexpr double kRate_rad_s = 0.1;
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
-
-double angle_deg(const Vector3d& a, const Vector3d& b) {
-  return kDegrees * std::atan2(a.cross(b).norm(), a.dot(b));
-}
 
 // "Down" in body axes.
 Vector3d down_frd(const Eigen::Quaterniond& q_ned_from_frd) {
@@ -74,20 +69,12 @@ CheckResult check_resets(const VehicleRecording& recording) {
                 resets == 0 ? "" : "the vehicle's estimate jumps while it stands");
 }
 
-std::optional<plant::PoseSample> last_pose(const VehicleRecording& recording) {
-  const auto& poses = recording.mocap.samples;
-  const auto found = std::find_if(poses.rbegin(), poses.rend(),
-                                  [](const auto& received) { return received.sample.tracked; });
-  if (found == poses.rend()) return std::nullopt;
-  return found->sample;
-}
-
 CheckResult check_against_mocap(const VehicleRecording& recording, const plant::OdometrySample& sample) {
   const std::optional<plant::PoseSample> pose = last_pose(recording);
   if (!pose) return skipped("vehicle_odometry.mocap", "no pose of motion capture");
   const double off_deg = angle_deg(down_frd(sample.q_ned_from_frd), down_frd(pose->q_ned_from_frd));
   const double distance_m = (sample.position_ned - pose->position_ned).norm();
-  const double turn_deg = kDegrees * sample.q_ned_from_frd.angularDistance(pose->q_ned_from_frd);
+  const double turn_deg = math::kDegPerRad * sample.q_ned_from_frd.angularDistance(pose->q_ned_from_frd);
   return judged(
       "vehicle_odometry.mocap",
       figure(off_deg, "degrees", 2,

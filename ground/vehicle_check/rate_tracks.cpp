@@ -5,14 +5,13 @@
 
 #include "swiftlet/math/rotation_vector.hpp"
 #include "swiftlet/math/statistics.hpp"
+#include "swiftlet/math/time.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
 constexpr std::int64_t kLongestGap_ns = 50'000'000;  // that is bridged
 constexpr std::int64_t kDelayStep_ns = 1'000'000;
-
-double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 
 double correlation_at(const GyroTrack& gyro, const std::vector<MocapRate>& mocap, std::int64_t delay_ns) {
   std::vector<double> by_gyro;
@@ -36,7 +35,7 @@ GyroTrack::GyroTrack(const VehicleRecording& recording, const Eigen::Vector3d& b
     const plant::ImuSample& sample = received.sample.imu;
     if (!stamps_.empty() && sample.stamp_ns <= stamps_.back()) continue;
     if (!stamps_.empty())
-      integral += (sample.body_rates_frd - bias_frd) * seconds(sample.stamp_ns - stamps_.back());
+      integral += (sample.body_rates_frd - bias_frd) * math::seconds(sample.stamp_ns - stamps_.back());
     stamps_.push_back(sample.stamp_ns);
     integrals_.push_back(integral);
   }
@@ -56,7 +55,7 @@ std::optional<Eigen::Vector3d> GyroTrack::mean(std::int64_t from_ns, std::int64_
   const auto from = integral(from_ns);
   const auto to = integral(to_ns);
   if (!from || !to) return std::nullopt;
-  return Eigen::Vector3d((*to - *from) / seconds(to_ns - from_ns));
+  return Eigen::Vector3d((*to - *from) / math::seconds(to_ns - from_ns));
 }
 
 Eigen::Vector3d GyroTrack::total() const {
@@ -72,17 +71,18 @@ std::vector<MocapRate> mocap_rates(const VehicleRecording& recording) {
     const std::int64_t interval_ns = now.stamp_ns - before.stamp_ns;
     if (!before.tracked || !now.tracked || interval_ns <= 0 || interval_ns > kLongestGap_ns) continue;
     const Eigen::Quaterniond turn = before.q_ned_from_frd.conjugate() * now.q_ned_from_frd;
-    rates.push_back({before.stamp_ns, now.stamp_ns, plant::rotation_vector(turn) / seconds(interval_ns)});
+    rates.push_back(
+        {before.stamp_ns, now.stamp_ns, plant::rotation_vector(turn) / math::seconds(interval_ns)});
   }
   return rates;
 }
 
 Delay find_delay(const GyroTrack& gyro, const std::vector<MocapRate>& mocap, double longest_s) {
   Delay best;
-  const std::int64_t longest_ns = std::llround(longest_s * 1e9);
+  const std::int64_t longest_ns = math::nanoseconds(longest_s);
   for (std::int64_t delay_ns = -longest_ns; delay_ns <= longest_ns; delay_ns += kDelayStep_ns) {
     const double fit = correlation_at(gyro, mocap, delay_ns);
-    if (fit > best.correlation) best = {seconds(delay_ns), fit};
+    if (fit > best.correlation) best = {math::seconds(delay_ns), fit};
   }
   return best;
 }

@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "swiftlet/ground/vehicle_check/axes.hpp"
+#include "swiftlet/math/angles.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::ground {
@@ -18,17 +19,13 @@ namespace {
 
 using plant::kGravity;
 
-constexpr std::size_t kFewest = 3;
 constexpr double kMostRepeated = 0.1;      // of the samples
 constexpr double kQuietForce_m_s2 = 0.5;   // standard deviation at rest
 constexpr double kGyroNoise_rad_s = 0.05;  // likewise
 constexpr double kGyroBias_rad_s = 0.1;
 constexpr double kGravityTolerance_m_s2 = 0.5;
-constexpr double kTilt_deg = 10.0;      // of the floor and of the IMU
-constexpr double kAlignment_deg = 5.0;  // between motion capture and IMU
 constexpr double kMostUntracked = 0.05;
 constexpr double kPositionNoise_m = 0.005;
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 struct Moments {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -110,10 +107,6 @@ CheckResult check_gravity(const Moments& force) {
                 fmt::format("{:.2f} +- {:g} m/s^2", kGravity, kGravityTolerance_m_s2), gravity_finding(size));
 }
 
-double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return kDegrees * std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 std::string level_finding(const Eigen::Vector3d& direction, double tilt_deg) {
   constexpr const char* kAxes[] = {"x", "y", "z"};
   if (tilt_deg <= kTilt_deg) return "";
@@ -123,7 +116,7 @@ std::string level_finding(const Eigen::Vector3d& direction, double tilt_deg) {
            "(0, 0, -g) at rest. --hand tells which";
   Eigen::Index axis = 0;
   direction.cwiseAbs().maxCoeff(&axis);
-  if (std::abs(direction(axis)) > std::cos(kTilt_deg / kDegrees))
+  if (std::abs(direction(axis)) > std::cos(kTilt_deg / math::kDegPerRad))
     return fmt::format("axes swapped: gravity is on {}{} instead of -z", direction(axis) > 0.0 ? "+" : "-",
                        kAxes[axis]);
   return fmt::format("the IMU is tilted by {:.0f} degrees against the floor: is the vehicle level?",

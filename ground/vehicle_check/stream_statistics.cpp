@@ -5,13 +5,13 @@
 #include <limits>
 #include <optional>
 
+#include "swiftlet/math/time.hpp"
+
 namespace swiftlet::ground {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kWindows = 10;  // of clock_rate()
-
-double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 
 template <class Sample, class Stamped>
 SampleTimes times_of(const TopicRecord<Sample>& topic, Stamped stamped) {
@@ -50,7 +50,7 @@ double longest(const SampleTimes& samples, std::int64_t SampleTime::*time) {
   std::int64_t longest_ns = 0;
   for (std::size_t i = 1; i < samples.size(); ++i)
     longest_ns = std::max(longest_ns, samples[i].*time - samples[i - 1].*time);
-  return seconds(longest_ns);
+  return math::seconds(longest_ns);
 }
 
 }  // namespace
@@ -102,8 +102,8 @@ double clock_rate(const SampleTimes& samples) {
   std::int64_t window = 0;
   const auto close = [&] {
     if (best)
-      earliest.push_back(
-          {seconds(best->received_ns - first.received_ns), seconds(best->stamp_ns - first.stamp_ns)});
+      earliest.push_back({math::seconds(best->received_ns - first.received_ns),
+                          math::seconds(best->stamp_ns - first.stamp_ns)});
     best.reset();
   };
   for (const SampleTime& sample : samples) {
@@ -124,13 +124,13 @@ double rate_by_stamps(const SampleTimes& samples) {
   std::sort(stamps.begin(), stamps.end());
   stamps.erase(std::unique(stamps.begin(), stamps.end()), stamps.end());
   if (stamps.size() < 3) return kNaN;
-  return static_cast<double>(stamps.size() - 1) / seconds(stamps.back() - stamps.front());
+  return static_cast<double>(stamps.size() - 1) / math::seconds(stamps.back() - stamps.front());
 }
 
 double rate_by_arrivals(const SampleTimes& samples) {
   if (samples.size() < 3) return kNaN;
   return static_cast<double>(samples.size() - 1) /
-         seconds(samples.back().received_ns - samples.front().received_ns);
+         math::seconds(samples.back().received_ns - samples.front().received_ns);
 }
 
 double longest_interval_by_stamps_s(const SampleTimes& samples) {
@@ -144,7 +144,7 @@ double stamp_jitter_p99(const SampleTimes& samples) {
   std::vector<double> intervals;
   for (std::size_t i = 1; i < samples.size(); ++i) {
     if (samples[i].sequence == samples[i - 1].sequence + 1)
-      intervals.push_back(seconds(samples[i].stamp_ns - samples[i - 1].stamp_ns));
+      intervals.push_back(math::seconds(samples[i].stamp_ns - samples[i - 1].stamp_ns));
   }
   const double median = quantile(intervals, 0.5);
   for (double& interval : intervals) interval = std::abs(interval - median) / median;
@@ -154,10 +154,26 @@ double stamp_jitter_p99(const SampleTimes& samples) {
 double delivery_delay_p99_s(const SampleTimes& samples) {
   std::vector<double> delays;
   delays.reserve(samples.size());
-  for (const SampleTime& sample : samples) delays.push_back(seconds(sample.received_ns - sample.stamp_ns));
+  for (const SampleTime& sample : samples)
+    delays.push_back(math::seconds(sample.received_ns - sample.stamp_ns));
   if (delays.empty()) return kNaN;
   const double least = *std::min_element(delays.begin(), delays.end());
   return quantile(std::move(delays), 0.99) - least;
+}
+
+double clock_slip_s(const SampleTimes& samples) {
+  const auto least_delay_ns = [&](std::size_t begin, std::size_t end) {
+    std::int64_t least_ns = std::numeric_limits<std::int64_t>::max();
+    for (; begin < end; ++begin)
+      least_ns = std::min(least_ns, samples[begin].received_ns - samples[begin].stamp_ns);
+    return least_ns;
+  };
+  const std::size_t count = samples.size();
+  if (count == 0) return kNaN;
+  const std::int64_t fastest_ns = least_delay_ns(0, count);
+  const std::int64_t first_ns = least_delay_ns(0, (count + 9) / 10);
+  const std::int64_t last_ns = least_delay_ns(count - (count + 99) / 100, count);
+  return math::seconds(std::max(first_ns, last_ns) - fastest_ns);
 }
 
 double quantile(std::vector<double> numbers, double part) {

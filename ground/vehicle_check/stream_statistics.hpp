@@ -50,6 +50,10 @@ double stamp_jitter_p99(const SampleTimes& samples);
 // 99 % of the samples are delivered at most this much later than the fastest.
 double delivery_delay_p99_s(const SampleTimes& samples);
 
+// By how much the stamps fell behind the computer's clock in the recording, or ran ahead of it: what a simulation does that
+// pauses while its computer is busy. Bursts of up to a tenth of the recording are no slip, since the last sample of each is fast.
+double clock_slip_s(const SampleTimes& samples);
+
 // The value that this part of the numbers, 0 .. 1, does not exceed; NaN for none.
 double quantile(std::vector<double> numbers, double part);
 

@@ -12,10 +12,10 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::size_t kFewest = 3;           // samples, to say anything
 constexpr double kClockTolerance = 0.05;     // of the rate of the stamps
 constexpr double kSlowestSimulation = 0.01;  // speeds of a simulated vehicle
 constexpr double kFastestSimulation = 100.0;
+constexpr double kSimulationSlip_s = 0.002;  // of a simulation that still keeps the clock
 constexpr double kRateTolerance = 0.05;
 constexpr double kLeastOdometryRate_hz = 95.0;
 constexpr double kImuRates[] = {500.0, 1000.0};
@@ -250,6 +250,14 @@ CheckResults check_stream(const StreamLimits& limits, const TopicRecord<Sample>&
 
 }  // namespace
 
+double vehicle_rate(const VehicleRecording& recording) {
+  if (!recording.description || !recording.description->simulated) return 1.0;
+  const double rate = clock_rate(times_of(recording.imu));
+  const bool is_scaled =
+      rate >= kSlowestSimulation && rate <= kFastestSimulation && std::abs(rate - 1.0) > kClockTolerance;
+  return is_scaled ? rate : 1.0;
+}
+
 CheckResults check_imu_stream(const VehicleRecording& recording) {
   CheckResults results = {check_received("imu", recording.imu, recording.duration_s())};
   const SampleTimes samples = times_of(recording.imu);
@@ -262,7 +270,8 @@ CheckResults check_imu_stream(const VehicleRecording& recording) {
   results.push_back(check_clock("imu", clock, simulated));
   const bool stamps_count =
       results.back().verdict == Verdict::kPass && counts.stamps_still + counts.stamps_back == 0;
-  const bool keeps_clock = stamps_count && std::abs(clock - 1.0) <= kClockTolerance;
+  const bool keeps_clock = stamps_count && std::abs(clock - 1.0) <= kClockTolerance &&
+                           (!simulated || clock_slip_s(samples) <= kSimulationSlip_s);
   results.push_back(
       check_imu_rate(recording, stamps_count ? rate_by_stamps(samples) : rate_by_arrivals(samples)));
   results.push_back(check_gap(

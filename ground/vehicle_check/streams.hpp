@@ -7,6 +7,10 @@
 
 namespace swiftlet::ground {
 
+// How fast the clock of a vehicle runs over that of this computer: 1 unless it is a simulation at another speed, by its
+// vehicle_info and its IMU.
+double vehicle_rate(const VehicleRecording& recording);
+
 CheckResults check_imu_stream(const VehicleRecording& recording);
 // Of a vehicle that brings vehicle_odometry in place of imu.
 CheckResults check_odometry_stream(const VehicleRecording& recording);

@@ -30,6 +30,13 @@ VehicleRecording part_of(const VehicleRecording& recording, std::int64_t begin_n
   return part;
 }
 
+std::optional<plant::PoseSample> last_pose(const VehicleRecording& recording) {
+  const auto& poses = recording.mocap.samples;
+  const auto found = std::find_if(poses.rbegin(), poses.rend(),
+                                  [](const auto& received) { return received.sample.tracked; });
+  return found == poses.rend() ? std::nullopt : std::optional(found->sample);
+}
+
 bool runs_in_lockstep(const VehicleRecording& recording) {
   const auto in_lockstep = [](const auto& samples) {
     return std::any_of(samples.begin(), samples.end(),

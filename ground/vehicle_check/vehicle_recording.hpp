@@ -62,6 +62,8 @@ struct ClockExchange {
   std::int64_t returned_ns = 0;  // computer's clock
 };
 
+constexpr std::size_t kFewest = 3;  // samples of a topic, to say anything about it
+
 struct VehicleRecording {
   std::int64_t begin_ns = 0;  // computer's clock
   std::int64_t end_ns = 0;
@@ -79,6 +81,9 @@ struct VehicleRecording {
 
 // The part that was received in begin_ns .. end_ns.
 VehicleRecording part_of(const VehicleRecording& recording, std::int64_t begin_ns, std::int64_t end_ns);
+
+// The last tracked pose of motion capture.
+std::optional<plant::PoseSample> last_pose(const VehicleRecording& recording);
 
 // The vehicle's time follows the answers of a controller, so that nothing can be said about its timing.
 bool runs_in_lockstep(const VehicleRecording& recording);

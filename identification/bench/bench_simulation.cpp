@@ -12,7 +12,6 @@ namespace swiftlet::identification {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr std::array<double, 5> kSupplies = {4.190 / 4.19, 4.040 / 4.19, 3.906 / 4.19, 3.809 / 4.19,
                                              3.637 / 4.19};  // of Fig. 2, over full charge
 constexpr int kThrottles = 9;                                // 0.1 .. 0.9
@@ -188,7 +187,7 @@ BifilarData bifilar_data(const plant::Vehicle& vehicle, double inertia, Reader r
     for (int i = 0; i < kSwings; ++i) {
       out.length_m.push_back(length);
       out.separation_m.push_back(separation);
-      out.period_s.push_back(4.0 * kPi / separation *
+      out.period_s.push_back(4.0 * M_PI / separation *
                              std::sqrt(inertia * length / (vehicle.mass_kg * plant::kGravity)));
     }
   }

@@ -11,7 +11,7 @@ namespace swiftlet::identification {
 
 namespace {
 
-constexpr std::size_t kLeastRows = 6;
+constexpr std::size_t kLeastEscRows = 6;
 constexpr double kMeterError = 1.1;         // v_a over v_s, largest ratio that two meters' errors explain
 constexpr double kLeastSquareShare = 1e-6;  // of full-scale v_a^2; below it the model gives v_a = 0
 
@@ -40,7 +40,7 @@ void check(const EscData& data) {
   const Column supply{"supply_voltage", "V", data.supply_voltage_v};
   const Column throttle{"throttle", "", data.throttle};
   const Column voltage{"motor_voltage", "V", data.motor_voltage_v};
-  require_rows({supply, throttle, voltage}, kLeastRows);
+  require_rows({supply, throttle, voltage}, kLeastEscRows);
   require_drive(supply, throttle);
   require_variety(throttle, 3);
   require_variety(voltage, 3);

@@ -12,8 +12,7 @@ namespace swiftlet::identification {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr std::size_t kLeastRows = 4;
+constexpr std::size_t kLeastInertiaRows = 4;
 constexpr double kLeastLength = 0.005;  // m
 constexpr double kMostLength = 20.0;    // m
 constexpr double kSwingShare = 0.1;     // J over m arm^2; below it the error of the arm hides J
@@ -68,13 +67,13 @@ Experiment identify_inertia(const BifilarData& data, const InertiaTarget& target
   const Column length{"length", "m", data.length_m};
   const Column separation{"separation", "m", data.separation_m};
   const Column period{"period", "s", data.period_s};
-  require_rows({length, separation, period}, kLeastRows);
+  require_rows({length, separation, period}, kLeastInertiaRows);
   require_each_between(length, kLeastLength, kMostLength, "no bench uses shorter or longer strings");
   require_each_between(separation, kLeastLength, kMostLength, "no bench hangs strings closer or wider apart");
   require_median_between(period, 0.02, 60.0, "no bench swings faster or slower");
   PeriodLaw law;
   for (std::size_t i = 0; i < data.period_s.size(); ++i) {
-    law.slope.push_back(16.0 * kPi * kPi * data.length_m[i] /
+    law.slope.push_back(16.0 * M_PI * M_PI * data.length_m[i] /
                         (target.mass_kg * plant::kGravity * data.separation_m[i] * data.separation_m[i]));
     law.constant.push_back(0.0);
   }
@@ -84,13 +83,13 @@ Experiment identify_inertia(const BifilarData& data, const InertiaTarget& target
 Experiment identify_inertia(const SwingData& data, const InertiaTarget& target) {
   const Column arm{"arm", "m", data.arm_m};
   const Column period{"period", "s", data.period_s};
-  require_rows({arm, period}, kLeastRows);
+  require_rows({arm, period}, kLeastInertiaRows);
   require_each_between(arm, kLeastLength, kMostLength, "no bench uses a shorter or longer arm");
   require_median_between(period, 0.02, 60.0, "no bench swings faster or slower");
   PeriodLaw law;
   for (std::size_t i = 0; i < data.period_s.size(); ++i) {
-    law.slope.push_back(4.0 * kPi * kPi / (target.mass_kg * plant::kGravity * data.arm_m[i]));
-    law.constant.push_back(4.0 * kPi * kPi * data.arm_m[i] / plant::kGravity);
+    law.slope.push_back(4.0 * M_PI * M_PI / (target.mass_kg * plant::kGravity * data.arm_m[i]));
+    law.constant.push_back(4.0 * M_PI * M_PI * data.arm_m[i] / plant::kGravity);
   }
   Experiment out = identify(law, data.period_s, target);
   const double shortest = *std::min_element(data.arm_m.begin(), data.arm_m.end());

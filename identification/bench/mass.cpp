@@ -7,7 +7,7 @@ namespace swiftlet::identification {
 
 namespace {
 
-constexpr std::size_t kLeastRows = 3;
+constexpr std::size_t kLeastMassRows = 3;
 constexpr double kLeastMass = 1e-3;  // kg
 constexpr double kMostMass = 1e3;
 
@@ -15,7 +15,7 @@ constexpr double kMostMass = 1e3;
 
 Experiment identify_mass(const std::vector<double>& mass_kg) {
   const Column mass{"mass", "kg", mass_kg};
-  require_rows({mass}, kLeastRows);
+  require_rows({mass}, kLeastMassRows);
   require_median_between(mass, kLeastMass, kMostMass, "no multirotor is lighter or heavier");
   FitProblem problem;
   problem.observations = mass_kg.size();

@@ -18,7 +18,7 @@ namespace swiftlet::identification {
 
 namespace {
 
-constexpr std::size_t kLeastRows = 20;
+constexpr std::size_t kLeastMotorStepRows = 20;
 constexpr std::size_t kLeastRiseRows = 6;      // between 10 and 90 % of the step
 constexpr std::size_t kLeastRestRows = 3;      // before the step, for the initial speed
 constexpr double kRise = 0.63212055882855767;  // 1 - 1/e
@@ -31,7 +31,7 @@ using std::exp;
 // Parameters of both step responses.
 enum Parameter : int { kStepTime, kRate, kFinal, kInitial };
 constexpr int kParameters = 4;
-using Jet = ceres::Jet<double, kParameters>;
+using StepJet = ceres::Jet<double, kParameters>;
 
 // tau_m dOmega/dt = Omega_ss - Omega; rate is 1 / tau_m.
 template <typename T>
@@ -98,7 +98,7 @@ void check(const MotorStepData& data) {
   const Column speed{"speed", "rad/s", data.speed_rad_s};
   std::vector<Column> columns = {time, speed};
   if (!data.motor_voltage_v.empty()) columns.push_back({"motor_voltage", "V", data.motor_voltage_v});
-  require_rows(columns, kLeastRows);
+  require_rows(columns, kLeastMotorStepRows);
   for (std::size_t i = 1; i < data.time_s.size(); ++i) {
     if (!(data.time_s[i] > data.time_s[i - 1]))
       throw BadData("time: is " + format_number(data.time_s[i]) + " s after " +
@@ -145,15 +145,15 @@ Fit fit_response(const MotorStepData& data, const Eigen::Vector4d& start, const 
   problem.time_series = true;
   problem.on_iteration = on_iteration;
   problem.residuals = [&](const Eigen::VectorXd& p, Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian) {
-    std::array<Jet, kParameters> jets;
-    for (int i = 0; i < kParameters; ++i) jets[static_cast<std::size_t>(i)] = Jet(p[i], i);
+    std::array<StepJet, kParameters> jets;
+    for (int i = 0; i < kParameters; ++i) jets[static_cast<std::size_t>(i)] = StepJet(p[i], i);
     for (std::size_t row = 0; row < data.time_s.size(); ++row) {
       const auto at = static_cast<Eigen::Index>(row);
       if (jacobian == nullptr) {
         residuals[at] = data.speed_rad_s[row] - response(p.data(), data.time_s[row]);
         continue;
       }
-      const Jet value = response(jets.data(), data.time_s[row]);
+      const StepJet value = response(jets.data(), data.time_s[row]);
       residuals[at] = data.speed_rad_s[row] - value.a;
       jacobian->row(at) = -value.v.transpose();
     }

@@ -9,7 +9,6 @@ namespace swiftlet::identification {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kLeastThrustCoefficient = 1e-3;  // a tenth of a small propeller's
 constexpr double kMostThrustCoefficient = 0.1;    // blades stall above it
 
@@ -32,7 +31,7 @@ void check_tips(const Propeller& propeller, double top_speed) {
 
 // Momentum theory: the power for a thrust T at hover is at least T sqrt(T / (2 rho A)).
 double figure_of_merit(double thrust_factor, double torque_factor, const Propeller& propeller) {
-  const double area = kPi * propeller.radius_m * propeller.radius_m;
+  const double area = M_PI * propeller.radius_m * propeller.radius_m;
   return std::pow(thrust_factor, 1.5) / (torque_factor * std::sqrt(2.0 * propeller.air_density * area));
 }
 

@@ -8,7 +8,7 @@ namespace swiftlet::identification {
 
 namespace {
 
-constexpr std::size_t kLeastRows = 6;
+constexpr std::size_t kLeastSteadyMotorRows = 6;
 
 // Eq. (22). A third parameter adds a constant voltage.
 CurveValue steady_voltage(std::size_t /*row*/, double speed, const Eigen::VectorXd& p, Gradient& by) {
@@ -21,7 +21,7 @@ CurveValue steady_voltage(std::size_t /*row*/, double speed, const Eigen::Vector
 void check(const SteadyMotorData& data) {
   const Column voltage{"motor_voltage", "V", data.motor_voltage_v};
   const Column speed{"speed", "rad/s", data.speed_rad_s};
-  require_rows({voltage, speed}, kLeastRows);
+  require_rows({voltage, speed}, kLeastSteadyMotorRows);
   require_variety(voltage, 3);
   require_variety(speed, 3);
   require_median_between(voltage, kLeastMotorVoltage, kMostMotorVoltage, "no vehicle flies on less or more");

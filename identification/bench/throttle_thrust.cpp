@@ -12,7 +12,7 @@ namespace swiftlet::identification {
 
 namespace {
 
-constexpr std::size_t kLeastRows = 8;
+constexpr std::size_t kLeastThrottleThrustRows = 8;
 
 enum Part : std::size_t { kGain, kOffset, kK2, kK3, kThrustFactor, kParts };
 constexpr std::array<ParameterName, kParts> kNames = {{{"esc.gain", "gain", "1"},
@@ -20,14 +20,15 @@ constexpr std::array<ParameterName, kParts> kNames = {{{"esc.gain", "gain", "1"}
                                                        {"motor.k2", "K2", "V*s/rad"},
                                                        {"motor.k3", "K3", "V*s^2/rad^2"},
                                                        {"rotor.thrust_factor", "k_T", "N*s^2"}}};
-using Jet = ceres::Jet<double, kParts + 1>;  // derivatives by the parts and v_s
-constexpr double kLeastSquare = 1e-9;        // V^2, keeps the square root away from 0
+using ThrustJet = ceres::Jet<double, kParts + 1>;  // derivatives by the parts and v_s
+constexpr double kLeastSquare = 1e-9;              // V^2, keeps the square root away from 0
 
-Jet thrust(const std::array<Jet, kParts>& part, const Jet& supply, double throttle) {
-  const Jet square = part[kGain] * supply * supply * throttle + part[kOffset];
-  if (square < Jet(kLeastSquare)) return Jet(0.0);
-  const Jet voltage = sqrt(square);
-  const Jet speed = 2.0 * voltage / (part[kK2] + sqrt(part[kK2] * part[kK2] + 4.0 * part[kK3] * voltage));
+ThrustJet thrust(const std::array<ThrustJet, kParts>& part, const ThrustJet& supply, double throttle) {
+  const ThrustJet square = part[kGain] * supply * supply * throttle + part[kOffset];
+  if (square < ThrustJet(kLeastSquare)) return ThrustJet(0.0);
+  const ThrustJet voltage = sqrt(square);
+  const ThrustJet speed =
+      2.0 * voltage / (part[kK2] + sqrt(part[kK2] * part[kK2] + 4.0 * part[kK3] * voltage));
   return part[kThrustFactor] * speed * speed;
 }
 
@@ -53,7 +54,7 @@ void check(const ThrottleThrustData& data) {
   const Column supply{"supply_voltage", "V", data.supply_voltage_v};
   const Column throttle{"throttle", "", data.throttle};
   const Column reading{"thrust", "N", data.thrust_n};
-  require_rows({supply, throttle, reading}, kLeastRows);
+  require_rows({supply, throttle, reading}, kLeastThrottleThrustRows);
   require_drive(supply, throttle);
   require_variety(throttle, 4);
   require_variety(reading, 4);
@@ -77,11 +78,11 @@ Experiment identify_throttle_thrust(const ThrottleThrustData& data, const plant:
   const std::vector<Part> free = free_parts(known);
   const std::array<double, kParts> held = parts_of(vehicle);
   const Curve curve = [&](std::size_t row, double supply, const Eigen::VectorXd& p, Gradient& by) {
-    std::array<Jet, kParts> part;
-    for (std::size_t i = 0; i < kParts; ++i) part[i] = Jet(held[i]);
+    std::array<ThrustJet, kParts> part;
+    for (std::size_t i = 0; i < kParts; ++i) part[i] = ThrustJet(held[i]);
     for (std::size_t i = 0; i < free.size(); ++i)
-      part[free[i]] = Jet(p[static_cast<Eigen::Index>(i)], static_cast<int>(free[i]));
-    const Jet value = thrust(part, Jet(supply, kParts), data.throttle[row]);
+      part[free[i]] = ThrustJet(p[static_cast<Eigen::Index>(i)], static_cast<int>(free[i]));
+    const ThrustJet value = thrust(part, ThrustJet(supply, kParts), data.throttle[row]);
     for (std::size_t i = 0; i < free.size(); ++i)
       by[static_cast<Eigen::Index>(i)] = value.v[static_cast<Eigen::Index>(free[i])];
     return CurveValue{value.a, value.v[kParts]};

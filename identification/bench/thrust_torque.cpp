@@ -8,7 +8,7 @@ namespace swiftlet::identification {
 
 namespace {
 
-constexpr std::size_t kLeastRows = 5;
+constexpr std::size_t kLeastThrustTorqueRows = 5;
 
 // Eq. (25) or (26). A second parameter adds a constant.
 CurveValue square_law(std::size_t /*row*/, double speed, const Eigen::VectorXd& p, Gradient& by) {
@@ -51,7 +51,7 @@ ThrustTorque identify_thrust_torque(const ThrustTorqueData& data, const Instrume
   if (!data.thrust_n.empty()) columns.push_back(thrust);
   if (!data.torque_n_m.empty()) columns.push_back(torque);
   if (columns.size() < 2) throw BadData("has neither thrust nor torque, must have at least one");
-  require_rows(columns, kLeastRows);
+  require_rows(columns, kLeastThrustTorqueRows);
   require_variety(speed, 3);
   require_median_between(speed, kLeastRotorSpeed, kMostRotorSpeed, "no rotor turns slower or faster");
 

@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 constexpr double kStep = 1e-3;        // of central differences, over a parameter's scale
 constexpr int kMostReweightings = 4;  // fits, each with the channel spreads of the one before
 constexpr double kSettled = 0.01;     // relative change of the spreads that ends the reweighting
-constexpr double kLeastSpread = 1e-9;
+constexpr double kLeastSeriesSpread = 1e-9;
 constexpr double kUnseen = 1e-14;         // eigenvalue of the normal matrix over the largest one
 constexpr double kUnseenDeviation = 1e4;  // standard deviation in unobservable directions, in scales
 
@@ -78,7 +78,7 @@ class WeightedProblem final : public ceres::CostFunction {
     double change = 0.0;
     for_each_channel([&](Index channel, Index first, Index size) {
       const double square = residuals.segment(first, size).squaredNorm();
-      const double spread = std::max(std::sqrt(square / static_cast<double>(size)), kLeastSpread);
+      const double spread = std::max(std::sqrt(square / static_cast<double>(size)), kLeastSeriesSpread);
       change = std::max(change, std::abs(spread / spread_[channel] - 1.0));
       spread_[channel] = spread;
     });

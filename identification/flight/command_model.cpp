@@ -19,7 +19,6 @@ constexpr double kLeastThrust = 1e-3;  // m/s^2, lower limit of one rotor's thru
 constexpr double kMostReflection = 0.9995;
 // Noise slower than about half a second is left to the thrust curve and its drift.
 constexpr double kMostForceReflection = 0.99;
-constexpr std::size_t kCachedPerFlight = 4;
 
 const char* const kNames[kResponses] = {"specific force", "roll", "pitch", "yaw"};
 

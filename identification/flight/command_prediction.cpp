@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "swiftlet/identification/flight/flight_prediction.hpp"
 #include "swiftlet/math/linear_algebra.hpp"
 
 namespace swiftlet::identification {
@@ -10,7 +11,6 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double kAheadS = 0.5;
 constexpr double kBetweenStartsS = 0.05;
 constexpr double kTraceRestartS = 0.1;
 constexpr std::array<double, 5> kHorizonsS = {0.02, 0.05, 0.1, 0.2, kAheadS};

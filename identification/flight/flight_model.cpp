@@ -14,9 +14,8 @@ using Eigen::Index;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kBlockS = 0.01;            // s, block of samples that are averaged
+constexpr double kAveragedS = 0.01;         // s, block of samples that are averaged
 constexpr std::size_t kBlocksInWindow = 5;  // rates are integrated over a window from a free initial value
-constexpr std::size_t kCachedPerFlight = 4;
 
 const char* const kAxes[3] = {"roll", "pitch", "yaw"};
 
@@ -25,7 +24,7 @@ std::size_t block_of(const FlightSeries& flight) {
   const std::vector<double>& time = flight.log->time_s;
   const double step = (time[flight.estimation_set.last - 1] - time[flight.estimation_set.first]) /
                       static_cast<double>(flight.estimation_set.size());
-  return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kBlockS / step)));
+  return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kAveragedS / step)));
 }
 
 std::size_t blocks_in(const Rows& segment, std::size_t block) { return (segment.size() + block - 1) / block; }

@@ -46,6 +46,8 @@ struct FlightLayout {
   std::vector<int> offset;                    // b along x of each log; y and z follow
 };
 
+constexpr std::size_t kCachedPerFlight = 4;  // results of a model
+
 // Not thread-safe: const methods cache the last results.
 class FlightModel {
  public:

@@ -8,10 +8,8 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kAheadS = 0.5;
-
 // Accumulates root mean squares along three axes.
-struct Squares {
+struct VectorSquares {
   Vector3d sum = Vector3d::Zero();
   double count = 0.0;
 
@@ -57,12 +55,12 @@ class RatePredictor {
 
 std::vector<PredictionError> prediction_errors(const FlightModel& model, const VectorXd& parameters,
                                                Part part) {
-  Squares one_step;
-  Squares persistence_one_step;
-  Squares ahead;
-  Squares persistence_ahead;
-  Squares force;
-  Squares persistence_force;
+  VectorSquares one_step;
+  VectorSquares persistence_one_step;
+  VectorSquares ahead;
+  VectorSquares persistence_ahead;
+  VectorSquares force;
+  VectorSquares persistence_force;
   for (std::size_t f = 0; f < model.flights().size(); ++f) {
     const FlightLog& log = *model.flights()[f].log;
     const RatePredictor predictor(model, parameters, f, part);

@@ -7,6 +7,8 @@
 
 namespace swiftlet::identification {
 
+constexpr double kAheadS = 0.5;  // of a prediction
+
 enum class Part { kEstimationSet, kValidationSet };
 
 std::vector<PredictionError> prediction_errors(const FlightModel& model, const Eigen::VectorXd& parameters,

@@ -20,14 +20,14 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr std::size_t kLeastPoses = 3;  // in a segment
+constexpr std::size_t kLeastPosesOfSegment = 3;  // in a segment
 constexpr std::size_t kLeastSegments = 8;
 constexpr double kLongestDelayS = 1.0;
 constexpr double kLagStepS = 0.01;  // s, step of the first search
 constexpr double kLagOffS = 0.05;   // s, largest error of the first search
 constexpr double kSpanS = 0.05;     // s, span over which it compares rotations
 constexpr double kTurning = 0.25;   // rad/s, least RMS rate over such spans to compare
-constexpr double kLeastCorrelation = 0.5;
+constexpr double kLeastRateCorrelation = 0.5;
 constexpr double kMostOfGyro = 1.25;            // of the poses' rotation over the gyro's, and its inverse
 constexpr double kMostDelayHalfWidthS = 0.002;  // s, of an identified delay
 
@@ -82,7 +82,7 @@ std::vector<Poses> poses_of(const FlightLog& log, const std::vector<Rows>& segme
   std::vector<Poses> out;
   for (const Rows& segment : segments) {
     const Poses poses{at(log.time_s[segment.first]), at(log.time_s[segment.last - 1])};
-    if (poses.last - poses.first >= kLeastPoses) out.push_back(poses);
+    if (poses.last - poses.first >= kLeastPosesOfSegment) out.push_back(poses);
   }
   return out;
 }
@@ -153,10 +153,10 @@ double rough_delay(const FlightLog& log, const std::vector<Poses>& segments) {
     best_s = lag_s;
   }
   if (best.spread < kTurning) return 0.0;
-  if (best.correlation < kLeastCorrelation) {
+  if (best.correlation < kLeastRateCorrelation) {
     throw BadData("poses: do not turn as the gyro does, at any delay up to " + format_number(kLongestDelayS) +
                   " s (correlation " + format_number(best.correlation) + ", must be above " +
-                  format_number(kLeastCorrelation) + "); are their frames and clocks right?");
+                  format_number(kLeastRateCorrelation) + "); are their frames and clocks right?");
   }
   if (best.ratio > kMostOfGyro || best.ratio < 1.0 / kMostOfGyro) {
     throw BadData("body rates: the poses turn " + format_number(best.ratio) +

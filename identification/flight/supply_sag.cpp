@@ -10,8 +10,8 @@ namespace swiftlet::identification {
 namespace {
 
 constexpr double kCharge = 0.5;
-constexpr double kStep = 1e-3;   // of the command
-constexpr int kIterations = 60;  // each reduces the error to the fraction of the voltage that sags
+constexpr double kCommandStep = 1e-3;  // of the command
+constexpr int kIterations = 60;        // each reduces the error to the fraction of the voltage that sags
 
 // Steady supply voltage, V, with all rotors at this command.
 double settled_voltage(const plant::Vehicle& vehicle, const plant::MotorDynamics& motor, double command) {
@@ -35,7 +35,7 @@ double hover_command(const plant::Vehicle& vehicle, const plant::MotorDynamics& 
     command = plant::throttle_from_steady_thrust(vehicle, settled_voltage(vehicle, motor, command),
                                                  plant::hover_thrust(vehicle));
   }
-  return std::clamp(command, 2.0 * kStep, 1.0 - 2.0 * kStep);
+  return std::clamp(command, 2.0 * kCommandStep, 1.0 - 2.0 * kCommandStep);
 }
 
 }  // namespace
@@ -47,9 +47,9 @@ double shared_over_single(const plant::Vehicle& vehicle) {
   const auto thrust = [&](double voltage, double command) {
     return plant::steady_thrust_from_throttle(vehicle, voltage, command);
   };
-  const double single = thrust(at_hover, hover + kStep) - thrust(at_hover, hover - kStep);
-  const double shared = thrust(settled_voltage(vehicle, motor, hover + kStep), hover + kStep) -
-                        thrust(settled_voltage(vehicle, motor, hover - kStep), hover - kStep);
+  const double single = thrust(at_hover, hover + kCommandStep) - thrust(at_hover, hover - kCommandStep);
+  const double shared = thrust(settled_voltage(vehicle, motor, hover + kCommandStep), hover + kCommandStep) -
+                        thrust(settled_voltage(vehicle, motor, hover - kCommandStep), hover - kCommandStep);
   return std::clamp(shared / single, 0.1, 1.0);
 }
 

@@ -16,7 +16,7 @@ constexpr double kBlock_s = 0.1;
 constexpr std::size_t kFewestBlocks = 20;
 constexpr double kKnownSlope = 0.2;  // greatest standard deviation over the slope
 constexpr double kNominalCharge = 0.6;
-constexpr double kStep = 0.005;  // of throttle, for the slope of the curve
+constexpr double kThrottleStep = 0.005;  // of throttle, for the slope of the curve
 
 struct Block {
   double throttle = 0.0;
@@ -119,7 +119,8 @@ ThrustScale fit_thrust_scale(const ThrottleRecord& record, const plant::Vehicle&
     return vehicle.rotor_count() * plant::steady_thrust_from_throttle(vehicle, voltage_v, throttle);
   };
   scale.curve_slope_n =
-      (thrust_n(scale.curve_throttle + kStep) - thrust_n(scale.curve_throttle - kStep)) / (2.0 * kStep);
+      (thrust_n(scale.curve_throttle + kThrottleStep) - thrust_n(scale.curve_throttle - kThrottleStep)) /
+      (2.0 * kThrottleStep);
   return scale;
 }
 

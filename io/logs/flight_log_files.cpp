@@ -14,6 +14,7 @@
 #include "swiftlet/io/logs/compressed_file.hpp"
 #include "swiftlet/io/logs/recorded_flight.hpp"
 #include "swiftlet/io/measurements.hpp"
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/plant/model/esc.hpp"
 
 namespace swiftlet::ground {
@@ -29,8 +30,6 @@ using runtime::Quantity;
 constexpr double kLongestTimeGap = 3600.0;  // s
 constexpr double kNearGravity =
     0.5;  // of g; a larger mean specific force along z shows the direction of the z axis
-
-double seconds(std::int64_t stamp_ns) { return static_cast<double>(stamp_ns) * 1e-9; }
 
 // Finds the newest row of a track up to a stamp. Calls must have rising stamps.
 template <class Row>
@@ -304,7 +303,7 @@ FlightLog flight_log_of(const SensorRecord& record) {
     if (command == nullptr || (battery == nullptr && !batteries.none()) ||
         (speed == nullptr && !speeds.none()))
       continue;
-    log.time_s.push_back(seconds(imu.stamp_ns));
+    log.time_s.push_back(math::seconds(imu.stamp_ns));
     log.specific_force_frd.push_back(imu.specific_force_frd);
     log.body_rates_frd.push_back(imu.body_rates_frd);
     log.command.push_back(command->throttle);
@@ -315,7 +314,8 @@ FlightLog flight_log_of(const SensorRecord& record) {
     if (speed != nullptr) log.rotor_speeds.push_back(speed->speeds);
   }
   for (const plant::PoseSample& pose : record.poses) {
-    if (pose.tracked) log.poses.push_back({seconds(pose.stamp_ns), pose.position_ned, pose.q_ned_from_frd});
+    if (pose.tracked)
+      log.poses.push_back({math::seconds(pose.stamp_ns), pose.position_ned, pose.q_ned_from_frd});
   }
   return log;
 }

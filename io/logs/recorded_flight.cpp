@@ -152,7 +152,7 @@ void read_mission(const Series& series, Track<MissionRow>& track) {
         {series.stamp_ns()[i], id[i], static_cast<int>(state.at(i)), static_cast<std::uint32_t>(item.at(i))});
 }
 
-void read_imu(const Series& series, Track<plant::ImuSample>& track) {
+void read_imu_series(const Series& series, Track<plant::ImuSample>& track) {
   const Scalar sequence(series, "sequence_number");
   const Signal<3> force(series, "specific_force_frd");
   const Signal<3> rates(series, "body_rates_frd");
@@ -163,7 +163,7 @@ void read_imu(const Series& series, Track<plant::ImuSample>& track) {
   }
 }
 
-void read_poses(const Series& series, Track<plant::PoseSample>& track) {
+void read_pose_series(const Series& series, Track<plant::PoseSample>& track) {
   const Scalar sequence(series, "sequence_number");
   const Scalar tracked(series, "tracked");
   const Signal<3> position(series, "position_ned");
@@ -194,7 +194,7 @@ void read_battery(const Series& series, Track<plant::BatterySample>& track) {
   }
 }
 
-void read_rotor_speeds(const Series& series, Track<plant::RotorSpeedSample>& track) {
+void read_rotor_speed_series(const Series& series, Track<plant::RotorSpeedSample>& track) {
   const Scalar sequence(series, "sequence_number");
   const Scalar rotors(series, "rotor_count");
   const Signal<8> speeds(series, "speeds");
@@ -205,7 +205,7 @@ void read_rotor_speeds(const Series& series, Track<plant::RotorSpeedSample>& tra
   }
 }
 
-void read_commands(const Series& series, Track<plant::ActuatorCommand>& track) {
+void read_command_series(const Series& series, Track<plant::ActuatorCommand>& track) {
   const Scalar sequence(series, "sequence_number");
   const Scalar imu(series, "imu_sequence_number");
   const Scalar mocap(series, "mocap_sequence_number");
@@ -281,11 +281,11 @@ std::unique_ptr<FlightRecord> read_flight_record(const mcap::Reader& file, const
   read("reference", read_reference, record->reference);
   read("estimate", read_estimate, record->estimate);
   read("mission_status", read_mission, record->mission);
-  read("imu", read_imu, record->sensors->imu);
-  read("mocap_pose", read_poses, record->sensors->poses);
+  read("imu", read_imu_series, record->sensors->imu);
+  read("mocap_pose", read_pose_series, record->sensors->poses);
   read("battery", read_battery, record->sensors->batteries);
-  read("rotor_speeds", read_rotor_speeds, record->sensors->rotor_speeds);
-  read("actuator_command", read_commands, record->sensors->commands);
+  read("rotor_speeds", read_rotor_speed_series, record->sensors->rotor_speeds);
+  read("actuator_command", read_command_series, record->sensors->commands);
   return record;
 }
 

@@ -14,6 +14,7 @@
 
 #include "swiftlet/io/byte_reader.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/math/angles.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -26,7 +27,6 @@ constexpr std::size_t kHeaderBytes = 5;
 constexpr std::size_t kCrcBytes = 4;
 constexpr std::string_view kTypes = "bBhHiIqQefd";
 constexpr std::array<std::size_t, 11> kBytes = {1, 1, 2, 2, 4, 4, 8, 8, 2, 4, 8};
-constexpr double kDegrees = M_PI / 180.0;
 
 struct Variable {
   std::string name;  // in lower case
@@ -78,9 +78,9 @@ double value_of(ByteReader& reader, char type) {
   }
 }
 
-class Reader {
+class CrazyflieReader {
  public:
-  Reader(std::string_view bytes, const std::string& file)
+  CrazyflieReader(std::string_view bytes, const std::string& file)
       : all_(bytes),
         file_(file),
         reader_(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), true) {}
@@ -198,7 +198,7 @@ struct Heading {
   }
   // rad, counter-clockwise seen from above.
   double of(const std::vector<double>& values) const {
-    if (yaw_deg) return kDegrees * values[*yaw_deg];
+    if (yaw_deg) return math::kRadPerDeg * values[*yaw_deg];
     const double w = values[*q[0]], x = values[*q[1]], y = values[*q[2]], z = values[*q[3]];
     return std::atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z);
   }
@@ -211,7 +211,7 @@ bool is_crazyflie_log(std::string_view bytes) {
 }
 
 CrazyflieLog read_crazyflie_log(std::string_view bytes, const std::string& file_name) {
-  const auto [type, events] = Reader(bytes, file_name).read();
+  const auto [type, events] = CrazyflieReader(bytes, file_name).read();
   Heading heading{type.find("stateestimate.yaw"),
                   {type.find("stateestimate.qw"), type.find("stateestimate.qx"),
                    type.find("stateestimate.qy"), type.find("stateestimate.qz")}};

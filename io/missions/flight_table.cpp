@@ -15,24 +15,24 @@ namespace {
 
 using runtime::ConfigError;
 
-constexpr double kAtRest_m_s = 1e-3;
+constexpr double kSampleAtRest_m_s = 1e-3;
 
-struct Column {
+struct FlightColumn {
   const char* header;   // in the table that is returned
   const char* written;  // in flight.csv
   const char* older;    // in flight.csv of an older version; null: none
 };
-const std::vector<Column> kColumns = {{"t [s]", "t [s]", "t"},
-                                      {"x_ned [m]", "ref_x_ned [m]", "ref_px"},
-                                      {"y_ned [m]", "ref_y_ned [m]", "ref_py"},
-                                      {"z_ned [m]", "ref_z_ned [m]", "ref_pz"},
-                                      {"vx_ned [m/s]", "ref_vx_ned [m/s]", "ref_vx"},
-                                      {"vy_ned [m/s]", "ref_vy_ned [m/s]", "ref_vy"},
-                                      {"vz_ned [m/s]", "ref_vz_ned [m/s]", "ref_vz"},
-                                      {"yaw_ned [rad]", "ref_yaw_ned [rad]", "ref_yaw"},
-                                      {"ax_ned [m/s^2]", "ref_ax_ned [m/s^2]", nullptr},
-                                      {"ay_ned [m/s^2]", "ref_ay_ned [m/s^2]", nullptr},
-                                      {"az_ned [m/s^2]", "ref_az_ned [m/s^2]", nullptr}};
+const std::vector<FlightColumn> kFlightColumns = {{"t [s]", "t [s]", "t"},
+                                                  {"x_ned [m]", "ref_x_ned [m]", "ref_px"},
+                                                  {"y_ned [m]", "ref_y_ned [m]", "ref_py"},
+                                                  {"z_ned [m]", "ref_z_ned [m]", "ref_pz"},
+                                                  {"vx_ned [m/s]", "ref_vx_ned [m/s]", "ref_vx"},
+                                                  {"vy_ned [m/s]", "ref_vy_ned [m/s]", "ref_vy"},
+                                                  {"vz_ned [m/s]", "ref_vz_ned [m/s]", "ref_vz"},
+                                                  {"yaw_ned [rad]", "ref_yaw_ned [rad]", "ref_yaw"},
+                                                  {"ax_ned [m/s^2]", "ref_ax_ned [m/s^2]", nullptr},
+                                                  {"ay_ned [m/s^2]", "ref_ay_ned [m/s^2]", nullptr},
+                                                  {"az_ned [m/s^2]", "ref_az_ned [m/s^2]", nullptr}};
 constexpr std::size_t kZ = 3, kVx = 4, kAx = 8;
 
 std::optional<std::size_t> find(const std::vector<std::string>& header, const char* name) {
@@ -41,11 +41,11 @@ std::optional<std::size_t> find(const std::vector<std::string>& header, const ch
   return static_cast<std::size_t>(found - header.begin());
 }
 
-// The position in flight.csv of each column of kColumns; shorter without accelerations.
+// The position in flight.csv of each column of kFlightColumns; shorter without accelerations.
 std::vector<std::size_t> places(const std::vector<std::string>& header, const std::string& file_name) {
   const bool older = find(header, "t").has_value();
   std::vector<std::size_t> places;
-  for (const Column& column : kColumns) {
+  for (const FlightColumn& column : kFlightColumns) {
     const char* const name = older ? column.older : column.written;
     if (name == nullptr) break;
     const auto place = find(header, name);
@@ -60,12 +60,12 @@ std::vector<std::size_t> places(const std::vector<std::string>& header, const st
 
 struct Row {
   int line = 0;
-  std::vector<double> numbers;      // in the order of kColumns
+  std::vector<double> numbers;      // in the order of kFlightColumns
   std::vector<std::string> fields;  // as they are written
 
   double speed() const { return std::hypot(numbers[kVx], numbers[kVx + 1], numbers[kVx + 2]); }
   bool is_between_takeoff_and_landing() const {
-    return -numbers[kZ] >= kLeastHeight_m && speed() <= kAtRest_m_s;
+    return -numbers[kZ] >= kLeastHeight_m && speed() <= kSampleAtRest_m_s;
   }
 };
 
@@ -135,7 +135,7 @@ runtime::CsvTable reference_of_flight(const std::string& text, const std::string
   stop(begin->numbers);
   stop((end - 1)->numbers);
   std::vector<std::string> columns;
-  for (std::size_t i = 0; i < at.size(); ++i) columns.emplace_back(kColumns[i].header);
+  for (std::size_t i = 0; i < at.size(); ++i) columns.emplace_back(kFlightColumns[i].header);
   runtime::CsvTable table(file_name, columns);
   std::for_each(begin, end, [&](const Row& row) {
     table.add_row(row.line, row.numbers, {row.fields.begin(), row.fields.end()});

@@ -15,6 +15,7 @@
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/flight_csv.hpp"
+#include "swiftlet/io/text.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -28,10 +29,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
+std::string without_blanks(const std::string& text) { return std::string(runtime::trimmed(text, " \t\r")); }
 
 // separator ' ': any number of blanks and tabs.
 Fields split(const std::string& line, char separator) {
@@ -41,7 +39,7 @@ Fields split(const std::string& line, char separator) {
     if (c != separator && !(separator == ' ' && c == '\t')) {
       field += c;
     } else if (separator != ' ' || !field.empty()) {
-      fields.push_back(trimmed(field));
+      fields.push_back(without_blanks(field));
       field.clear();
     }
   }
@@ -61,7 +59,7 @@ bool is_comment(const std::string& line) {
 }
 
 // A column of a foreign table.
-struct Column {
+struct ForeignColumn {
   std::string name;  // of motion_columns.hpp, "qw" ... "qz", or empty: it is left out
   std::string unit;  // empty: that of SI
   std::string given;
@@ -90,13 +88,13 @@ const Fields kLeftOut = {"w_",   "wx",   "wy",   "wz",   "omega", "a_rot", "u_",
                          "snap", "b_w_", "b_a_", "roll", "pitch", "rpm",   "motor", "gyro.",
                          "acc.", "pm.",  "rate", "tau",  "mot_",  "f_",    "thrust"};
 
-Column column_of(const std::string& given, const std::string& file, int line) {
-  Column column;
+ForeignColumn column_of(const std::string& given, const std::string& file, int line) {
+  ForeignColumn column;
   column.given = given;
   const std::size_t open = given.find('[');
-  std::string name = lower(trimmed(given.substr(0, open)));
+  std::string name = lower(without_blanks(given.substr(0, open)));
   if (open != std::string::npos && given.back() == ']') {
-    column.unit = trimmed(given.substr(open + 1, given.size() - open - 2));
+    column.unit = without_blanks(given.substr(open + 1, given.size() - open - 2));
     for (const auto& [from, to] : {std::pair{"m s^-1", "m/s"}, {"m s^-2", "m/s^2"}, {"rad s^-1", "rad/s"}}) {
       if (column.unit == from) column.unit = to;
     }
@@ -137,7 +135,7 @@ Parts parts_of(const std::string& text) {
   int number = 0;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
-    const Line line{++number, trimmed(text.substr(at, end - at))};
+    const Line line{++number, without_blanks(text.substr(at, end - at))};
     at = end + 1;
     if (line.text.empty()) continue;
     if (!is_comment(line.text)) {
@@ -222,36 +220,39 @@ std::string seconds_since(const std::string& first, const std::string& stamp, co
 class Writer {
  public:
   // foreign: units of SI may be dropped.
-  Writer(std::vector<Column> columns, const std::string& file, bool foreign)
+  Writer(std::vector<ForeignColumn> columns, const std::string& file, bool foreign)
       : columns_(std::move(columns)), file_(file) {
     static const Fields quaternion = {"qw", "qx", "qy", "qz"};
     for (std::size_t k = 0; k < 4; ++k) {
-      const auto found = std::find_if(columns_.begin(), columns_.end(),
-                                      [&](const Column& column) { return column.name == quaternion[k]; });
+      const auto found = std::find_if(columns_.begin(), columns_.end(), [&](const ForeignColumn& column) {
+        return column.name == quaternion[k];
+      });
       quaternion_[k] = static_cast<std::size_t>(found - columns_.begin());
       turns_ = turns_ && found != columns_.end();
     }
-    turns_ = turns_ && std::none_of(columns_.begin(), columns_.end(),
-                                    [](const Column& column) { return column.name.rfind("yaw", 0) == 0; });
-    for (const Column& column : columns_) {
+    turns_ = turns_ && std::none_of(columns_.begin(), columns_.end(), [](const ForeignColumn& column) {
+               return column.name.rfind("yaw", 0) == 0;
+             });
+    for (const ForeignColumn& column : columns_) {
       if (!column.name.empty() && !is_quaternion(column)) used_.push_back(column);
       if (column.name.empty()) left_out_.push_back(column.given);
     }
     static const Fields kOfSi = {"", "s", "m", "m/s", "m/s^2", "rad", "rad/s"};
-    const bool plain = std::all_of(used_.begin(), used_.end(), [](const Column& column) {
+    const bool plain = std::all_of(used_.begin(), used_.end(), [](const ForeignColumn& column) {
       return column.unit == "ns" || std::find(kOfSi.begin(), kOfSi.end(), column.unit) != kOfSi.end();
     });
     if (!foreign || !plain) return;
-    for (Column& column : used_) column.unit.clear();
+    for (ForeignColumn& column : used_) column.unit.clear();
   }
 
   bool has_units() const {
-    return std::any_of(used_.begin(), used_.end(), [](const Column& column) { return !column.unit.empty(); });
+    return std::any_of(used_.begin(), used_.end(),
+                       [](const ForeignColumn& column) { return !column.unit.empty(); });
   }
   void set_stamps(const std::string& first, std::string unit) {
     first_stamp_ = first;
     stamp_unit_ = std::move(unit);
-    for (Column& column : used_) {
+    for (ForeignColumn& column : used_) {
       if (column.name == "t") column.unit = "";
     }
   }
@@ -261,7 +262,8 @@ class Writer {
 
   Fields header() const {
     Fields names;
-    for (const Column& column : used_) names.push_back(column.name + unit_text(column.name, column.unit));
+    for (const ForeignColumn& column : used_)
+      names.push_back(column.name + unit_text(column.name, column.unit));
     if (turns_) names.push_back("yaw" + unit_text("yaw", ""));
     return names;
   }
@@ -272,7 +274,7 @@ class Writer {
                         fmt::format("has {} fields, must have {}", fields.size(), columns_.size()));
     Fields out;
     for (std::size_t i = 0; i < fields.size(); ++i) {
-      const Column& column = columns_[i];
+      const ForeignColumn& column = columns_[i];
       if (column.name.empty() || is_quaternion(column)) continue;
       number_of(fields[i], file_, line, column.given);
       out.push_back(column.name == "t" && !stamp_unit_.empty()
@@ -284,7 +286,9 @@ class Writer {
   }
 
  private:
-  static bool is_quaternion(const Column& column) { return column.name.size() == 2 && column.name[0] == 'q'; }
+  static bool is_quaternion(const ForeignColumn& column) {
+    return column.name.size() == 2 && column.name[0] == 'q';
+  }
 
   // With units for all columns or for none.
   std::string unit_text(const std::string& name, const std::string& unit) const {
@@ -316,8 +320,8 @@ class Writer {
     return fmt::format("{:.{}f}", yaw, std::clamp<std::size_t>(decimals, 3, 9));
   }
 
-  std::vector<Column> columns_;
-  std::vector<Column> used_;
+  std::vector<ForeignColumn> columns_;
+  std::vector<ForeignColumn> used_;
   Fields left_out_;
   std::array<std::size_t, 4> quaternion_{};
   bool turns_ = true;  // the quaternion becomes a yaw
@@ -331,7 +335,7 @@ bool is_header(const Fields& fields) { return !fields.empty() && !runtime::is_nu
 bool is_polynomial(const Fields& fields) { return lower(fields.front()) == "duration"; }
 
 std::string base_of(const std::string& header) {
-  std::string name = trimmed(header.substr(0, header.find('[')));
+  std::string name = without_blanks(header.substr(0, header.find('[')));
   for (const char* const frame : {"_ned", "_enu", "_nwu", "_frd"}) {
     if (name.size() > 4 && name.compare(name.size() - 4, 4, frame) == 0) name.resize(name.size() - 4);
   }
@@ -353,8 +357,6 @@ bool is_own(const Parts& parts, const std::string& text) {
   if (!dense || text.find_first_of("#%") != std::string::npos || !is_header(first)) return false;
   return first.front() == "duration" || std::all_of(first.begin(), first.end(), is_known);
 }
-
-std::string joined(const Fields& fields) { return fmt::format("{}", fmt::join(fields, ",")); }
 
 // Names of columns, in which line they stand, and the rows below.
 struct Table {
@@ -380,7 +382,7 @@ Table table_of(const Parts& parts, const std::string& file, const std::string& c
     table.lines.erase(table.lines.begin());
   } else if (parts.comment) {
     const std::string text =
-        trimmed(parts.comment->text.substr(parts.comment->text.find_first_not_of("#%/ \t")));
+        without_blanks(parts.comment->text.substr(parts.comment->text.find_first_not_of("#%/ \t")));
     const Fields names = split(text, separator_of(text));
     if (is_header(names) && names.size() == table.rows.front().size()) {
       table.header = names;
@@ -411,8 +413,8 @@ void write(ForeignTable& out, const Table& table, const Fields& header, const st
     out.text += text + '\n';
     ++line;
   };
-  put(header_line, joined(header));
-  for (std::size_t i = 0; i < rows.size(); ++i) put(table.lines[i].number, joined(rows[i]));
+  put(header_line, runtime::joined(header, ","));
+  for (std::size_t i = 0; i < rows.size(); ++i) put(table.lines[i].number, runtime::joined(rows[i], ","));
 }
 
 }  // namespace
@@ -437,7 +439,7 @@ ForeignTable read_foreign_table(const std::string& text, const std::string& file
     write(out, table, header, table.rows);
     return out;
   }
-  std::vector<Column> named;
+  std::vector<ForeignColumn> named;
   for (const std::string& name : table.header)
     named.push_back(column_of(name, file_name, std::max(table.header_line, 1)));
   const bool foreign = std::any_of(table.header.begin(), table.header.end(),

@@ -15,7 +15,7 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr const char* kKnown =
+constexpr const char* kKnownFormats =
     "duration,x^0,... (polynomials), t,x,y,z,... (samples) or x,y,z[,yaw] (waypoints, also without a "
     "header); x may be x_ned [m]";
 
@@ -50,10 +50,10 @@ MissionFormat detect_format(std::string_view text, const std::string& file_name)
   }
   if (extension != ".csv") return MissionFormat::kYaml;
   if (fields.empty())
-    throw runtime::ConfigError(file_name, 0, "", std::string("is empty, must hold ") + kKnown);
+    throw runtime::ConfigError(file_name, 0, "", std::string("is empty, must hold ") + kKnownFormats);
   throw runtime::ConfigError(file_name, 1, "",
                              "has " + std::to_string(fields.size()) + " fields, of which the first is " +
-                                 fields.front().substr(0, 40) + "; must begin with " + kKnown);
+                                 fields.front().substr(0, 40) + "; must begin with " + kKnownFormats);
 }
 
 Source read_source(const std::string& path, const FileOptions& options) {

@@ -22,6 +22,8 @@
 
 namespace swiftlet::ground {
 
+constexpr std::size_t kMaxPoints = control::kMaxTrajectorySegments + 1;  // of a path through waypoints
+
 enum class MissionFormat { kYaml, kPolynomialCsv, kSampledCsv, kWaypointCsv, kQGroundControlPlan };
 
 // A file as the functions below read it.

@@ -25,7 +25,6 @@ constexpr double kLongestHoldS = 3600.0;
 constexpr double kLargestRadiusM = 10.0;
 constexpr double kLeastCorridorM = 1e-3;  // half width, as in control/planning/waypoint_path.hpp
 constexpr double kLargestCorridorM = 10.0;
-constexpr std::size_t kMaxPoints = control::kMaxTrajectorySegments + 1;
 
 enum class FileItem { kTakeoff, kWaypoint, kPath, kTrajectory, kSet, kWait, kLand };
 
@@ -43,10 +42,10 @@ struct Defaults {
   Yaw yaw;
 };
 
-class Reader {
+class ItemReader {
  public:
-  Reader(MissionFrame frame, const Placement& placement, double time_scale, const control::Limits& limits,
-         MissionFile& file)
+  ItemReader(MissionFrame frame, const Placement& placement, double time_scale, const control::Limits& limits,
+             MissionFile& file)
       : frame_(frame), placement_(placement), time_scale_(time_scale), limits_(limits), file_(file) {}
 
   void read(const ConfigNode& node) {
@@ -349,7 +348,7 @@ class Reader {
 
 void read_mission_items(const ConfigNode& list, MissionFrame frame, const Placement& placement,
                         double time_scale, const control::Limits& limits, MissionFile& file) {
-  Reader reader(frame, placement, time_scale, limits, file);
+  ItemReader reader(frame, placement, time_scale, limits, file);
   for (const ConfigNode& node : list.items(1, control::kMaxMissionItems)) reader.read(node);
   if (file.mission.items.empty()) list.fail("has no item to fly, must have at least one besides set");
 }

@@ -4,11 +4,12 @@
 #include <cmath>
 
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/text.hpp"
+#include "swiftlet/math/angles.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
-constexpr double kRadPerDeg = M_PI / 180.0;
 constexpr double kStandardGravity = 9.80665;  // m/s^2, one g
 
 struct Unit {
@@ -19,8 +20,8 @@ const std::vector<Unit> kSeconds = {{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"ns
 const std::vector<Unit> kMetres = {{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}};
 const std::vector<Unit> kSpeeds = {{"m/s", 1.0}, {"cm/s", 1e-2}};
 const std::vector<Unit> kAccelerations = {{"m/s^2", 1.0}, {"m/s2", 1.0}, {"g", kStandardGravity}};
-const std::vector<Unit> kAngles = {{"rad", 1.0}, {"deg", kRadPerDeg}};
-const std::vector<Unit> kRates = {{"rad/s", 1.0}, {"deg/s", kRadPerDeg}};
+const std::vector<Unit> kAngles = {{"rad", 1.0}, {"deg", math::kRadPerDeg}};
+const std::vector<Unit> kRates = {{"rad/s", 1.0}, {"deg/s", math::kRadPerDeg}};
 
 enum class Axes { kNone, kWorld, kBody };
 
@@ -30,34 +31,29 @@ struct Known {
   Axes axes;                       // what the ending of the name may say
 };
 // Indexed by Motion.
-const std::array<Known, 18> kKnown = {{{"t", &kSeconds, Axes::kNone},
-                                       {"x", &kMetres, Axes::kWorld},
-                                       {"y", &kMetres, Axes::kWorld},
-                                       {"z", &kMetres, Axes::kWorld},
-                                       {"vx", &kSpeeds, Axes::kWorld},
-                                       {"vy", &kSpeeds, Axes::kWorld},
-                                       {"vz", &kSpeeds, Axes::kWorld},
-                                       {"ax", &kAccelerations, Axes::kWorld},
-                                       {"ay", &kAccelerations, Axes::kWorld},
-                                       {"az", &kAccelerations, Axes::kWorld},
-                                       {"yaw", &kAngles, Axes::kWorld},
-                                       {"yaw_rate", &kRates, Axes::kWorld},
-                                       {"roll", &kAngles, Axes::kNone},
-                                       {"pitch", &kAngles, Axes::kNone},
-                                       {"p", &kRates, Axes::kBody},
-                                       {"q", &kRates, Axes::kBody},
-                                       {"r", &kRates, Axes::kBody},
-                                       {"thrust", &kAccelerations, Axes::kNone}}};
+const std::array<Known, 18> kKnownColumns = {{{"t", &kSeconds, Axes::kNone},
+                                              {"x", &kMetres, Axes::kWorld},
+                                              {"y", &kMetres, Axes::kWorld},
+                                              {"z", &kMetres, Axes::kWorld},
+                                              {"vx", &kSpeeds, Axes::kWorld},
+                                              {"vy", &kSpeeds, Axes::kWorld},
+                                              {"vz", &kSpeeds, Axes::kWorld},
+                                              {"ax", &kAccelerations, Axes::kWorld},
+                                              {"ay", &kAccelerations, Axes::kWorld},
+                                              {"az", &kAccelerations, Axes::kWorld},
+                                              {"yaw", &kAngles, Axes::kWorld},
+                                              {"yaw_rate", &kRates, Axes::kWorld},
+                                              {"roll", &kAngles, Axes::kNone},
+                                              {"pitch", &kAngles, Axes::kNone},
+                                              {"p", &kRates, Axes::kBody},
+                                              {"q", &kRates, Axes::kBody},
+                                              {"r", &kRates, Axes::kBody},
+                                              {"thrust", &kAccelerations, Axes::kNone}}};
 
-const Known& known(Motion column) { return kKnown[static_cast<std::size_t>(column)]; }
+const Known& known(Motion column) { return kKnownColumns[static_cast<std::size_t>(column)]; }
 
 [[noreturn]] void refuse(const std::string& file, const std::string& message) {
   throw runtime::ConfigError(file, 1, "header", message);
-}
-
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
 bool ends_with(const std::string& text, const std::string& ending) {
@@ -75,8 +71,8 @@ Declaration declaration_of(const std::string& header) {
   Declaration out;
   const std::size_t open = header.find('[');
   if (open != std::string::npos && header.back() == ']')
-    out.unit = trimmed(header.substr(open + 1, header.size() - open - 2));
-  out.name = trimmed(header.substr(0, open));
+    out.unit = runtime::trimmed(header.substr(open + 1, header.size() - open - 2));
+  out.name = runtime::trimmed(header.substr(0, open));
   for (const char* axes : {"_ned", "_enu", "_nwu", "_frd"}) {
     if (!ends_with(out.name, axes)) continue;
     out.axes = axes;
@@ -99,8 +95,8 @@ std::string full_header_of(const Known& column) {
 
 std::string all_headers() {
   std::string text;
-  for (std::size_t i = 0; i < kKnown.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == kKnown.size() ? " or " : ", ") + full_header_of(kKnown[i]);
+  for (std::size_t i = 0; i < kKnownColumns.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == kKnownColumns.size() ? " or " : ", ") + full_header_of(kKnownColumns[i]);
   return text;
 }
 
@@ -137,11 +133,12 @@ MotionColumns::MotionColumns(const std::vector<std::string>& header, const std::
 
 void MotionColumns::read(const std::string& header, const std::string& file_name) {
   const Declaration declared = declaration_of(header);
-  const auto found = std::find_if(kKnown.begin(), kKnown.end(), [&](const Known& candidate) {
+  const auto found = std::find_if(kKnownColumns.begin(), kKnownColumns.end(), [&](const Known& candidate) {
     return declared.name == candidate.name && may_end_in(candidate, declared.axes);
   });
-  if (found == kKnown.end()) refuse(file_name, "has the column " + header + ", must be " + all_headers());
-  const auto column = static_cast<Motion>(found - kKnown.begin());
+  if (found == kKnownColumns.end())
+    refuse(file_name, "has the column " + header + ", must be " + all_headers());
+  const auto column = static_cast<Motion>(found - kKnownColumns.begin());
   if (has(column)) refuse(file_name, "has the column " + declared.name + " twice, must have it once");
   const std::vector<Unit>& units = *found->units;
   const std::string unit = declared.unit.value_or(units.front().name);

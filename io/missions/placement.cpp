@@ -4,10 +4,10 @@
 
 #include <fmt/core.h>
 
+#include "swiftlet/math/angles.hpp"
+
 namespace swiftlet::ground {
 namespace {
-
-constexpr double kRadPerDeg = M_PI / 180.0;
 
 // Cosine and sine, exact for multiples of 90 deg: a fence stays where it is.
 Eigen::Vector2d direction(double angle_deg) {
@@ -17,7 +17,7 @@ Eigen::Vector2d direction(double angle_deg) {
     const int turn = (quarter + 4) % 4;
     return {turn == 0 ? 1.0 : turn == 2 ? -1.0 : 0.0, turn == 1 ? 1.0 : turn == 3 ? -1.0 : 0.0};
   }
-  return {std::cos(angle_deg * kRadPerDeg), std::sin(angle_deg * kRadPerDeg)};
+  return {std::cos(angle_deg * math::kRadPerDeg), std::sin(angle_deg * math::kRadPerDeg)};
 }
 
 }  // namespace
@@ -33,7 +33,7 @@ Eigen::Vector3d Placement::position(const Eigen::Vector3d& position_ned) const {
                                       north.y() * scaled.x() + north.x() * scaled.y(), scaled.z());
 }
 
-double Placement::yaw(double yaw_rad) const { return yaw_rad + rotate_deg * kRadPerDeg; }
+double Placement::yaw(double yaw_rad) const { return yaw_rad + rotate_deg * math::kRadPerDeg; }
 
 control::PolynomialSegment Placement::segment(const control::PolynomialSegment& segment_ned) const {
   const Eigen::Vector2d north = direction(rotate_deg);

@@ -21,7 +21,7 @@ using control::MissionItem;
 using control::MissionItemKind;
 using runtime::ConfigNode;
 
-constexpr double kTolerance_m = 0.1;
+constexpr double kHomeTolerance_m = 0.1;
 constexpr double kLongestHold_s = 3600.0;
 constexpr double kSamePlace_m = 0.01;
 constexpr double kTakeoffPlace_m = 1.0;  // largest distance of the take-off item from home
@@ -88,7 +88,7 @@ class PlanReader {
     complete();
     MissionFile file;
     file.name = std::filesystem::path(file_name).stem().string();
-    file.tolerance_m = kTolerance_m;
+    file.tolerance_m = kHomeTolerance_m;
     file.mission.items = std::move(items_);
     file.assumptions = assumptions();
     return file;

@@ -66,7 +66,7 @@ const Form& form_of(const std::string& file, const MotionColumns& columns) {
   return *form;
 }
 
-double number_of(const std::string& text, const std::string& file, int line, const std::string& column) {
+double finite_number(const std::string& text, const std::string& file, int line, const std::string& column) {
   const auto number = runtime::parse_number(text);
   if (!number) throw ConfigError(file, line, column, "is '" + text + "', must be a finite number");
   return *number;
@@ -132,7 +132,7 @@ std::optional<TimedSetpoint> SetpointRows::read(const std::string& line) {
   }
   std::vector<double> row;
   for (std::size_t i = 0; i < fields.size(); ++i)
-    row.push_back(number_of(fields[i], file_, line_, names_[i]));
+    row.push_back(finite_number(fields[i], file_, line_, names_[i]));
   return setpoint(row, line_);
 }
 

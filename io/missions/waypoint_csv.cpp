@@ -13,8 +13,6 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::size_t kMaxPoints = control::kMaxTrajectorySegments + 1;
-
 control::WaypointPath read(const runtime::CsvTable& table, const MotionColumns& columns) {
   control::WaypointPath path;
   for (std::size_t row = 0; row < table.row_count(); ++row) {

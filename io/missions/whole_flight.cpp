@@ -14,7 +14,7 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr double kTolerance_m = 0.1;  // of the tracking error, as in config/missions
+constexpr double kTrackingTolerance_m = 0.1;  // of the tracking error, as in config/missions
 
 control::Polynomial negative(control::Polynomial polynomial) {
   for (double& c : polynomial) c = -c;
@@ -127,7 +127,7 @@ MissionFile whole_flight(const std::string& file_name, TrajectoryFile path, cons
   const double speed = std::min(kApproachSpeed, limits.max_speed);
   MissionFile file;
   file.name = std::filesystem::path(file_name).stem().string();
-  file.tolerance_m = kTolerance_m;
+  file.tolerance_m = kTrackingTolerance_m;
   file.mission.items = {{MissionItemKind::kTakeoff, {0.0, 0.0, segments.front().z[0]}, 0.0, true, speed, 0.5},
                         {MissionItemKind::kTrajectory, Eigen::Vector3d::Zero(), 0.0, false, speed, 0.5, 0,
                          static_cast<std::uint32_t>(segments.size())},

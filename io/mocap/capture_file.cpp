@@ -6,6 +6,7 @@
 
 #include "swiftlet/io/byte_reader.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/math/time.hpp"
 
 namespace swiftlet::mocap {
 namespace {
@@ -29,8 +30,6 @@ constexpr std::uint8_t kUdp = 17;
 constexpr std::size_t kUdpHeader = 8;
 
 enum LinkType : std::uint32_t { kNull = 0, kEthernet = 1, kRaw = 101, kLinuxCooked = 113, kIpv4Raw = 228 };
-
-constexpr std::int64_t kSecondNs = 1'000'000'000;
 
 // Leaves the reader at the IPv4 header; false: the packet is none of IPv4.
 bool skip_link_header(ByteReader& in, std::uint32_t link_type) {
@@ -104,7 +103,7 @@ std::vector<CapturedDatagram> parse_pcap(ByteReader in, const std::string& file,
     in.skip(4);
     const ByteReader packet = in.part(bytes);
     if (!in.ok()) throw ConfigError(file, 0, "", "ends within a packet");
-    add(datagrams, packet, link_type, seconds * kSecondNs + ticks * tick_ns);
+    add(datagrams, packet, link_type, seconds * math::kSecond_ns + ticks * tick_ns);
   }
   return datagrams;
 }

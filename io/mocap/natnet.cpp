@@ -8,9 +8,9 @@ namespace {
 
 using runtime::ByteReader;
 
-constexpr std::size_t kNameBytes = 256;      // of the application, in messages of fixed size
-constexpr std::size_t kPositionBytes = 12;   // three floats
-constexpr std::size_t kBodyBytes = 38;       // of a rigid body in a frame: number, pose, error, flags
+constexpr std::size_t kApplicationNameBytes = 256;  // of the application, in messages of fixed size
+constexpr std::size_t kPositionBytes = 12;          // three floats
+constexpr std::size_t kBodyBytes = 38;              // of a rigid body in a frame: number, pose, error, flags
 constexpr std::size_t kMarkerBytes = 26;     // of a labelled marker: number, position, size, flags, residual
 constexpr std::size_t kMostModels = 10'000;  // definitions of all kinds
 constexpr std::size_t kMostPadding = 4;      // bytes behind the last definition
@@ -297,7 +297,7 @@ Datagram message(MessageId id, const Datagram& payload) {
 Datagram introduction(MessageId id, Version wanted) {
   const std::string name = "swiftlet";
   Datagram payload(name.begin(), name.end());
-  payload.resize(kNameBytes);
+  payload.resize(kApplicationNameBytes);
   const auto put_version = [&](Version version) {
     payload.push_back(static_cast<std::uint8_t>(version.major));
     payload.push_back(static_cast<std::uint8_t>(version.minor));
@@ -323,7 +323,7 @@ std::optional<Message> parse_message(const std::uint8_t* data, std::size_t size)
 }
 
 const char* parse_server_info(ByteReader payload, ServerInfo& info) {
-  info.application = std::string(payload.text_field(kNameBytes));
+  info.application = std::string(payload.text_field(kApplicationNameBytes));
   info.application_version = read_version(payload);
   info.version = read_version(payload);
   if (!payload.ok()) return "the server's description ends too early";

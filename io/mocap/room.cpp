@@ -1,5 +1,6 @@
 #include "swiftlet/io/mocap/room.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "swiftlet/io/config.hpp"
@@ -11,7 +12,6 @@ namespace {
 
 using runtime::ConfigNode;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kFurthestOriginM = 1000.0;
 
 VehicleBody read_vehicle(const std::string& name, const ConfigNode& node) {
@@ -25,8 +25,8 @@ VehicleBody read_vehicle(const std::string& name, const ConfigNode& node) {
   if (const auto arm = node.find("lever_arm_frd_m"))
     vehicle.lever_arm_frd = arm->vector3(runtime::between(-kLongestLeverArmM, kLongestLeverArmM));
   if (const auto turn = node.find("misalignment_rad")) {
-    vehicle.misalignment = turn->vector3(runtime::between(-kPi, kPi));
-    if (vehicle.misalignment.norm() > kPi)
+    vehicle.misalignment = turn->vector3(runtime::between(-M_PI, M_PI));
+    if (vehicle.misalignment.norm() > M_PI)
       turn->fail("is longer than pi, must be a rotation vector of at most pi");
   }
   return vehicle;
@@ -66,7 +66,8 @@ Room read_room(const ConfigNode& root) {
   room.axes = root.at("frame").choice<Axes>({{"zup", Axes::kZUp}, {"yup", Axes::kYUp}});
   if (const auto origin = root.find("origin_m"))
     room.origin = origin->vector3(runtime::between(-kFurthestOriginM, kFurthestOriginM));
-  if (const auto north = root.find("north_rad")) room.north_rad = north->number(runtime::between(-kPi, kPi));
+  if (const auto north = root.find("north_rad"))
+    room.north_rad = north->number(runtime::between(-M_PI, M_PI));
   if (const auto latency = root.find("latency_s"))
     room.latency_s = latency->number(runtime::between(0.0, kLongestLatencyS));
   const ConfigNode vehicles = root.at("vehicles");

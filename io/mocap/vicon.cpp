@@ -7,8 +7,8 @@ namespace {
 
 using runtime::ByteReader;
 
-constexpr std::size_t kNameBytes = 24;
-constexpr std::size_t kContentBytes = kNameBytes + 6 * 8;
+constexpr std::size_t kSubjectNameBytes = 24;
+constexpr std::size_t kContentBytes = kSubjectNameBytes + 6 * 8;
 constexpr std::uint8_t kObject = 0;  // kind of an item
 constexpr double kLargestMm = 1e6;
 constexpr double kLargestAngle = 1e3;  // rad
@@ -22,7 +22,7 @@ Eigen::Vector3d read_vector(ByteReader& in) {
 
 Object read_object(ByteReader in) {
   Object object;
-  object.name = std::string(in.text_field(kNameBytes));
+  object.name = std::string(in.text_field(kSubjectNameBytes));
   const Eigen::Vector3d position_mm = read_vector(in);
   const Eigen::Vector3d angles = read_vector(in);
   const bool is_zero = position_mm.isZero(0.0) && angles.isZero(0.0);

@@ -18,13 +18,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kAuthorityDays = 3650;
-constexpr std::size_t kLargestFile = 1 << 20;  // bytes
+constexpr std::size_t kLargestSecurityFile = 1 << 20;  // bytes
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& why) {
   throw std::runtime_error(file.string() + " " + why);
 }
 
-std::string read(const fs::path& file) { return read_text_file(file, kLargestFile); }
+std::string read(const fs::path& file) { return read_text_file(file, kLargestSecurityFile); }
 
 bool is_there(const fs::path& file) {
   std::error_code fault;

@@ -133,7 +133,7 @@ control::DetectorSettings read_detectors(const ConfigNode& node) {
   return detectors;
 }
 
-control::OdometrySettings read_odometry(const ConfigNode& node) {
+control::OdometrySettings read_odometry_use(const ConfigNode& node) {
   control::OdometrySettings odometry;
   odometry.use = node.at("estimate")
                      .choice<control::OdometryUse>({{"mocap", control::OdometryUse::kMocap},
@@ -164,7 +164,7 @@ control::EstimatorSettings read_estimator(const ConfigNode& node) {
   estimator.max_body_rate = node.at("max_body_rate_rad_s").number();
   estimator.start_speed = node.at("start_speed_m_s").number();
   estimator.rotor_speed_bandwidth = node.at("rotor_speed_bandwidth_rad_s").number();
-  if (const auto odometry = node.find("odometry")) estimator.odometry = read_odometry(*odometry);
+  if (const auto odometry = node.find("odometry")) estimator.odometry = read_odometry_use(*odometry);
   estimator.detectors = read_detectors(node.at("detectors"));
   return estimator;
 }

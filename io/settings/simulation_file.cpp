@@ -122,7 +122,7 @@ plant::GpsSettings read_gps(const ConfigNode& node) {
   return gps;
 }
 
-plant::OdometrySettings read_odometry(const ConfigNode& node) {
+plant::OdometrySettings read_odometry_drift(const ConfigNode& node) {
   plant::OdometrySettings odometry;
   odometry.position_drift_m = node.at("position_drift_m").number();
   odometry.heading_drift_rad = node.at("heading_drift_rad").number();
@@ -215,7 +215,7 @@ plant::SimulationSettings parse_simulation_settings(std::string_view text, const
     settings.barometer = read_barometer(root.at("barometer"));
     settings.magnetometer = read_magnetometer(root.at("magnetometer"));
     settings.gps = read_gps(root.at("gps"));
-    if (const auto odometry = root.find("odometry")) settings.odometry = read_odometry(*odometry);
+    if (const auto odometry = root.find("odometry")) settings.odometry = read_odometry_drift(*odometry);
     settings.faults = read_faults(root);
   });
   reject_violations(root, plant::validate(settings));

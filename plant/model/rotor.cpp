@@ -1,14 +1,14 @@
 #include "swiftlet/plant/model/rotor.hpp"
 
+#include <cmath>
+
 namespace swiftlet::plant {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 // rho A r^2 of Eq. (23), kg m.
 double thrust_scale(double radius_m, double air_density) {
-  return air_density * kPi * radius_m * radius_m * radius_m * radius_m;
+  return air_density * M_PI * radius_m * radius_m * radius_m * radius_m;
 }
 
 }  // namespace

@@ -2,15 +2,12 @@
 
 #include <cmath>
 
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/plant/simulation/streams.hpp"
 
 namespace swiftlet::plant {
 
 namespace {
-
-std::int64_t nanoseconds(double seconds) {
-  return std::llround(seconds * static_cast<double>(kNanosecondsPerSecond));
-}
 
 // Unit quaternion of a small rotation vector, rad. The error is below |v|^3 / 12.
 Eigen::Quaterniond small_rotation(const Eigen::Vector3d& vector) {
@@ -24,7 +21,7 @@ Eigen::Quaterniond small_rotation(const Eigen::Vector3d& vector) {
 Mocap::Mocap(const MocapSettings& settings, std::uint64_t seed)
     : settings_(settings),
       schedule_(settings, seed),
-      dropout_length_ns_(nanoseconds(settings.dropout_length_s)),
+      dropout_length_ns_(math::nanoseconds(settings.dropout_length_s)),
       misalignment_(small_rotation(settings.misalignment_rad *
                                    RandomStream(seed, streams::kMocapMisalignment).on_unit_sphere())),
       position_noise_(seed, streams::kMocapPosition),

@@ -3,19 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/plant/simulation/streams.hpp"
 
 namespace swiftlet::plant {
 
 namespace {
 
-std::int64_t nanoseconds(double seconds) {
-  return std::llround(seconds * static_cast<double>(kNanosecondsPerSecond));
-}
-
 std::int64_t shortest_interval_ns(const MocapSettings& settings) {
   const bool bounded = settings.model == MocapModel::kBounded;
-  return bounded ? period_ns(settings.rate_hz) : nanoseconds(settings.interval_quantiles_s.front());
+  return bounded ? period_ns(settings.rate_hz) : math::nanoseconds(settings.interval_quantiles_s.front());
 }
 
 }  // namespace
@@ -23,7 +20,7 @@ std::int64_t shortest_interval_ns(const MocapSettings& settings) {
 MocapSchedule::MocapSchedule(const MocapSettings& settings, std::uint64_t seed)
     : settings_(settings),
       seed_(seed),
-      latency_ns_(nanoseconds(settings.latency_s)),
+      latency_ns_(math::nanoseconds(settings.latency_s)),
       intervals_(seed, streams::kMocapIntervals),
       in_flight_(static_cast<std::size_t>(latency_ns_ / shortest_interval_ns(settings) + 2)) {}
 
@@ -65,7 +62,7 @@ std::int64_t MocapSchedule::interval_ns() {
   std::size_t i = 1;
   while (i + 1 < quantiles.size() && drawn >= probabilities[i]) ++i;
   const double part = (drawn - probabilities[i - 1]) / (probabilities[i] - probabilities[i - 1]);
-  return nanoseconds(quantiles[i - 1] + part * (quantiles[i] - quantiles[i - 1]));
+  return math::nanoseconds(quantiles[i - 1] + part * (quantiles[i] - quantiles[i - 1]));
 }
 
 }  // namespace swiftlet::plant

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/plant/model/battery.hpp"
 
 namespace swiftlet::plant {
@@ -24,20 +25,16 @@ Supply supply_of(const Vehicle& vehicle, const SupplySettings& settings) {
              : Supply::battery();
 }
 
-double seconds(std::int64_t nanoseconds) {
-  return static_cast<double>(nanoseconds) / static_cast<double>(kNanosecondsPerSecond);
-}
-
 }  // namespace
 
 PlantSimulation::PlantSimulation(const Vehicle& vehicle, const SimulationSettings& settings,
                                  std::uint64_t seed, const VehicleState& initial)
     : dynamics_(with_drag(vehicle, settings), supply_of(vehicle, settings.supply), rotor_air_of(settings)),
       ground_(vehicle, settings.ground),
-      air_(settings.air, seconds(settings.step_ns), seed),
+      air_(settings.air, static_cast<double>(settings.step_ns) / math::kNsPerS, seed),
       imu_(settings.imu, seed),
       step_ns_(settings.step_ns),
-      step_s_(seconds(settings.step_ns)),
+      step_s_(static_cast<double>(settings.step_ns) / math::kNsPerS),
       rotor_count_(vehicle.rotor_count()),
       faults_(settings.faults),
       fault_change_ns_(faults_.next_change_ns(-1)),

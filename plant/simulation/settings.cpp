@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/plant/simulation/wind_model.hpp"
 
 namespace swiftlet::plant {
@@ -66,7 +67,7 @@ void check_navigation_sensors(const SimulationSettings& settings, RuleChecker& c
 }  // namespace
 
 std::int64_t period_ns(double rate_hz) {
-  return rate_hz > 0.0 ? std::llround(static_cast<double>(kNanosecondsPerSecond) / rate_hz) : 0;
+  return rate_hz > 0.0 ? std::llround(static_cast<double>(math::kSecond_ns) / rate_hz) : 0;
 }
 
 std::vector<Violation> validate(const SimulationSettings& settings) {

@@ -16,8 +16,6 @@
 
 namespace swiftlet::plant {
 
-constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
-
 // Noise densities are those of data sheets; a sample's standard deviation is density * sqrt(rate).
 struct ImuSettings {
   double rate_hz = 500.0;                        // 1 s / rate must be a whole number of integration steps

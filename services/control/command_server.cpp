@@ -99,7 +99,7 @@ CommandServer::CommandServer(InnerLoop& loop, const plant::Vehicle& vehicle,
 void CommandServer::on_command(const comms::msg::Command& message) {
   if (!active()) return;
   const Key key{message.client(), message.id()};
-  if (is_known(key)) return;
+  if (!claim(key)) return;
   auto pending = std::make_unique<PendingRequest>();
   const comms::Fault fault = comms::from_message(message, pending->request);
   if (fault) return refuse(key, static_cast<control::RequestKind>(message.kind()), refusal(fault));
@@ -110,15 +110,11 @@ void CommandServer::on_command(const comms::msg::Command& message) {
 void CommandServer::on_mission(const comms::msg::Mission& message) {
   if (!active()) return on_flown_mission(message);
   const Key key{message.client(), message.id()};
-  if (is_known(key)) return;
+  if (!claim(key)) return;
   auto pending = std::make_unique<PendingRequest>();
   pending->mission = std::make_unique<control::Mission>();
   control::Outcome outcome = read(message, limits_, *pending->mission);
   if (outcome.accepted) outcome = check_rotors("the mission", pending->mission->segments);
-  if (outcome.accepted && is_of_another(message)) {
-    outcome = control::refuse("mission id %llu belongs to another mission: upload with a new id",
-                              static_cast<unsigned long long>(message.id()));
-  }
   if (!outcome.accepted) return refuse(key, control::RequestKind::kMissionUpload, outcome);
   std::tie(pending->client, pending->id) = key;
   pending->request.kind = control::RequestKind::kMissionUpload;
@@ -134,7 +130,7 @@ control::Outcome CommandServer::check_rotors(const char* what,
 void CommandServer::on_trajectory(const comms::msg::Trajectory& message) {
   if (!active()) return on_flown_trajectory(message);
   const Key key{message.client(), message.id()};
-  if (is_known(key)) return;
+  if (!claim(key)) return;
   auto pending = std::make_unique<PendingRequest>();
   pending->trajectory = std::make_unique<control::Trajectory>();
   control::Outcome outcome = read(message, limits_, *pending->trajectory);
@@ -149,7 +145,7 @@ void CommandServer::on_trajectory(const comms::msg::Trajectory& message) {
 void CommandServer::on_control_settings(const comms::msg::ControlSettings& message) {
   if (!active()) return;
   const Key key{message.client(), message.id()};
-  if (is_known(key)) return;
+  if (!claim(key)) return;
   control::SettingsRequest asked;
   control::ControlGains in_force;
   {
@@ -173,13 +169,14 @@ void CommandServer::set_gains_in_force(const control::ControlGains& gains) {
   gains_in_force_ = gains;
 }
 
-// True if a stored mission has the same id but different contents. The same contents are the same upload,
-// repeated.
-bool CommandServer::is_of_another(const comms::msg::Mission& message) {
-  comms::msg::Mission known = mission(message.id());
-  if (known.id() != message.id()) return false;
-  known.client(message.client());
-  return known != message;
+// True if a stored or pending mission has the same id but different contents. The same contents are the same upload,
+// repeated. Call with mutex_ held.
+bool CommandServer::is_of_another(const control::Mission& mission) const {
+  const control::Mission* known = missions_.find(mission.id);
+  for (const auto& [key, pending] : pending_) {
+    if (pending->mission && pending->mission->id == mission.id) known = pending->mission.get();
+  }
+  return known != nullptr && comms::to_message(*known) != comms::to_message(mission);
 }
 
 // A mission may arrive on two topics, `mission` and `flown_mission`, and repeatedly on each.
@@ -191,7 +188,7 @@ void CommandServer::on_flown_mission(const comms::msg::Mission& message) {
   auto mission = std::make_unique<control::Mission>();
   if (!read(message, limits_, *mission).accepted) return;
   const std::lock_guard<std::mutex> lock(mutex_);
-  missions_.put(std::move(mission));
+  if (missions_.find(message.id()) == nullptr) missions_.put(std::move(mission));
 }
 
 void CommandServer::on_flown_trajectory(const comms::msg::Trajectory& message) {
@@ -202,7 +199,7 @@ void CommandServer::on_flown_trajectory(const comms::msg::Trajectory& message) {
   auto trajectory = std::make_unique<control::Trajectory>();
   if (!read(message, limits_, *trajectory).accepted) return;
   const std::lock_guard<std::mutex> lock(mutex_);
-  trajectories_.put(std::move(trajectory));
+  if (trajectories_.find(message.id()) == nullptr) trajectories_.put(std::move(trajectory));
 }
 
 void CommandServer::follow(FailoverState failover_state) {
@@ -237,19 +234,20 @@ comms::msg::Trajectory CommandServer::trajectory(std::uint64_t id) {
   return trajectory != nullptr ? comms::to_message(*trajectory) : comms::msg::Trajectory();
 }
 
-bool CommandServer::is_known(const Key& key) {
+bool CommandServer::claim(const Key& key) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto given = answers_.find(key);
-  if (given == answers_.end()) return pending_.count(key) > 0;
+  if (given == answers_.end()) return pending_.count(key) == 0 && checked_.insert(key).second;
   outbox_.push_back(given->second);
   outbox_.back().repeated = true;
   wake_.post();
-  return true;
+  return false;
 }
 
 void CommandServer::submit(std::unique_ptr<PendingRequest> pending) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const Key key{pending->client, pending->id};
+  checked_.erase(key);
   const bool stops = pending->request.kind == control::RequestKind::kStop;
   if (!stops && pending_.size() >= kMostOtherRequests) {
     return settle(key, pending->request.kind,
@@ -257,10 +255,15 @@ void CommandServer::submit(std::unique_ptr<PendingRequest> pending) {
   }
   if (pending_.size() >= kMaxPendingRequests)  // the last one of them is a stop
     return settle(key, pending->request.kind, accept_with("another stop request is pending"));
+  if (pending->mission && is_of_another(*pending->mission)) {
+    return settle(key, pending->request.kind,
+                  control::refuse("mission id %llu belongs to another mission: upload with a new id",
+                                  static_cast<unsigned long long>(pending->mission->id)));
+  }
   pending->request.key = {pending->client, pending->id};
   pending->asked_ns = runtime::monotonic_ns();
   loop_.requests.push(pending.get());  // always fits: at most kMaxPendingRequests
-  pending_[key] = std::move(pending);
+  pending_.emplace(key, std::move(pending));
   if (stops) wake_.post();
 }
 
@@ -287,6 +290,7 @@ std::optional<control::RequestKey> CommandServer::accept_overdue_stop(double imu
 
 void CommandServer::refuse(const Key& key, control::RequestKind kind, const control::Outcome& outcome) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  checked_.erase(key);
   settle(key, kind, outcome);
 }
 
@@ -301,8 +305,7 @@ void CommandServer::settle(const Key& key, control::RequestKind kind, const cont
 
 // Call with mutex_ held.
 void CommandServer::keep_answer(const Key& key, const RequestResult& answer) {
-  answers_[key] = answer;
-  oldest_.push_back(key);
+  if (answers_.insert_or_assign(key, answer).second) oldest_.push_back(key);
   if (oldest_.size() <= kRememberedAnswers) return;
   answers_.erase(oldest_.front());
   oldest_.pop_front();

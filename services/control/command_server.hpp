@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -33,8 +34,8 @@ struct RequestResult {
   std::int64_t stamp_ns = 0;  // if accepted: as in CommandAck
 };
 
-// Identifies requests by client and id. A request that was answered gets the same answer again and is not
-// applied twice. A repeated request that is still pending is ignored.
+// Identifies requests by client and id, of all kinds. A request that was answered gets the same answer again and is not
+// applied twice. One that is repeated while it is being checked or pending is ignored.
 class CommandServer {
  public:
   // Posts `wake` when collect() has something to return.
@@ -80,8 +81,10 @@ class CommandServer {
  private:
   using Key = std::pair<std::uint64_t, std::uint64_t>;  // client, id
 
-  bool is_known(const Key& key);
-  bool is_of_another(const comms::msg::Mission& message);
+  // True for the first request with this key: the caller checks it, then calls submit() or refuse(). Else repeats the
+  // answer, if there is one.
+  bool claim(const Key& key);
+  bool is_of_another(const control::Mission& mission) const;
   // Refuses paths that the rotors cannot fly.
   control::Outcome check_rotors(const char* what,
                                 const std::vector<control::PolynomialSegment>& segments) const;
@@ -100,8 +103,9 @@ class CommandServer {
   const GainDesigner designer_;
   runtime::Semaphore& wake_;
 
-  std::mutex mutex_;  // guards all members below; held briefly
-  std::map<Key, std::unique_ptr<PendingRequest>> pending_;
+  std::mutex mutex_;                                        // guards all members below; held briefly
+  std::set<Key> checked_;                                   // between claim() and submit() or refuse()
+  std::map<Key, std::unique_ptr<PendingRequest>> pending_;  // the inner loop points to them
   std::map<Key, RequestResult> answers_;
   std::deque<Key> oldest_;  // keys of answers_, oldest first
   std::vector<RequestResult> outbox_;

@@ -5,8 +5,7 @@
 #include <random>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
@@ -90,7 +89,9 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
                                    topics::kMocapPose,
                                    [this, take_pose](const auto& message) {
                                      pose_thread_.enter(realtime_);
-                                     if (message.sequence_number() > 0) note(pose_arrivals_, message);
+                                     // 0: a heartbeat of motion capture in lockstep, which is no pose
+                                     if (message.sequence_number() == 0) return;
+                                     note(pose_arrivals_, message);
                                      take_pose(message);
                                    },
                                    delivery, comms::kSourceSilence)});
@@ -118,22 +119,18 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
   subscriptions_.push_back(node.subscribe<msg::Command>(
       topics::kCommand, [this](const auto& message) { command_server_.on_command(message); }));
   subscriptions_.push_back(node.subscribe<msg::Mission>(
-      topics::kMission, [this](const auto& message) { command_server_.on_mission(message); },
-      Delivery::kOwnThread));
+      topics::kMission, deliver_to_worker(&CommandServer::on_mission), Delivery::kOwnThread));
   subscriptions_.push_back(node.subscribe<msg::Trajectory>(
-      topics::kTrajectory, [this](const auto& message) { command_server_.on_trajectory(message); },
-      Delivery::kOwnThread));
-  // The gains are designed in this subscription's thread, beside the inner loop's.
+      topics::kTrajectory, deliver_to_worker(&CommandServer::on_trajectory), Delivery::kOwnThread));
   subscriptions_.push_back(node.subscribe<msg::ControlSettings>(
-      topics::kControlSettings, [this](const auto& message) { command_server_.on_control_settings(message); },
+      topics::kControlSettings, deliver_to_worker(&CommandServer::on_control_settings),
       Delivery::kOwnThread));
   if (clock == runtime::Clock::kRealtime) {
     subscriptions_.push_back(node.subscribe<msg::Mission>(
-        topics::kFlownMission, [this](const auto& message) { command_server_.on_flown_mission(message); },
-        Delivery::kOwnThread));
+        topics::kFlownMission, deliver_to_worker(&CommandServer::on_flown_mission), Delivery::kOwnThread));
     subscriptions_.push_back(node.subscribe<msg::Trajectory>(
-        topics::kFlownTrajectory,
-        [this](const auto& message) { command_server_.on_flown_trajectory(message); }, Delivery::kOwnThread));
+        topics::kFlownTrajectory, deliver_to_worker(&CommandServer::on_flown_trajectory),
+        Delivery::kOwnThread));
     subscriptions_.push_back(node.subscribe<msg::ControllerState>(
         topics::kControllerState, [this](const auto& message) { on_controller_state(message); },
         Delivery::kOwnThread));
@@ -179,7 +176,14 @@ std::function<void(const Message&)> ControlService::deliver(runtime::LatestValue
   };
 }
 
-// Sequence 0, motion capture's heartbeat before its first frame, is never new.
+template <class Message>
+std::function<void(const Message&)> ControlService::deliver_to_worker(
+    void (CommandServer::*take)(const Message&)) {
+  return [this, take](const Message& message) {
+    worker_.post([this, take, message] { (command_server_.*take)(message); });
+  };
+}
+
 template <class Message, class Sample>
 std::function<void(const Message&)> ControlService::deliver_in_lockstep(runtime::LatestValue<Sample>& latest,
                                                                         comms::ThrottledWarning& faults,
@@ -192,10 +196,18 @@ std::function<void(const Message&)> ControlService::deliver_in_lockstep(runtime:
   };
 }
 
-// The hot path: from the sample to its command.
+// The hot path: from the sample to its command. A plant in lockstep repeats a sample while its time stands still: the
+// pending requests are answered, and the same command is published again.
 void ControlService::on_sample(const VehicleSample& sample) {
   imu_thread_.enter(realtime_);
-  answer(sample, take_role(sample));
+  const bool repeated = sample.stamp_ns() == answered_.stamp_ns && sample.sequence() == answered_.sequence;
+  if (!repeated) {
+    answered_ = {sample.stamp_ns(), sample.sequence()};
+    return answer(sample, take_role(sample));
+  }
+  loop_.answer_requests();
+  if (failover_.role() == Role::kActive && !loop_.detecting_airborne()) commands_.publish(last_answer_);
+  if (loop_.finish(runtime::monotonic_ns(), failover_.loop_delay().figures())) wake_.post();
 }
 
 // The inner loop uses the other controllers' states from the next IMU sample on.
@@ -298,7 +310,7 @@ void ControlService::run(const std::atomic<bool>& stop) {
     adopt_levels();
     update_strength();
     Takeover takeover;
-    if (takeover_.take(takeover)) spdlog::warn("{}", to_string(takeover));
+    if (takeover_.take(takeover)) runtime::log_warning("{}", to_string(takeover));
     const StreamAges ages = stream_ages();
     publish_pending_stop(ages);
     telemetry_.set_realtime(is_realtime());
@@ -332,8 +344,9 @@ void ControlService::adopt_levels() {
   if (levels.has(level)) {
     commands_.open(level);
   } else {
-    spdlog::warn("the vehicle does not accept commands at level {}, it accepts {}: it cannot be armed",
-                 plant::to_string(level), levels.names().data());
+    runtime::log_warning(
+        "the vehicle does not accept commands at level {}, it accepts {}: it cannot be armed",
+        plant::to_string(level), levels.names().data());
   }
   loop_.levels.put({levels, wanted_level_});
   levels_known_.store(true, std::memory_order_release);

@@ -24,6 +24,7 @@
 #include "swiftlet/services/runtime/clock.hpp"
 #include "swiftlet/services/runtime/realtime.hpp"
 #include "swiftlet/services/runtime/semaphore.hpp"
+#include "swiftlet/services/runtime/worker.hpp"
 
 namespace swiftlet::services {
 
@@ -81,6 +82,8 @@ class ControlService {
   void publish_pending_stop(const StreamAges& ages);
   void on_vehicle_info(const comms::msg::VehicleInfo& message);
   void adopt_levels();
+  template <class Message>
+  std::function<void(const Message&)> deliver_to_worker(void (CommandServer::*take)(const Message&));
   template <class Message, class Sample>
   std::function<void(const Message&)> deliver(runtime::LatestValue<Sample>& latest,
                                               comms::ThrottledWarning& faults);
@@ -102,6 +105,11 @@ class ControlService {
   comms::Publisher<comms::msg::ControllerState> reports_;
   comms::ControllerReport report_;
   plant::VehicleCommand last_answer_;
+  struct Answered {
+    std::int64_t stamp_ns = -1;
+    std::uint64_t sequence = 0;
+  };
+  Answered answered_;  // the last sample, in real time
 
   CommandPublisher commands_;
   const int rotor_count_;
@@ -124,6 +132,7 @@ class ControlService {
   std::uint32_t offered_strength_;  // used by the thread of run() only
 
   runtime::RealtimeThread imu_thread_, pose_thread_, rotor_speed_thread_;
+  runtime::Worker worker_;  // checks plans and designs gains
 
   std::mutex gate_mutex_;  // lockstep: guards the inner loop and its inputs
   LockstepGate gate_;

@@ -1,8 +1,7 @@
 #include "swiftlet/services/control/delay_monitor.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include "swiftlet/control/design/flown_delay.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 
 namespace swiftlet::services {
 
@@ -20,12 +19,12 @@ const DelayMonitor::Report& DelayMonitor::update(const LoopDelay::Figures& measu
   const bool was_near = report_.near_margin;
   report_.near_margin = report_.p95_s > (was_near ? kOffShare : kNearShare) * report_.margin_s;
   if (report_.near_margin && !was_near) {
-    spdlog::warn(
+    runtime::log_warning(
         "the loop's delay is {:.0f} ms, and {:.0f} ms make it unstable: fly gains for this delay, see "
         "`swiftlet tune delay --help`",
         1e3 * report_.p95_s, 1e3 * report_.margin_s);
   } else if (was_near && !report_.near_margin && is_measured) {
-    spdlog::info("the loop's delay is {:.0f} ms again", 1e3 * report_.p95_s);
+    runtime::log_info("the loop's delay is {:.0f} ms again", 1e3 * report_.p95_s);
   }
   return report_;
 }

@@ -2,9 +2,8 @@
 
 #include <stdexcept>
 
-#include <spdlog/spdlog.h>
-
 #include "swiftlet/services/dds/discovery/peer_log.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 
 namespace swiftlet::services {
 
@@ -24,7 +23,7 @@ void HostedControl::attend() {
 
 void HostedControl::log_end() {
   const Snapshot& last = service_.last();
-  spdlog::info(
+  runtime::log_info(
       "ended in mode {}: {} steps at {:.1f} Hz since the rotors were last started, {} late, longest {:.0f} "
       "us",
       control::to_string(last.status.mode), last.timing.cycles, last.timing.rate_hz,

@@ -94,8 +94,8 @@ void InnerLoop::follow(std::uint32_t term) {
     knows_plan_ = (!has_mission || newest.mission != nullptr) &&
                   (state.mode != control::Mode::kTrajectory || newest.trajectory != nullptr);
     detecting_since_ns_ = kNotDetecting;
+    adopted_state_.store(newest.number, std::memory_order_release);
   }
-  adopted_state_.store(newest.number, std::memory_order_release);
 }
 
 // Uses the state before this sample; therefore the first call only begins the detection.

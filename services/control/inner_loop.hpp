@@ -116,7 +116,7 @@ class InnerLoop {
   // Of the last command. Call from any thread.
   plant::ControlLevel level() const { return level_.load(std::memory_order_relaxed); }
 
-  // The number of the newest FailoverState that was taken. Call from any thread.
+  // The number of the newest FailoverState that was adopted: its plans may be in use. Call from any thread.
   std::uint64_t adopted_state() const { return adopted_state_.load(std::memory_order_acquire); }
 
   // Monotonic; 0 before the first sample. Call from any thread.

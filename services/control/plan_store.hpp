@@ -36,11 +36,11 @@ class PlanStore {
     }
   }
 
-  // Erases the oldest plans beyond the capacity that the inner loop cannot use. taken: number of the newest
-  // FailoverState that the inner loop has taken.
-  void tidy(std::uint64_t taken) {
+  // Erases the oldest plans beyond the capacity that the inner loop cannot use. adopted: number of the newest
+  // FailoverState that the inner loop has adopted.
+  void tidy(std::uint64_t adopted) {
     const auto idle = [&](const Entry& e) {
-      return e.plan.get() != flown_ && (e.failover_state == 0 || e.failover_state < taken);
+      return e.plan.get() != flown_ && (e.failover_state == 0 || e.failover_state < adopted);
     };
     while (entries_.size() > kCapacity) {
       const auto entry = std::find_if(entries_.begin(), entries_.end(), idle);

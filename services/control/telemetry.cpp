@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
-#include <spdlog/spdlog.h>
-
 #include "swiftlet/services/messages/convert.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
@@ -65,7 +64,7 @@ void Telemetry::open() {
 
 void Telemetry::set_streams(const StreamAges& ages, const std::string& source_conflict) {
   ages_ = ages;
-  if (source_conflict_.empty() && !source_conflict.empty()) spdlog::warn(source_conflict);
+  if (source_conflict_.empty() && !source_conflict.empty()) runtime::log_warning("{}", source_conflict);
   source_conflict_ = source_conflict;
 }
 
@@ -89,7 +88,7 @@ void Telemetry::publish_due() {
 
 // A standby drops its latched samples: late joiners must receive those of the active controller only.
 void Telemetry::change_role() {
-  spdlog::info("role is {}, mode {}", to_string(last_.role), control::to_string(last_.status.mode));
+  runtime::log_info("role is {}, mode {}", to_string(last_.role), control::to_string(last_.status.mode));
   if (last_.role == Role::kStandby) return open();
   publish_status();
   publish_mission();
@@ -124,26 +123,26 @@ void Telemetry::take(const Snapshot& snapshot) {
   const bool requests_changed = control::differ_in_state(snapshot.requests, last_.requests);
   const bool mission_changed = differ(now.mission, before.mission);
   if (mission_changed) mission_end_ = is_over(now.mission.state) ? reason_text(now.reason) : "";
-  if (mode_changed) spdlog::info("{}: {}", control::to_string(now.mode), reason_text(now.reason));
+  if (mode_changed) runtime::log_info("{}: {}", control::to_string(now.mode), reason_text(now.reason));
   if (now.has_pose != before.has_pose) {
     if (now.has_pose) {
-      spdlog::info("mocap available");
+      runtime::log_info("mocap available");
     } else {
-      spdlog::warn("mocap lost: the last pose is {:.2f} s old", now.pose_age_s);
+      runtime::log_warning("mocap lost: the last pose is {:.2f} s old", now.pose_age_s);
     }
   }
   if (now.odometry.in_force != before.odometry.in_force)
-    spdlog::info("flown by the {}",
-                 now.odometry.in_force ? "vehicle's own estimate" : "estimate of motion capture");
+    runtime::log_info("flown by the {}",
+                      now.odometry.in_force ? "vehicle's own estimate" : "estimate of motion capture");
   if (now.odometry.resets != before.odometry.resets)
-    spdlog::warn("the vehicle's own estimate has jumped, {} times in all", now.odometry.resets);
+    runtime::log_warning("the vehicle's own estimate has jumped, {} times in all", now.odometry.resets);
   if (now.level != before.level)
-    spdlog::info("commands the vehicle at level {}", plant::to_string(now.level));
+    runtime::log_info("commands the vehicle at level {}", plant::to_string(now.level));
   if (now.ground_links != before.ground_links)
-    spdlog::info("link-loss failsafe watches {} ground tools", now.ground_links);
+    runtime::log_info("link-loss failsafe watches {} ground tools", now.ground_links);
   if ((now.gains_progress < 1.0) != (before.gains_progress < 1.0))
-    spdlog::info("{} the gains of {}", now.gains_progress < 1.0 ? "changing to" : "flying with",
-                 now.settings.data());
+    runtime::log_info("{} the gains of {}", now.gains_progress < 1.0 ? "changing to" : "flying with",
+                      now.settings.data());
   if (snapshot.sampled) publish_sampled(snapshot);
   saturated_ = saturated_ || snapshot.saturated;
   last_ = snapshot;
@@ -165,7 +164,7 @@ std::string Telemetry::reason_text(control::Reason reason) const {
 
 void Telemetry::log_imu_silence() {
   const bool silent = ages_.imu_s > kImuSilence_s;
-  if (silent && !imu_silent_) spdlog::warn("no IMU sample for {:.0f} ms", 1e3 * ages_.imu_s);
+  if (silent && !imu_silent_) runtime::log_warning("no IMU sample for {:.0f} ms", 1e3 * ages_.imu_s);
   imu_silent_ = silent;
 }
 
@@ -267,13 +266,13 @@ void Telemetry::answer_requests(const std::vector<RequestResult>& answers) {
     ack.stamp_ns(answer.stamp_ns);
     acks_.publish(ack);
     if (answer.repeated) {
-      spdlog::debug("{} {} is a repeated request: answered again", answer.kind, answer.id);
+      runtime::log_debug("{} {} is a repeated request: answered again", answer.kind, answer.id);
     } else if (answer.outcome.accepted && answer.outcome.reason[0] != '\0') {
-      spdlog::warn("{} {} accepted: {}", answer.kind, answer.id, answer.outcome.reason);
+      runtime::log_warning("{} {} accepted: {}", answer.kind, answer.id, answer.outcome.reason);
     } else if (answer.outcome.accepted) {
-      spdlog::info("{} {} accepted", answer.kind, answer.id);
+      runtime::log_info("{} {} accepted", answer.kind, answer.id);
     } else {
-      spdlog::warn("{} {} refused: {}", answer.kind, answer.id, answer.outcome.reason);
+      runtime::log_warning("{} {} refused: {}", answer.kind, answer.id, answer.outcome.reason);
     }
   }
 }

@@ -27,7 +27,9 @@
 #include "swiftlet/services/dds/qos/duration.hpp"
 #include "swiftlet/services/dds/qos/profiles.hpp"
 #include "swiftlet/services/dds/single_source.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/log_label.hpp"
+#include "swiftlet/services/runtime/realtime.hpp"
 
 namespace swiftlet::comms {
 
@@ -90,31 +92,33 @@ class DdsWriter final : public Writer, private Endpoint {
   DdsWriter& operator=(const DdsWriter&) = delete;
 
   bool write(const void* sample) override {
+    const runtime::RealtimeScope scope = node_->realtime();
     if (is_latched(topic_.qos)) {
       const std::lock_guard<std::mutex> lock(last_mutex_);
       last_ = *static_cast<const T*>(sample);
     }
     const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
     if (!writer) return false;
-    if (comms::write(*writer, sample)) return true;
-    // A full history of requests has room again once they are acknowledged. write() does not always wait for
-    // that.
-    return topic_.qos == Qos::kRequest && wait_until_received(kReliableWriteTimeout) &&
-           comms::write(*writer, sample);
+    if (topic_.qos == Qos::kRequest && ++unacknowledged_ > kKeptRequests)
+      unacknowledged_ = wait_until_received(kReliableWriteTimeout) ? 1 : kKeptRequests;
+    return comms::write(*writer, sample);
   }
 
   bool wait_until_received(std::chrono::milliseconds timeout) override {
+    const runtime::RealtimeScope scope = node_->realtime();
     const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
     return writer && succeeded(writer->wait_for_acknowledgments(duration(timeout)));
   }
 
   void set_strength(std::uint32_t strength) override {
     strength_ = strength;
+    const runtime::RealtimeScope scope = node_->realtime();
     const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
     if (!writer) return;
     dds::DataWriterQos qos = writer->get_qos();
     qos.ownership_strength().value = strength;
-    writer->set_qos(qos);
+    if (!succeeded(writer->set_qos(qos)))
+      runtime::log_error("the middleware refuses ownership strength {} of {}", strength, topic_.name);
   }
 
   int matched() const override { return readers().current_count; }
@@ -125,8 +129,7 @@ class DdsWriter final : public Writer, private Endpoint {
 
  private:
   void join(ParticipantSession& session) override {
-    dds::DataWriterQos qos =
-        writer_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), strength_, node_->settings.transport);
+    dds::DataWriterQos qos = writer_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), strength_);
     state_type_hash(qos, RosTypeHash<T>::value());
     dds::DataWriter* const writer =
         session.publisher->create_datawriter(topic_in<T>(session, vehicle_, topic_.name), qos);
@@ -147,6 +150,7 @@ class DdsWriter final : public Writer, private Endpoint {
     session.publisher->delete_datawriter(writer);
   }
   dds::PublicationMatchedStatus readers() const {
+    const runtime::RealtimeScope scope = node_->realtime();
     const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
     dds::PublicationMatchedStatus status;
     if (writer) writer->get_publication_matched_status(status);
@@ -159,6 +163,7 @@ class DdsWriter final : public Writer, private Endpoint {
   std::atomic<std::uint32_t> strength_;
   GuardedPointer<dds::DataWriter> writer_;
   std::atomic<std::uint64_t> changes_before_{0};  // in ended sessions
+  int unacknowledged_ = 0;                        // at most; requests, with the one that is being written
   std::mutex last_mutex_;
   std::optional<T> last_;  // of a latched topic, sent again after rejoining
 };
@@ -191,6 +196,7 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
   DdsReader& operator=(const DdsReader&) = delete;
 
   int matched() const override {
+    const runtime::RealtimeScope scope = node_->realtime();
     const typename GuardedPointer<dds::DataReader>::Use reader(reader_);
     dds::SubscriptionMatchedStatus status;
     if (reader) reader->get_subscription_matched_status(status);
@@ -217,8 +223,7 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
 
   void join(ParticipantSession& session) override {
     open(true);
-    dds::DataReaderQos qos =
-        reader_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), node_->settings.transport, delivery_);
+    dds::DataReaderQos qos = reader_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), delivery_);
     state_type_hash(qos, RosTypeHash<T>::value());
     dds::DataReader* const reader = session.subscriber->create_datareader(
         topic_in<T>(session, vehicle_, topic_.name), qos, this, dds::StatusMask::data_available());
@@ -249,7 +254,7 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
   }
 
   void deliver(const dds::SampleInfo& info) {
-    if (!on_fault_) return call(info);
+    if (!on_fault_) return call_or_end(info);
     try {
       call(info);
     } catch (const std::exception& error) {
@@ -257,6 +262,9 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
       on_fault_(error.what());
     }
   }
+
+  // Ends the process if the callback throws: the transport below would take its exception for one of Fast DDS.
+  void call_or_end(const dds::SampleInfo& info) noexcept { call(info); }
 
   void call(const dds::SampleInfo& info) {
     if (callback_) return callback_(sample_.message);

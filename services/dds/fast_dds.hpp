@@ -29,7 +29,6 @@
 #include <fastdds/rtps/transport/SenderResource.hpp>
 #include <fastdds/rtps/transport/TransportReceiverInterface.hpp>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.hpp>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.hpp>
 #include <fastdds/utils/IPLocator.hpp>
 #else
 #define SWIFTLET_FAST_DDS_3 0
@@ -44,7 +43,6 @@
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/TransportReceiverInterface.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
@@ -223,21 +221,6 @@ inline void set_repair_times(eprosima::fastdds::dds::DataReaderQos& qos, const D
 }
 
 // ---- discovery
-
-// Functions inside of the library, as it exports them: PDP::check_remote_participant_liveliness(ParticipantProxyData*) and
-// PDP::remove_remote_participant(const GUID_t&, ...).
-#if SWIFTLET_FAST_DDS_3
-#define SWIFTLET_PDP_CHECK_LEASE \
-  "_ZN8eprosima7fastdds4rtps3PDP35check_remote_participant_livelinessEPNS1_20ParticipantProxyDataE"
-#define SWIFTLET_PDP_REMOVE_PARTICIPANT \
-  "_ZN8eprosima7fastdds4rtps3PDP25remove_remote_participantERKNS1_6GUID_tENS1_26ParticipantDiscoveryStatusE"
-#else
-#define SWIFTLET_PDP_CHECK_LEASE \
-  "_ZN8eprosima8fastrtps4rtps3PDP35check_remote_participant_livelinessEPNS1_20ParticipantProxyDataE"
-#define SWIFTLET_PDP_REMOVE_PARTICIPANT                                     \
-  "_ZN8eprosima8fastrtps4rtps3PDP25remove_remote_participantERKNS1_6GUID_t" \
-  "ENS1_24ParticipantDiscoveryInfo16DISCOVERY_STATUSE"
-#endif
 
 template <class Qos>
 EndpointQos endpoint_qos(const Qos& qos, bool without_positive_acks) {
@@ -461,6 +444,23 @@ class ChainedTransport : public eprosima::fastdds::rtps::ChainingTransport {
     return low_level_transport_->get_configuration();
   }
   void shutdown() override { low_level_transport_->shutdown(); }
+
+  using ChainingTransport::transform_remote_locator;
+#if SWIFTLET_FAST_DDS_3
+  bool transform_remote_locator(const rtps::Locator_t& announced, rtps::Locator_t& used,
+                                bool allows_localhost_there, bool allows_localhost_here) const final {
+    return leads_here(announced, used) || low_level_transport_->transform_remote_locator(
+                                              announced, used, allows_localhost_there, allows_localhost_here);
+  }
+#else
+  bool transform_remote_locator(const rtps::Locator_t& announced, rtps::Locator_t& used) const final {
+    return leads_here(announced, used) || low_level_transport_->transform_remote_locator(announced, used);
+  }
+#endif
+  // Whether a process with this address is reached by another one, which is set then. By default as the transport below has it.
+  virtual bool leads_here(const rtps::Locator_t& /*announced*/, rtps::Locator_t& /*used*/) const {
+    return false;
+  }
 
   // For the channels of ChainingTransport; OutputChannel does without.
 #if SWIFTLET_FAST_DDS_3

@@ -8,7 +8,6 @@
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/log/StdoutErrConsumer.hpp>
 
-#include "swiftlet/services/dds/discovery/lease_check.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 
 namespace swiftlet::comms {
@@ -43,7 +42,6 @@ void hear_fast_dds_warnings(FastDdsWarningListener listener) {
 
 void set_up_fast_dds() {
   static const bool done = [] {
-    replace_lease_check();
     log_fast_dds();
     dds::Log::SetVerbosity(dds::Log::Kind::Error);
     // Otherwise Fast DDS makes a client of a server of each participant that uses multicast, peers or the loopback

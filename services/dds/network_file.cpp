@@ -8,6 +8,7 @@
 
 #include "swiftlet/io/config.hpp"
 #include "swiftlet/io/network_key.hpp"
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/dds/discovery/discovery_servers.hpp"
 #include "swiftlet/services/dds/discovery/host_address.hpp"
@@ -38,12 +39,6 @@ std::vector<std::string> texts(const ConfigNode& list, std::size_t max_count,
   return found;
 }
 
-std::string joined(const std::vector<std::string>& texts) {
-  std::string list;
-  for (std::size_t i = 0; i < texts.size(); ++i) list += (i == 0 ? "" : ";") + texts[i];
-  return list;
-}
-
 void read_discovery(const ConfigNode& root, NodeSettings& settings) {
   const auto local = root.find(kLocalhostOnly);
   const auto peers = root.find(kPeers);
@@ -58,7 +53,8 @@ void read_discovery(const ConfigNode& root, NodeSettings& settings) {
   settings.network.discovery_servers.clear();
   if (peers) settings.network.peers = texts(*peers, kMaxPeers, fault_of_host_address);
   if (servers)
-    settings.network.discovery_servers = joined(texts(*servers, kMaxDiscoveryServers, fault_of_host_address));
+    settings.network.discovery_servers =
+        runtime::joined(texts(*servers, kMaxDiscoveryServers, fault_of_host_address), ";");
 }
 
 std::string path_beside(const ConfigNode& file) {
@@ -67,13 +63,14 @@ std::string path_beside(const ConfigNode& file) {
 
 void read(const ConfigNode& root, NodeSettings& settings) {
   read_discovery(root, settings);
+  if (const auto open = root.find("open_network")) {
+    settings.open_network = open->boolean();
+    if (settings.open_network && settings.localhost_only) open->fail("excludes localhost_only: true");
+  }
   if (const auto interfaces = root.find("interfaces")) {
     if (settings.localhost_only) interfaces->fail("excludes localhost_only: true");
     settings.network.interfaces = texts(*interfaces, kMaxInterfaces, fault_of_interface);
   }
-  if (const auto transport = root.find("transport"))
-    settings.transport =
-        transport->choice<Transport>({{"udp", Transport::kUdp}, {"shm", Transport::kSharedMemory}});
   if (const auto profile = root.find("dds_profile")) settings.network.dds_profile = path_beside(*profile);
   if (const auto key = root.find("network_key")) {
     settings.network_key_file = path_beside(*key);

@@ -1,7 +1,6 @@
 // The network file: the options of the network in YAML, for all processes of a host. All keys are optional:
 //   peers: [lab2, 10.0.0.7:7412]        # or localhost_only: true, or discovery_servers: [lab1:11811]
 //   interfaces: [eth0]
-//   transport: udp                      # or shm
 //   dds_profile: profile.xml            # relative to this file
 //   network_key: lab.key                # relative to this file
 //   security: lab                       # likewise

@@ -54,8 +54,8 @@ rtps::Locator_t udp_locator(const std::string& ipv4, std::uint32_t port) {
 
 rtps::LocatorList_t own_locators(const NodeSettings& settings, std::uint32_t port) {
   std::vector<std::string> addresses;
-  if (!settings.localhost_only) addresses = addresses_of_interfaces(settings.network.interfaces);
-  if (!settings.localhost_only && addresses.empty()) {
+  if (!settings.on_loopback()) addresses = addresses_of_interfaces(settings.network.interfaces);
+  if (!settings.on_loopback() && addresses.empty()) {
     for (const Interface& it : interfaces_up()) {
       if (!it.is_loopback) addresses.push_back(it.address);
     }

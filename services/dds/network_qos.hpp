@@ -7,13 +7,13 @@
 
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 
+#include "swiftlet/services/dds/discovery/interfaces.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::comms {
 
 constexpr const char* kAnyAddress = "0.0.0.0";
-constexpr const char* kLoopback = "127.0.0.1";
 
 rtps::Locator_t udp_locator(const std::string& ipv4, std::uint32_t port);
 

@@ -17,19 +17,14 @@
 
 namespace swiftlet::comms {
 
-enum class Transport {
-  kUdp,           // default; leaves no files behind
-  kSharedMemory,  // between processes of one user on one host; UDP to others
-  kDataSharing,   // streams through memory mapped by writer and reader, the rest as kUdp; for benchmarks
-};
-
 struct NodeSettings {
   std::string name;             // process: "plant", "mocap", "control", "ground"
   std::string vehicle = "kl1";  // namespace of the topics: see vehicle_name.hpp
   int domain = 0;               // 0 .. 232
-  Transport transport = Transport::kUdp;
   bool localhost_only = false;  // loopback interface only, without multicast
-  NetworkSettings network{};    // not with localhost_only
+  NetworkSettings network{};    // needs the network: see on_loopback()
+  // Uses the network without network_key_file or security too: whoever is in it can then command the vehicles.
+  bool open_network = false;
   // This process hears of all others of the domain. False: not of those that neither serve a vehicle of its own nor hear of
   // all, and with a discovery server only of those that exchange topics with it, which keeps the traffic of a fleet in
   // proportion to its vehicles; on_peer() and topics_seen() miss the others.
@@ -44,9 +39,17 @@ struct NodeSettings {
   bool deadlines = true;
   // Period of its announcements: kFixturePeriod for vehicle and motion capture.
   std::chrono::milliseconds announcement_period = kLivelinessPeriod;
+  // SCHED_FIFO priority of all threads that hold locks of the middleware, 0: ordinary. A real-time thread that publishes or
+  // receives waits for such locks: one priority for all lets nothing else delay who holds them.
+  int realtime_priority = 0;
   // Name of the topic of which this process is to be the only source for its vehicle, such as "imu"; then
   // call become_source() before it publishes. Empty: none.
   std::string source_of{};
+
+  // Whether it uses the loopback interface only, without multicast: it was told so, or has nothing that makes the network safe.
+  bool on_loopback() const {
+    return localhost_only || (!open_network && network_key_file.empty() && security.empty());
+  }
 };
 
 // A process of the domain, as it announces itself. Programs of others announce neither host nor process.
@@ -90,8 +93,7 @@ struct PeerEvent {
 enum class Delivery {
   // One thread for all such subscriptions of the node.
   kShared,
-  // A separate thread with a separate socket: no other message delays a sample. With kSharedMemory the same
-  // as kShared.
+  // A separate thread with a separate socket: no other message delays a sample.
   kOwnThread,
 };
 
@@ -164,9 +166,7 @@ class Subscription {
 // data for all of them.
 class Participant {
  public:
-  // Creates a participant without a vehicle; ignores settings.vehicle. Its threads inherit the scheduling of
-  // the calling thread. With kSharedMemory, constructor and destructor remove the files that dead processes
-  // of this user left in /dev/shm. Throws std::runtime_error with a sentence.
+  // Creates a participant without a vehicle; ignores settings.vehicle. Throws std::runtime_error with a sentence.
   explicit Participant(const NodeSettings& settings);
   // The same, and announces at once that it serves these vehicles; then construct a node for each.
   Participant(const NodeSettings& settings, const std::vector<std::string>& vehicles);
@@ -234,8 +234,8 @@ class Node {
   std::optional<std::string> become_source(std::function<void(const std::string&)> on_lost = {});
 
   // Sets the callback for discovered and lost peers of the vehicle; it is called at once for known peers. It
-  // runs in a middleware thread. A new callback replaces the previous one, which no longer runs when this
-  // returns.
+  // runs in a middleware thread, and ends the process if it throws. A new callback replaces the previous one,
+  // which no longer runs when this returns.
   void on_peer(std::function<void(const PeerEvent&)> callback);
 
   // Leaves the domain and joins it again with all publishers and subscriptions. Other processes see a new

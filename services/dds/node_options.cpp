@@ -31,11 +31,12 @@ std::string environment(const char* variable) {
   return value == nullptr ? "" : value;
 }
 
-// The variables by which ROS 2 is told where to look for others.
+// The variables by which ROS 2 is told where to look for others, and that of the own network.
 void apply_environment(NodeSettings& settings) {
   const std::string range = environment("ROS_AUTOMATIC_DISCOVERY_RANGE");
   const std::string peers = environment("ROS_STATIC_PEERS");
   const bool near = (range == "LOCALHOST" || range == "OFF") && peers.empty();
+  settings.open_network = environment("SWIFTLET_OPEN_NETWORK") == "1";
   settings.localhost_only = near || environment("ROS_LOCALHOST_ONLY") == "1";
   settings.network.peers.clear();
   settings.network.discovery_servers.clear();
@@ -122,13 +123,19 @@ void add_node_options(runtime::CommandLine app, NodeSettings& settings, const Na
   app.add_option("--vehicle-name", settings.vehicle, "Namespace of the topics")
       .show_default()
       .check(name.fault_of, name.value_name);
-  app.add_choice("--transport", settings.transport,
-                 {{"udp", Transport::kUdp}, {"shm", Transport::kSharedMemory}},
-                 "udp, or shm: shared memory between processes of this host")
-      .show_default("udp");
   add_network_options(app, settings);
   add_profile_option(app, settings);
   add_network_key_option(app, settings.network_key_file);
+  app.add_flag(
+         "--open-network",
+         [&settings] {
+           settings.open_network = true;
+           settings.localhost_only = false;
+         },
+         "Use the network without --network-key or --security: anyone in it can command the vehicles; "
+         "default: "
+         "the loopback interface only, unless $SWIFTLET_OPEN_NETWORK is 1")
+      .excludes(app.option("--localhost-only"));
   app.add_option("--security", settings.security,
                  "Authenticate, encrypt, and let each role write its own topics only: folder made by "
                  "`swiftlet keys create`; not with --discovery-server")

@@ -16,11 +16,12 @@ struct NameCheck {
   std::string value_name = "NAME";
 };
 
-// --domain (default $ROS_DOMAIN_ID or 0), --vehicle-name, --transport udp|shm; --localhost-only (default
-// $ROS_LOCALHOST_ONLY, or $ROS_AUTOMATIC_DISCOVERY_RANGE), --network, --peer (default $ROS_STATIC_PEERS),
-// --discovery-server (default $ROS_DISCOVERY_SERVER), --interface,
+// --domain (default $ROS_DOMAIN_ID or 0), --vehicle-name; --localhost-only (default $ROS_LOCALHOST_ONLY, or
+// $ROS_AUTOMATIC_DISCOVERY_RANGE), --network, --peer (default $ROS_STATIC_PEERS), --discovery-server (default
+// $ROS_DISCOVERY_SERVER), --interface,
 // --dds-profile (default $FASTDDS_DEFAULT_PROFILES_FILE, else $FASTRTPS_DEFAULT_PROFILES_FILE), --network-key
-// (default $SWIFTLET_NETWORK_KEY), --security (default $SWIFTLET_SECURITY).
+// (default $SWIFTLET_NETWORK_KEY), --open-network (default
+// $SWIFTLET_OPEN_NETWORK), --security (default $SWIFTLET_SECURITY).
 void add_node_options(runtime::CommandLine app, NodeSettings& settings, const NameCheck& name = {});
 
 // The same for a program that serves vehicles: --vehicle-name takes a list (vehicle_list.hpp), which it leaves in

@@ -10,9 +10,9 @@
 #include <unistd.h>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
-#include "swiftlet/services/dds/shared_memory.hpp"
+#include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/text_file.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -29,6 +29,16 @@ void check(const NodeSettings& settings) {
                              ", must be between 0 and 232");
   }
   if (settings.name.empty()) throw std::runtime_error("the node has no name");
+  const NetworkSettings& network = settings.network;
+  const char* const wanted = !network.peers.empty() ? "a peer (--peer, ROS_STATIC_PEERS)"
+                             : !network.discovery_servers.empty()
+                                 ? "a discovery server (--discovery-server, ROS_DISCOVERY_SERVER)"
+                             : !network.interfaces.empty() ? "an interface (--interface)"
+                                                           : nullptr;
+  if (settings.on_loopback() && wanted != nullptr)
+    throw runtime::ConfigError(std::string(wanted) +
+                               " is given, but the process stays on the loopback interface without "
+                               "--network-key FILE, --security DIR or --open-network");
 }
 
 Announcement announcement_of(const NodeSettings& settings, const std::string& vehicles) {
@@ -79,13 +89,14 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
       announcement_(announcement_of(node_settings, vehicles)),
       patience_(random_share()) {
   check(settings);
-  if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
   if (!settings.security.empty()) refused_peers_.emplace();
   joined_ns_ = Now::read().steady_ns;
   guard_->ignore_apart_from(to_user_data(announcement_));
   if (settings.network.discovery_servers.empty()) introduced_at_ = Clock::now();
+  const runtime::RealtimeScope scope = realtime();
   session_ = std::make_unique<ParticipantSession>(settings, announcement_, guard_, this);
   periodic_task_.emplace(kCheckPeriod, [this] {
+    const runtime::RealtimeScope task_scope = realtime();
     rejoin_if_rediscovery_failed();
     end_source_watch_when_due();
     {
@@ -103,12 +114,13 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
 
 Participant::Impl::~Impl() {
   periodic_task_.reset();
+  const runtime::RealtimeScope scope = realtime();
   source_watch_.clear();
   end_session();
-  if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
 }
 
 void Participant::Impl::serve(const std::string& vehicle) {
+  const runtime::RealtimeScope scope = realtime();
   const std::lock_guard<std::mutex> lock(session_mutex_);
   ++nodes_of_[vehicle];
   if (lists(announcement_.vehicles, vehicle)) return;
@@ -126,6 +138,7 @@ void Participant::Impl::serve(const std::string& vehicle) {
 }
 
 void Participant::Impl::stop_serving(const std::string& vehicle) {
+  const runtime::RealtimeScope scope = realtime();
   const std::lock_guard<std::mutex> lock(session_mutex_);
   if (--nodes_of_[vehicle] > 0) return;
   {
@@ -148,12 +161,14 @@ void Participant::Impl::announce_when_due() {
 }
 
 void Participant::Impl::add(Endpoint* endpoint) {
+  const runtime::RealtimeScope scope = realtime();
   const std::lock_guard<std::mutex> lock(session_mutex_);
   if (session_ != nullptr) endpoint->join(*session_);
   endpoints_.push_back(endpoint);
 }
 
 void Participant::Impl::remove(Endpoint* endpoint) {
+  const runtime::RealtimeScope scope = realtime();
   const std::lock_guard<std::mutex> lock(session_mutex_);
   if (session_ != nullptr) endpoint->leave(*session_);
   endpoints_.erase(std::remove(endpoints_.begin(), endpoints_.end(), endpoint), endpoints_.end());
@@ -168,10 +183,11 @@ void Participant::Impl::rejoin_if_rediscovery_failed() {
       patience_.rejoined(now);
     }
   }
-  if (rejoin()) spdlog::warn("rejoined the network: a peer was rediscovered without its endpoints");
+  if (rejoin()) runtime::log_warning("rejoined the network: a peer was rediscovered without its endpoints");
 }
 
 bool Participant::Impl::rejoin() {
+  const runtime::RealtimeScope scope = realtime();
   const std::lock_guard<std::mutex> lock(session_mutex_);
   leave();
   try {
@@ -180,7 +196,7 @@ bool Participant::Impl::rejoin() {
     for (Endpoint* const endpoint : endpoints_) endpoint->join(*session_);
     return !away_.exchange(false);
   } catch (const std::runtime_error& error) {
-    if (!away_) spdlog::error("cannot rejoin the network, trying again: {}", error.what());
+    if (!away_) runtime::log_error("cannot rejoin the network, trying again: {}", error.what());
     away_ = true;
     leave();
     return false;
@@ -210,6 +226,7 @@ void Participant::Impl::leave() {
 // ---- other processes
 
 std::vector<std::string> Participant::Impl::topics_seen() const {
+  const runtime::RealtimeScope scope = realtime();
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   std::set<std::string> topics;
   for (const auto& [guid, writer] : writers_) topics.insert(writer.topic);
@@ -217,6 +234,7 @@ std::vector<std::string> Participant::Impl::topics_seen() const {
 }
 
 std::vector<ProcessIdentity> Participant::Impl::processes_seen() const {
+  const runtime::RealtimeScope scope = realtime();
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   std::vector<ProcessIdentity> processes;
   for (const auto& [guid, peer] : peers_)
@@ -225,6 +243,7 @@ std::vector<ProcessIdentity> Participant::Impl::processes_seen() const {
 }
 
 std::vector<std::string> Participant::Impl::qos_conflicts_seen() const {
+  const runtime::RealtimeScope scope = realtime();
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   const auto process = [this](const Guid& guid) {
     const Peer* const peer = peer_of(guid.guidPrefix);
@@ -245,6 +264,7 @@ std::vector<std::string> Participant::Impl::qos_conflicts_seen() const {
 }
 
 ProcessIdentity Participant::Impl::identity_of(const GuidPrefix& participant) const {
+  const runtime::RealtimeScope scope = realtime();
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   const Peer* const peer = peer_of(participant);
   if (peer == nullptr) return {};
@@ -253,20 +273,34 @@ ProcessIdentity Participant::Impl::identity_of(const GuidPrefix& participant) co
 
 void Participant::Impl::listen(const Node* node, const std::string& vehicle,
                                std::function<void(const PeerEvent&)> callback) {
+  const runtime::RealtimeScope scope = realtime();
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   peer_listeners_.erase(node);
   if (!callback) return;
+  const PeerListener& listener = peer_listeners_[node] = {vehicle, std::move(callback)};
   for (const auto& [guid, peer] : peers_) {
-    if (lists(peer.announced.vehicles, vehicle)) callback({peer.name, true, false});
+    if (lists(peer.announced.vehicles, vehicle)) tell(listener, {peer.name, true, false});
   }
-  peer_listeners_[node] = {vehicle, std::move(callback)};
+}
+
+// Anybody may announce itself under any name: logs and terminals get no control characters of it.
+Participant::Impl::Peer Participant::Impl::announced(const std::string& name,
+                                                     const std::vector<std::uint8_t>& user_data) {
+  const auto in_one_line = [](const std::string& text) {
+    std::string line = runtime::printable(text);
+    std::replace(line.begin(), line.end(), '\n', '?');
+    return line;
+  };
+  Peer peer{in_one_line(name), from_user_data(user_data)};
+  peer.announced.host = in_one_line(peer.announced.host);
+  return peer;
 }
 
 void Participant::Impl::on_participant(const Guid& guid, const std::string& name,
                                        const std::vector<std::uint8_t>& user_data) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   if (!introduced_at_ && is_discovery_server(bytes_of(guid.guidPrefix))) introduced_at_ = Clock::now();
-  const Peer peer{name, from_user_data(user_data)};
+  const Peer peer = announced(name, user_data);
   if (is_authenticated(guid)) return update_peer(guid, peer);
   strangers_[guid] = peer;
 }
@@ -294,9 +328,7 @@ void Participant::Impl::on_authentication(const Guid& guid, bool authenticated) 
   } else {
     const auto heard = guard_->announcements(Now::read());
     const auto said = heard.find(bytes_of(guid.guidPrefix));
-    refuse(guid,
-           said == heard.end() ? Peer{} : Peer{said->second.name, from_user_data(said->second.user_data)},
-           "");
+    refuse(guid, said == heard.end() ? Peer{} : announced(said->second.name, said->second.user_data), "");
   }
 }
 
@@ -318,8 +350,13 @@ void Participant::Impl::refuse_silent_strangers(const Guid& own) {
     if (guid == own || is_authenticated(guid)) continue;
     if (now.steady_ns - std::max(said.since_ns, joined_ns_) >
         kHandshakePatience / std::chrono::nanoseconds(1))
-      refuse(guid, {said.name, from_user_data(said.user_data)}, ": it does not complete the handshake");
+      refuse(guid, announced(said.name, said.user_data), ": it does not complete the handshake");
   }
+}
+
+// Ends the process if it throws: the transport below would take its exception for one of Fast DDS.
+void Participant::Impl::tell(const PeerListener& listener, const PeerEvent& event) noexcept {
+  listener.callback(event);
 }
 
 void Participant::Impl::update_peer(const Guid& guid, const Peer& peer) {
@@ -329,7 +366,7 @@ void Participant::Impl::update_peer(const Guid& guid, const Peer& peer) {
   for (const auto& [node, listener] : peer_listeners_) {
     const bool serves = lists(peer.announced.vehicles, listener.vehicle);
     if (serves != lists(before.announced.vehicles, listener.vehicle))
-      listener.callback({peer.name, serves, !serves});
+      tell(listener, {peer.name, serves, !serves});
   }
   yield_source_to(peer);
 }
@@ -348,7 +385,7 @@ void Participant::Impl::drop_peer(const Guid& guid, bool said_goodbye) {
   if (!is_own(gone)) return;
   if (!said_goodbye) rediscovery_.lost(guid.guidPrefix);
   for (const auto& [node, listener] : peer_listeners_) {
-    if (lists(gone.announced.vehicles, listener.vehicle)) listener.callback({gone.name, false, said_goodbye});
+    if (lists(gone.announced.vehicles, listener.vehicle)) tell(listener, {gone.name, false, said_goodbye});
   }
 }
 

@@ -26,6 +26,7 @@
 #include "swiftlet/services/dds/periodic_task.hpp"
 #include "swiftlet/services/dds/qos/qos_conflict_log.hpp"
 #include "swiftlet/services/dds/security/refused_peers.hpp"
+#include "swiftlet/services/runtime/realtime.hpp"
 
 namespace swiftlet::comms {
 
@@ -59,6 +60,8 @@ struct Participant::Impl final : public DiscoveryListener {
   // node: key of the callback; an empty callback removes it. Calls it at once for known peers of the vehicle.
   void listen(const Node* node, const std::string& vehicle, std::function<void(const PeerEvent&)> callback);
 
+  // Of a thread that is about to take locks of the middleware, or those of this class.
+  runtime::RealtimeScope realtime() const { return runtime::RealtimeScope(settings.realtime_priority); }
   int deadline_ms(int of_topic) const { return settings.deadlines ? of_topic : 0; }
 
   const NodeSettings settings;
@@ -101,6 +104,8 @@ struct Participant::Impl final : public DiscoveryListener {
   bool is_authenticated(const Guid& guid) const;
   void refuse(const Guid& guid, const Peer& peer, const char* reason);
   void refuse_silent_strangers(const Guid& own);
+  static Peer announced(const std::string& name, const std::vector<std::uint8_t>& user_data);
+  static void tell(const PeerListener& listener, const PeerEvent& event) noexcept;
   void update_peer(const Guid& guid, const Peer& peer);  // a known peer may serve more vehicles now
   void drop_peer(const Guid& guid, bool said_goodbye);
   void add_endpoint(RemoteEndpoints& endpoints, const Guid& guid, RemoteEndpoint endpoint,

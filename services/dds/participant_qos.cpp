@@ -15,15 +15,9 @@
 #include "swiftlet/services/dds/security/security_qos.hpp"
 
 namespace swiftlet::comms {
-namespace {
 
 namespace dds = eprosima::fastdds::dds;
-using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
-
-constexpr std::uint32_t kSegmentBytes = 1 << 20;  // of shared memory: fits seven missions of maximum length
-
-}  // namespace
 
 dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uint32_t announced_ports,
                                           const std::shared_ptr<DatagramGuard>& guard,
@@ -60,7 +54,7 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
 
   UDPv4TransportDescriptor udp = profile.udp;
   udp.non_blocking_send = true;  // a full socket buffer drops a sample instead of blocking the sender
-  if (settings.localhost_only) {
+  if (settings.on_loopback()) {
     udp.interfaceWhiteList = {kLoopback};
     udp.maxInitialPeersRange = announced_ports;
     // Listen on the first free port of the domain, whatever ID the middleware assigns to the participant, and
@@ -74,18 +68,11 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
   // first process of the host is announced from the first change of the user data on: by 2.9 as a further one, by 3.1 in
   // place of the own one, and the others send there.
   auto& addresses = qos.wire_protocol().default_unicast_locator_list;
-  if (settings.transport != Transport::kSharedMemory && addresses.empty())
-    addresses = own_locators(settings, 0);
+  if (addresses.empty()) addresses = own_locators(settings, 0);
   qos.transport().use_builtin_transports = false;
-  const bool loses_nothing = settings.localhost_only;
+  const bool loses_nothing = settings.on_loopback();
   qos.transport().user_transports.push_back(
       repeat_discovery(guarded(udp, guard), settings.domain, guard, std::move(listening), loses_nothing));
-
-  if (settings.transport == Transport::kSharedMemory) {
-    SharedMemTransportDescriptor shared_memory;
-    shared_memory.segment_size(kSegmentBytes);
-    qos.transport().user_transports.push_back(guarded(shared_memory, guard));
-  }
   return qos;
 }
 

@@ -1,4 +1,4 @@
-// The QoS of a participant: discovery, transports and name.
+// The QoS of a participant: discovery, transport and name.
 #pragma once
 
 #include <atomic>

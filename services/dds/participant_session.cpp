@@ -15,7 +15,7 @@
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/fast_dds_library.hpp"
 #include "swiftlet/services/dds/participant_qos.hpp"
-#include "swiftlet/services/dds/shared_memory.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -44,7 +44,7 @@ dds::DomainParticipant* create_participant(const NodeSettings& settings, const A
 
 // Empty: all addresses of this host.
 std::string listening_address(const NodeSettings& settings) {
-  if (settings.localhost_only) return "127.0.0.1";
+  if (settings.on_loopback()) return "127.0.0.1";
   const std::vector<std::string> addresses = addresses_of_interfaces(settings.network.interfaces);
   return addresses.empty() ? "" : addresses.front();
 }
@@ -61,7 +61,7 @@ dds::DomainParticipant* join(const NodeSettings& settings, const Announcement& a
   const std::set<std::uint32_t> before = own_discovery_ports(settings.domain);
   const std::uint32_t expected = free_discovery_port(settings.domain, listening_address(settings));
   guard->expect_participants(expected + 1, Now::read());  // as ports are taken in their order
-  const bool announces_to_ports = settings.localhost_only || !settings.network.peers.empty();
+  const bool announces_to_ports = settings.on_loopback() || !settings.network.peers.empty();
   for (const std::uint32_t announced : {announced_ports(ports, expected), ports.count}) {
     dds::DomainParticipant* const participant =
         create_participant(settings, announcement, guard, listener, announced);
@@ -111,6 +111,7 @@ ParticipantSession::ParticipantSession(const NodeSettings& settings, const Annou
     end(participant);
     throw std::runtime_error("cannot set up publishing in DDS domain " + std::to_string(settings.domain));
   }
+  next_announcement_ = std::chrono::steady_clock::now() + spacing_;  // after the first one
 }
 
 ParticipantSession::~ParticipantSession() { end(participant); }
@@ -124,7 +125,8 @@ void ParticipantSession::announce(const Announcement& announcement) {
 
 void ParticipantSession::set_qos(const dds::DomainParticipantQos& qos) {
   const std::lock_guard<std::mutex> lock(guard_->changes_mutex());
-  participant->set_qos(qos);
+  if (!succeeded(participant->set_qos(qos)))
+    runtime::log_error("the middleware refuses to announce a change of this process to the others");
 }
 
 dds::Topic* ParticipantSession::topic(const std::string& wire_name, const dds::TypeSupport& type) {

@@ -11,12 +11,13 @@ enum class Qos {
   kTelemetry,     // best effort, keep last 1, volatile
   kLatched,       // reliable, transient local, keep last 1
   kLatchedLarge,  // latched, for long messages: allocates memory as needed
-  kRequest,       // reliable, volatile, keep all up to kMaxUnacknowledgedRequests
+  kRequest,       // reliable, volatile, keep last kKeptRequests
   kReply,         // reliable, transient local, keep last kKeptReplies
 };
 
-// Number of unacknowledged requests of a writer before publish() waits, and how long it waits.
-constexpr int kMaxUnacknowledgedRequests = 64;
+// Before a request that was not acknowledged makes room for a further one, publish() waits for kReliableWriteTimeout at most: a reader that
+// acknowledges nothing, as that of a stopped process, must not hold up a stop request.
+constexpr int kKeptRequests = 64;
 constexpr std::chrono::milliseconds kReliableWriteTimeout{200};
 // Replies that reach a client whose reader is discovered only after they were sent.
 constexpr int kKeptReplies = 32;

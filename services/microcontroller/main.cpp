@@ -10,14 +10,13 @@
 #include <utility>
 #include <vector>
 
-#include <spdlog/spdlog.h>
-
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/services/dds/discovery/sole_source.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/node_options.hpp"
+#include "swiftlet/services/dds/reach.hpp"
 #include "swiftlet/services/microcontroller/microcontroller.hpp"
 #include "swiftlet/services/microcontroller/port.hpp"
 #include "swiftlet/services/runtime/hosting.hpp"
@@ -40,6 +39,7 @@ struct Options {
   std::array<double, 2> start{};  // m, north and east
   int imu_rate = 0;               // Hz; 0: as in the simulation file
   MicrocontrollerClock clock;
+  double speed = 1.0;
   double command_timeout_s = 0.1;
   double patience_s = 0.0;
   comms::NodeSettings node;
@@ -57,6 +57,11 @@ void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--clock-drift", options.clock.drift_ppm,
                  "Microcontroller's clock against that of this computer, us per s; above 0: fast")
       .range(-10'000.0, 10'000.0)
+      .show_default();
+  app.add_option("--speed", options.speed,
+                 "Simulation speed factor (1 = real time). At another speed the host cannot learn the "
+                 "microcontroller's clock, and measures no times of the link")
+      .range(0.01, 100.0)
       .show_default();
   app.add_option("--command-timeout", options.command_timeout_s,
                  "The microcontroller stops the rotors after this time without a valid command, s")
@@ -102,6 +107,7 @@ MicrocontrollerSettings load(const Options& options) {
   settings.seed = options.seed;
   settings.initial.position_ned.head<2>() = Eigen::Vector2d(options.start[0], options.start[1]);
   settings.clock = options.clock;
+  settings.speed = options.speed;
   settings.patience_s = options.patience_s;
   settings.firmware.boot = std::random_device{}();
   settings.firmware.rotor_count = settings.vehicle.rotor_count();
@@ -126,15 +132,18 @@ void run(const Options& options) {
   comms::NodeSettings network = options.node;
   network.hears_of_all = false;
   network.announcement_period = comms::kFixturePeriod;
+  network.realtime_priority = settings.realtime.thread_priority();
   network.source_of = comms::topics::kGroundTruth.name;
   comms::Participant participant(network, {network.vehicle});
   const comms::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
   std::vector<std::unique_ptr<runtime::HostedVehicle>> vehicles;
   vehicles.push_back(
       std::make_unique<Microcontroller>(participant, network.vehicle, settings, std::move(port)));
-  spdlog::info("ready: {}, link {}, IMU at {:g} Hz, command time-out {:g} s; ground_truth of {} in domain {}",
-               settings.vehicle.name, options.pty.empty() ? options.udp : options.pty,
-               settings.simulation.imu.rate_hz, options.command_timeout_s, network.vehicle, network.domain);
+  comms::log_reach(network);
+  runtime::log_info(
+      "ready: {}, link {}, IMU at {:g} Hz, command time-out {:g} s; ground_truth of {} in domain {}",
+      settings.vehicle.name, options.pty.empty() ? options.udp : options.pty, settings.simulation.imu.rate_hz,
+      options.command_timeout_s, network.vehicle, network.domain);
   runtime::host(std::move(vehicles), stop, kReportPeriod);
   source.check();
 }
@@ -151,7 +160,7 @@ int main(int argc, char** argv) {
        "Simulates the microcontroller of a vehicle, the far end of the link of swiftlet-vehicle-template, "
        "and "
        "the room that it flies in, whose ground_truth the simulated motion capture sees.",
-       "--pty /tmp/kl1.tty --clock-offset 1000 --clock-drift 50 --localhost-only", runtime::version_text()},
+       "--pty /tmp/kl1.tty --clock-offset 1000 --clock-drift 50", runtime::version_text()},
       argc, argv, [&](runtime::CommandLine app) { services::add_options(app, options); },
       [&] { services::run(options); });
 }

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
 #include "swiftlet/services/messages/convert.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
@@ -21,6 +20,7 @@ Microcontroller::Microcontroller(const comms::Participant& participant, const st
     : HostedVehicle(vehicle),
       realtime_(settings.realtime),
       clock_(settings.clock),
+      speed_(settings.speed),
       steps_per_sample_(plant::period_ns(settings.simulation.imu.rate_hz) / settings.simulation.step_ns),
       period_ns_(plant::period_ns(settings.simulation.imu.rate_hz)),
       patience_ns_(std::llround(settings.patience_s * 1e9)),
@@ -35,7 +35,7 @@ void Microcontroller::run(const std::atomic<bool>& stop) {
   if (realtime_.enabled) runtime::make_this_thread_realtime(realtime_);
   origin_ns_ = runtime::monotonic_ns();
   while (!stop.load(std::memory_order_relaxed)) {
-    const std::int64_t due_ns = origin_ns_ + next_sample_ns();
+    const std::int64_t due_ns = origin_ns_ + real_ns(next_sample_ns());
     const std::int64_t give_up_ns = due_ns + patience_ns_;
     if (port_->wait_until(awaits_answer() ? give_up_ns : due_ns)) serve_link();
     const std::int64_t now_ns = runtime::monotonic_ns();
@@ -49,9 +49,14 @@ void Microcontroller::run(const std::atomic<bool>& stop) {
 
 std::int64_t Microcontroller::next_sample_ns() const { return simulation_.stamp_ns() + period_ns_; }
 
+std::int64_t Microcontroller::real_ns(std::int64_t room_ns) const {
+  return std::llround(static_cast<double>(room_ns) / speed_);
+}
+
 // The room never passes the next sample before its step, so that its clock does not go back when it has stood still.
 std::int64_t Microcontroller::now_us() const {
-  return clock_.us_at(std::min(runtime::monotonic_ns() - origin_ns_, next_sample_ns()));
+  const double elapsed_ns = static_cast<double>(runtime::monotonic_ns() - origin_ns_);
+  return clock_.us_at(std::min<std::int64_t>(std::llround(speed_ * elapsed_ns), next_sample_ns()));
 }
 
 bool Microcontroller::is_answered() const {
@@ -63,7 +68,7 @@ bool Microcontroller::awaits_answer() const {
 }
 
 void Microcontroller::stand_still(std::int64_t late_ns) {
-  if (late_ns <= period_ns_) return;
+  if (late_ns <= real_ns(period_ns_)) return;
   origin_ns_ += late_ns;
   stood_still_ns_ += late_ns;
 }
@@ -106,21 +111,21 @@ void Microcontroller::attend() {
   if (!reports_.take(last_)) return;
   const protocol::State& state = last_.state;
   if (last_.in_session != before.in_session)
-    spdlog::info(last_.in_session ? "a host has begun a session"
-                                  : "the host is silent: the session has ended");
+    runtime::log_info(
+        "{}", last_.in_session ? "a host has begun a session" : "the host is silent: the session has ended");
   if (state.rotors_running == before.state.rotors_running) return;
   if (state.rotors_running != 0) {
-    spdlog::info("rotors started");
+    runtime::log_info("rotors started");
   } else if (state.fault.front() != '\0') {
-    spdlog::error("rotors stopped: {}", protocol::text_of(state.fault));
+    runtime::log_error("rotors stopped: {}", protocol::text_of(state.fault));
   } else {
-    spdlog::info("rotors stopped on command");
+    runtime::log_info("rotors stopped on command");
   }
 }
 
 void Microcontroller::log_end() {
   const protocol::State& state = last_.state;
-  spdlog::info(
+  runtime::log_info(
       "ended: {} commands obeyed, {} refused; {} frames received, {} broken, {} lost; stood still {:.1f} ms",
       state.commands_obeyed, state.commands_refused, state.frames_received, state.frames_refused,
       state.frames_lost, last_.stood_still_s * 1e3);

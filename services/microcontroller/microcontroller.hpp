@@ -34,6 +34,7 @@ struct MicrocontrollerSettings {
   std::uint64_t seed = 1;
   plant::VehicleState initial;
   MicrocontrollerClock clock;
+  double speed = 1.0;  // of the room's time over real time; at another than 1 the host cannot learn the clock
   // While the rotors run, the room stands still until the newest sample is answered, at most this long: for a computer
   // that is too busy for real time. It goes on without answers until one comes.
   double patience_s = 0.0;
@@ -46,7 +47,7 @@ class Microcontroller final : public runtime::HostedVehicle {
   Microcontroller(const comms::Participant& participant, const std::string& vehicle,
                   const MicrocontrollerSettings& settings, std::unique_ptr<Port> port);
 
-  // In real time. If it falls behind by more than an IMU period, the room and with it the microcontroller's clock stand
+  // In real time, or scaled. If it falls behind by more than an IMU period, the room and with it the microcontroller's clock stand
   // still for that time: a burst of samples could not be answered.
   void run(const std::atomic<bool>& stop) override;
   void attend() override;
@@ -64,6 +65,7 @@ class Microcontroller final : public runtime::HostedVehicle {
   void send_samples();
   void report();
   std::int64_t next_sample_ns() const;  // time of the room
+  std::int64_t real_ns(std::int64_t room_ns) const;
   std::int64_t now_us() const;
   bool is_answered() const;  // the newest sample
   bool awaits_answer() const;
@@ -71,6 +73,7 @@ class Microcontroller final : public runtime::HostedVehicle {
 
   runtime::RealtimeSettings realtime_;
   MicrocontrollerClock clock_;
+  double speed_;
   std::int64_t steps_per_sample_;
   std::int64_t period_ns_;  // of the IMU, time of the room
   std::int64_t patience_ns_;

@@ -1,9 +1,8 @@
 #include "swiftlet/services/mocap/captured_vehicle.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/dds/discovery/peer_log.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/log_label.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
@@ -31,8 +30,8 @@ CapturedVehicle::~CapturedVehicle() { frames_.remove(*this); }
 
 void CapturedVehicle::log_end() {
   frames_.remove(*this);
-  spdlog::info("ended: {} frames, {} untracked{}", sequence_, untracked_,
-               withheld_ == 0 ? "" : fmt::format(", {} withheld: a clock was unknown", withheld_));
+  runtime::log_info("ended: {} frames, {} untracked{}", sequence_, untracked_,
+                    withheld_ == 0 ? "" : fmt::format(", {} withheld: a clock was unknown", withheld_));
 }
 
 void CapturedVehicle::wait_for_frame() { clock_.ask_if_due(); }
@@ -61,7 +60,7 @@ void CapturedVehicle::find_body(const mocap::Source& source) {
   index_ = mocap::find_body(source.bodies(), body_);
   if (!index_ || !was_missing) return;
   const mocap::Body& body = source.bodies()[*index_];
-  spdlog::info("{} is body '{}' with number {}", name(), runtime::printable(body.name), body.id);
+  runtime::log_info("{} is body '{}' with number {}", name(), runtime::printable(body.name), body.id);
 }
 
 void CapturedVehicle::warn_if_missing(const mocap::SourceFrame& frame, const mocap::Source& source) {
@@ -73,8 +72,8 @@ void CapturedVehicle::warn_if_missing(const mocap::SourceFrame& frame, const moc
   if (!missing_since_ns_) missing_since_ns_ = frame.arrived_ns;
   if (has_warned_ || frame.arrived_ns - *missing_since_ns_ < kPatienceNs) return;
   has_warned_ = true;
-  spdlog::warn("the motion capture has no {}; it has {}", body_.body_text(),
-               runtime::printable(mocap::to_string(source.bodies())));
+  runtime::log_warning("the motion capture has no {}; it has {}", body_.body_text(),
+                       runtime::printable(mocap::to_string(source.bodies())));
 }
 
 std::optional<plant::PoseSample> CapturedVehicle::sample_of(const mocap::SourceFrame& frame) const {

@@ -1,8 +1,7 @@
 #include "swiftlet/services/mocap/motion_capture_simulator.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include "swiftlet/services/dds/discovery/peer_log.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
@@ -26,8 +25,9 @@ MotionCaptureSimulator::MotionCaptureSimulator(const comms::Participant& partici
 
 void MotionCaptureSimulator::log_end() {
   const std::uint64_t withheld = withheld_.load();
-  spdlog::info("ended: {} frames, {} untracked{}", frames_.load(), untracked_.load(),
-               withheld == 0 ? "" : fmt::format(", {} withheld: the vehicle's clock was unknown", withheld));
+  runtime::log_info(
+      "ended: {} frames, {} untracked{}", frames_.load(), untracked_.load(),
+      withheld == 0 ? "" : fmt::format(", {} withheld: the vehicle's clock was unknown", withheld));
 }
 
 void MotionCaptureSimulator::on_truth(const comms::msg::GroundTruth& message) {
@@ -37,7 +37,7 @@ void MotionCaptureSimulator::on_truth(const comms::msg::GroundTruth& message) {
   plant::TruthSample truth;
   const comms::Fault fault = comms::from_message(message, truth);
   if (fault) {
-    if (!logged_fault_) spdlog::warn("ground truth refused: {}", fault.text);
+    if (!logged_fault_) runtime::log_warning("ground truth refused: {}", fault.text);
     logged_fault_ = true;
     return;
   }

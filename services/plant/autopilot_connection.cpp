@@ -8,8 +8,8 @@
 #include <time.h>
 
 #include <fmt/core.h>
-#include <spdlog/spdlog.h>
 
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "swiftlet/services/runtime/serial_device.hpp"
 
@@ -17,7 +17,7 @@ namespace swiftlet::services {
 namespace {
 
 constexpr std::int64_t kReopenPeriodNs = 500'000'000;
-constexpr std::int64_t kLogPeriodNs = 10'000'000'000;
+constexpr std::int64_t kConnectionLogPeriodNs = 10'000'000'000;
 constexpr int kLinesPerPeriod = 6;
 
 }  // namespace
@@ -83,15 +83,15 @@ bool AutopilotConnection::connect() {
 // A program that connects and ends again and again must not fill the log.
 void AutopilotConnection::log_line(bool is_warning, const char* text) {
   const std::int64_t now_ns = runtime::monotonic_ns();
-  if (now_ns - log_period_ns_ >= kLogPeriodNs) {
-    if (unlogged_ > 0) spdlog::warn("autopilot: {} more connections and disconnections", unlogged_);
+  if (now_ns - log_period_ns_ >= kConnectionLogPeriodNs) {
+    if (unlogged_ > 0) runtime::log_warning("autopilot: {} more connections and disconnections", unlogged_);
     log_period_ns_ = now_ns;
     logged_ = unlogged_ = 0;
   }
   if (++logged_ > kLinesPerPeriod) {
     ++unlogged_;
   } else {
-    spdlog::log(is_warning ? spdlog::level::warn : spdlog::level::info, text);
+    is_warning ? runtime::log_warning("{}", text) : runtime::log_info("{}", text);
   }
 }
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <limits>
 
-#include <spdlog/spdlog.h>
-
+#include "swiftlet/math/time.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
@@ -40,7 +40,7 @@ AutopilotLoop::AutopilotLoop(SimulatedVehicle& vehicle, const plant::Vehicle& pa
       imu_period_ns_(plant::period_ns(simulation.imu.rate_hz)),
       tick_period_ns_(std::llround(static_cast<double>(imu_period_ns_) / settings.speed)) {
   if (settings.autopilot.controls == "px4" && !spins_as_px4(parameters))
-    spdlog::warn(
+    runtime::log_warning(
         "the rotors of {} do not turn as those of PX4's quadrotor in X: change the signs of CA_ROTOR*_KM",
         parameters.name);
   if (!settings.trace.empty()) trace_.emplace(settings.trace, parameters.rotor_count());
@@ -66,7 +66,7 @@ void AutopilotLoop::run(const std::atomic<bool>& stop) {
 
 // Repeats the first samples: a recorder may not have been discovered when they were first sent.
 void AutopilotLoop::wait_for_connection(const std::atomic<bool>& stop) {
-  spdlog::info("waiting for the autopilot: {}", settings_.autopilot.description());
+  runtime::log_info("waiting for the autopilot: {}", settings_.autopilot.description());
   while (!autopilot_.introduced() && !stop.load(std::memory_order_relaxed)) {
     receive(runtime::monotonic_ns() + AutopilotConnection::kLongestWaitNs);
     vehicle_.report();
@@ -83,7 +83,7 @@ bool AutopilotLoop::waits_for_answer() const {
 
 void AutopilotLoop::wait_for_answer(const std::atomic<bool>& stop) {
   const std::int64_t deadline_ns =
-      runtime::monotonic_ns() + std::llround(settings_.autopilot.answer_timeout_s * 1e9);
+      runtime::monotonic_ns() + math::nanoseconds(settings_.autopilot.answer_timeout_s);
   while (!answered() && autopilot_.connected() && !stop.load(std::memory_order_relaxed)) {
     if (runtime::monotonic_ns() >= deadline_ns) {
       note_silence();
@@ -96,10 +96,10 @@ void AutopilotLoop::wait_for_answer(const std::atomic<bool>& stop) {
 void AutopilotLoop::note_silence() {
   silent_ = true;
   if (!autopilot_.heard()) {
-    spdlog::info("autopilot: sends no controls yet; samples go on at the pace of real time");
+    runtime::log_info("autopilot: sends no controls yet; samples go on at the pace of real time");
     return;
   }
-  spdlog::warn(
+  runtime::log_warning(
       "autopilot: no answer to the sample of t = {:.3f} s for {:g} s; going on at the pace of real time",
       static_cast<double>(vehicle_.simulation().stamp_ns()) * 1e-9, settings_.autopilot.answer_timeout_s);
 }
@@ -134,7 +134,7 @@ void AutopilotLoop::receive(std::int64_t deadline_ns) {
   }
   if (silent_ && received_.size() > before && answered()) {
     silent_ = false;
-    spdlog::info("autopilot: answers again");
+    runtime::log_info("autopilot: answers again");
   }
 }
 
@@ -150,7 +150,7 @@ void AutopilotLoop::note_answer(std::int64_t stamp_ns) {
   sooner_answers_ = 0;
   samples_per_answer_ = std::max(samples, 1);
   if (samples > most_left_out_)
-    spdlog::warn(
+    runtime::log_warning(
         "autopilot: answers one of {} samples; PX4 answers all if its IMU_GYRO_RATEMAX is above {:g} Hz",
         samples, 1e9 / static_cast<double>(imu_period_ns_));
   most_left_out_ = std::max(most_left_out_, samples);

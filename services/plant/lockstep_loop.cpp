@@ -9,9 +9,9 @@
 #include <utility>
 
 #include <fmt/core.h>
-#include <spdlog/spdlog.h>
 
 #include "swiftlet/recording/telemetry_rate.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
@@ -22,6 +22,9 @@ using Lock = std::lock_guard<std::mutex>;
 
 constexpr auto kPollPeriod = 20ms;  // unanswered samples are sent again after this time
 constexpr double kLongestPollS = 0.1;
+constexpr double kPaceWithoutControl =
+    0.25;  // simulated time per real time: a standby on a busy machine keeps up
+constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
 
 }  // namespace
 
@@ -32,14 +35,16 @@ LockstepLoop::LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSet
       mocap_(settings.mocap, seed),
       lockstep_(lockstep),
       imu_period_ns_(plant::period_ns(settings.imu.rate_hz)),
+      control_missing_(lockstep.goes_on),
       expected_(settings, 0),
-      advance_to_ns_(lockstep.paused ? -1 : std::numeric_limits<std::int64_t>::max()),
-      paced_ns_(lockstep.speed > 0.0 ? 0 : std::numeric_limits<std::int64_t>::max()) {
+      advance_to_ns_(lockstep.paused ? -1 : kNoLimit),
+      paced_ns_(lockstep.speed > 0.0 || lockstep.goes_on ? 0 : kNoLimit) {
   if (!lockstep.trace.empty()) trace_.emplace(lockstep.trace, rotor_count);
   commands_ = subscribe_commands(node, settings.control_levels, comms::Delivery::kShared,
                                  [this](const ReceivedCommand& received) { on_command(received); });
-  poses_ = node.subscribe<comms::msg::MocapPose>(comms::topics::kMocapPose,
-                                                 [this](const auto& message) { on_pose(message); });
+  poses_ = node.subscribe<comms::msg::MocapPose>(
+      comms::topics::kMocapPose, [this](const auto& message) { on_pose(message); }, comms::Delivery::kShared,
+      comms::kSourceSilence);
   if (lockstep.paused) {
     clock_ = node.subscribe<comms::msg::SimulationClock>(comms::topics::kSimulationClock,
                                                          [this](const auto& message) { on_clock(message); });
@@ -49,27 +54,32 @@ LockstepLoop::LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSet
 void LockstepLoop::run(const std::atomic<bool>& stop) {
   std::int64_t polled_ns = runtime::monotonic_ns();
   while (!stop.load(std::memory_order_relaxed)) {
+    std::chrono::nanoseconds period = kPollPeriod;
     {
       const Lock lock(mutex_);
       const std::int64_t now_ns = runtime::monotonic_ns();
       poll(std::min(static_cast<double>(now_ns - polled_ns) * 1e-9, kLongestPollS));
       polled_ns = now_ns;
+      if (control_missing_) period = std::chrono::nanoseconds(imu_period_ns_);
     }
-    std::this_thread::sleep_for(kPollPeriod);
+    std::this_thread::sleep_for(period);
   }
   const Lock lock(mutex_);
   if (trace_) trace_->close();
 }
 
-// An invalid command answers nothing: its sample number may be invalid too.
+// An invalid command answers nothing: its sample number may be invalid too. While time goes on without control, commands
+// may also answer earlier samples, as in real time.
 void LockstepLoop::on_command(const ReceivedCommand& received) {
   const Lock lock(mutex_);
   if (!started_ || !command_due()) return;  // a repeated answer
   const bool answers = plant::header_of(received.command).imu_sequence == *vehicle_.awaited();
-  if (!received.fault && !answers) return;
+  if (!received.fault && !answers && !control_missing_) return;
   if (!vehicle_.obey(received)) return;
+  if (control_missing_) return_of_control();
   control_heard_ = true;
   command_ = received.command;
+  if (!answers) return;
   vehicle_.go_on_in_order();
   advance();
 }
@@ -77,6 +87,7 @@ void LockstepLoop::on_command(const ReceivedCommand& received) {
 void LockstepLoop::on_pose(const comms::msg::MocapPose& message) {
   const Lock lock(mutex_);
   mocap_heard_ = true;
+  mocap_missing_ = false;
   plant::PoseSample pose;
   const bool is_new = message.sequence_number() > mocap_sequence_;
   if (is_new && vehicle_.needs_poses() && !comms::from_message(message, pose)) vehicle_.on_pose(pose);
@@ -101,12 +112,15 @@ bool LockstepLoop::may_advance() const {
   return !is_paused() && vehicle_.simulation().stamp_ns() + imu_period_ns_ <= paced_ns_;
 }
 
-// Advances the time limit by the time in which this process was running. Late answers are not made up for.
+// Advances the time limit by the time in which this process was running. Late answers are not made up for. Without control
+// one sample follows after the other, so that a standby that is to take over can answer each.
 void LockstepLoop::keep_pace(double awake_s) {
-  if (lockstep_.speed == 0.0) return;
-  const double step_ns = 1e9 * awake_s * lockstep_.speed;
+  if (paced_ns_ == kNoLimit) return;
   const std::int64_t next_ns = vehicle_.simulation().stamp_ns() + imu_period_ns_;
-  paced_ns_ = std::min(paced_ns_, next_ns) + std::llround(step_ns);
+  std::int64_t step_ns = std::llround(1e9 * awake_s * lockstep_.speed);
+  if (control_missing_)
+    step_ns = std::min<std::int64_t>(std::llround(1e9 * kPaceWithoutControl * awake_s), imu_period_ns_);
+  paced_ns_ = std::min(paced_ns_, next_ns) + step_ns;
   advance();
 }
 
@@ -141,7 +155,7 @@ void LockstepLoop::publish() {
                    runtime::is_telemetry_sample(simulation.imu_count(), imu_period_ns_);
     if (truth_needed && !frame) truth_sent_ns_ = stamp_ns;
   }
-  vehicle_.publish_samples_in_order(mocap_due_, truth_needed);
+  vehicle_.publish_samples_in_order(mocap_missing_ ? mocap_sequence_ : mocap_due_, truth_needed);
 }
 
 // True if the mocap path with its faults delivers a frame at this stamp.
@@ -168,6 +182,7 @@ void LockstepLoop::poll(double awake_s) {
   if (clock_heard_ && (clock_silence_s_ += awake_s) > lockstep_.patience_s)
     throw std::runtime_error(silent_ground());
   if (answered()) {
+    if (control_missing_) return;  // new samples follow
     // The controller evaluates requests with each sample, also with a repeated one. The first samples are all
     // repeated until time advances: a recorder may not have been discovered when they were first sent.
     if (vehicle_.simulation().stamp_ns() == 0) return vehicle_.publish_again();
@@ -183,9 +198,30 @@ void LockstepLoop::note_silence(double awake_s) {
   if (silence_s_ <= lockstep_.patience_s) return;
   const bool control_to_start = command_due() && !control_heard_;
   const bool mocap_to_start = mocap_silent() && !mocap_heard_;
-  if (!control_to_start && !mocap_to_start) throw std::runtime_error(silent_peer());
+  if (!control_to_start && !mocap_to_start) {
+    if (!lockstep_.goes_on) throw std::runtime_error(silent_peer());
+    return go_on_without_silent_peers();
+  }
   const std::string peers = control_to_start ? mocap_to_start ? "mocap and control" : "control" : "mocap";
-  if (std::exchange(logged_wait_, peers) != peers) spdlog::info("waiting for {}", peers);
+  if (std::exchange(logged_wait_, peers) != peers) runtime::log_info("waiting for {}", peers);
+}
+
+void LockstepLoop::go_on_without_silent_peers() {
+  runtime::log_warning("{}; going on without it", silent_peer());
+  mocap_missing_ = mocap_missing_ || mocap_silent();
+  silence_s_ = 0.0;
+  if (command_due() && !control_missing_) {
+    control_missing_ = true;
+    paced_ns_ = vehicle_.simulation().stamp_ns();
+  }
+  advance();
+}
+
+void LockstepLoop::return_of_control() {
+  if (control_heard_) runtime::log_info("control answers again");
+  control_missing_ = false;
+  silence_s_ = 0.0;
+  paced_ns_ = lockstep_.speed > 0.0 ? vehicle_.simulation().stamp_ns() : kNoLimit;
 }
 
 std::string LockstepLoop::silent_ground() const {

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <spdlog/spdlog.h>
-
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/services/plant/hil_messages.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
@@ -15,8 +15,7 @@ namespace {
 
 constexpr std::uint8_t kDefaultSystemId = 1;
 constexpr std::uint8_t kSimulatorComponent = 200;  // as PX4's other simulators
-constexpr std::int64_t kSecondNs = 1'000'000'000;
-constexpr std::int64_t kLogPeriodNs = 5 * kSecondNs;
+constexpr std::int64_t kLogPeriodNs = 5 * math::kSecond_ns;
 constexpr std::int64_t kDefaultStateIntervalUs = 20'000;
 
 }  // namespace
@@ -54,7 +53,7 @@ void MavlinkAutopilot::send(const HilSamples& samples) {
   const auto unix_usec = static_cast<std::uint64_t>(samples.unix_ns / 1000);
   message_bytes_.clear();
   if (stamp_ns >= next_second_ns_) {
-    next_second_ns_ = stamp_ns + kSecondNs;
+    next_second_ns_ = stamp_ns + math::kSecond_ns;
     add(mavlink::Heartbeat{});
     add(mavlink::SystemTime{unix_usec, static_cast<std::uint32_t>(time_usec / 1000)});
   }
@@ -97,7 +96,7 @@ bool MavlinkAutopilot::is_from_autopilot(const mavlink::Frame& frame) {
        mavlink::from_frame<mavlink::Heartbeat>(frame).autopilot != mavlink::Heartbeat::kNoAutopilot);
   if (!system_id_ && introduces) {
     system_id_ = frame.system_id;
-    spdlog::info("autopilot is MAVLink system {}", frame.system_id);
+    runtime::log_info("autopilot is MAVLink system {}", frame.system_id);
   }
   if (system_id_ == frame.system_id) {
     introduced_ = introduced_ || introduces;
@@ -128,13 +127,14 @@ void MavlinkAutopilot::log_trouble() {
   log_due_ns_ = now_ns + kLogPeriodNs;
   logged_ = trouble_;
   if (skipped > 0)
-    spdlog::warn("autopilot: ignored {} bytes that are no MAVLink frame, {} frames with a wrong checksum",
-                 skipped, wrong_checksum);
+    runtime::log_warning(
+        "autopilot: ignored {} bytes that are no MAVLink frame, {} frames with a wrong checksum", skipped,
+        wrong_checksum);
   if (other_system > 0)
-    spdlog::warn("autopilot: ignored {} messages of other systems than {}, the last of {}", other_system,
-                 system_id_.value_or(0), other_system_id_);
+    runtime::log_warning("autopilot: ignored {} messages of other systems than {}, the last of {}",
+                         other_system, system_id_.value_or(0), other_system_id_);
   if (unsent > 0)
-    spdlog::warn("autopilot: {} samples were not sent: the link is slower than their rate", unsent);
+    runtime::log_warning("autopilot: {} samples were not sent: the link is slower than their rate", unsent);
 }
 
 }  // namespace swiftlet::services

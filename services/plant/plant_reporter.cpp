@@ -1,8 +1,8 @@
 #include "swiftlet/services/plant/plant_reporter.hpp"
 
 #include <fmt/core.h>
-#include <spdlog/spdlog.h>
 
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
@@ -66,11 +66,11 @@ void PlantReporter::publish_due(const PlantReport& report) {
 void PlantReporter::log_rotors(const PlantReport& report, const std::string& fault) {
   if (report.rotors_running == last_report_.rotors_running) return;
   if (report.rotors_running) {
-    spdlog::info("rotors started");
+    runtime::log_info("rotors started");
   } else if (report.timed_out) {
-    spdlog::error("rotors stopped: {}", fault);
+    runtime::log_error("rotors stopped: {}", fault);
   } else {
-    spdlog::info("rotors stopped on command");
+    runtime::log_info("rotors stopped on command");
   }
 }
 
@@ -80,24 +80,24 @@ bool PlantReporter::log_trouble(const PlantReport& report) {
   const bool refused = report.refused_commands > logged_report_.refused_commands;
   const bool slipped = report.slips > logged_report_.slips;
   if (outdated) {
-    spdlog::warn("commands ceased for more than {:g} s, {} times: obeyed none meanwhile", command_hold_s_,
-                 report.outdated - logged_report_.outdated);
+    runtime::log_warning("commands ceased for more than {:g} s, {} times: obeyed none meanwhile",
+                         command_hold_s_, report.outdated - logged_report_.outdated);
   }
   if (refused) {
-    spdlog::warn("refused {} actuator commands, the last: {}",
-                 report.refused_commands - logged_report_.refused_commands, report.refusal.text);
+    runtime::log_warning("refused {} actuator commands, the last: {}",
+                         report.refused_commands - logged_report_.refused_commands, report.refusal.text);
   }
   if (slipped) {
-    spdlog::warn("fell behind real time: delayed simulated time {} times, by {:.1f} ms in total",
-                 report.slips - logged_report_.slips,
-                 static_cast<double>(report.slipped_ns - logged_report_.slipped_ns) * 1e-6);
+    runtime::log_warning("fell behind real time: delayed simulated time {} times, by {:.1f} ms in total",
+                         report.slips - logged_report_.slips,
+                         static_cast<double>(report.slipped_ns - logged_report_.slipped_ns) * 1e-6);
   }
   logged_report_ = report;
   return outdated || refused || slipped;
 }
 
 void PlantReporter::log_end(const PlantReport& last) {
-  spdlog::info(
+  runtime::log_info(
       "ended after {:.1f} s of simulated time: {} commands obeyed, {} refused; sense to actuate p50 {:.0f} "
       "us, "
       "p99 {:.0f} us, max {:.0f} us over {} samples, {} unanswered; behind real time {} times, {:.1f} ms",

@@ -101,7 +101,7 @@ void SimulatedVehicle::refuse(const comms::Fault& fault) {
 }
 
 void SimulatedVehicle::step() {
-  while (const auto pose = pose_path_.take(simulation_.stamp_ns())) firmware_.on_pose(*pose);
+  while (const auto* pose = pose_path_.take(simulation_.stamp_ns())) firmware_.on_pose(*pose);
   if (const auto arrived = command_path_.arrived(simulation_.stamp_ns())) accept(*arrived);
   const plant::MotorCommand command = firmware_.motor_command(simulation_.stamp_ns());
   const bool running = command.state == plant::RotorState::kRunning;
@@ -147,7 +147,7 @@ void SimulatedVehicle::prepare_imu(const plant::TelemetryPacket& packet) {
 
 void SimulatedVehicle::publish_samples(bool truth_needed) {
   if (telemetry_path_.has_radio()) {
-    while (const auto packet = telemetry_path_.take(simulation_.stamp_ns())) {
+    while (const auto* packet = telemetry_path_.take(simulation_.stamp_ns())) {
       prepare_imu(*packet);
       publish_imu_again();
       publish_slow_samples(packet->battery, packet->rotor_speeds);
@@ -181,8 +181,8 @@ void SimulatedVehicle::publish_samples_in_order(std::uint64_t mocap_sequence, bo
 void SimulatedVehicle::go_on_in_order() {
   awaited_.reset();
   if (!telemetry_path_.has_radio()) return;
-  const auto packet = telemetry_path_.take(simulation_.stamp_ns());
-  if (!packet) return;
+  const auto* packet = telemetry_path_.take(simulation_.stamp_ns());
+  if (packet == nullptr) return;
   publish_slow_samples(packet->battery, packet->rotor_speeds);
   publish_imu_in_order(*packet);
 }

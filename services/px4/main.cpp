@@ -9,13 +9,13 @@
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/services/dds/discovery/sole_source.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/node_options.hpp"
+#include "swiftlet/services/dds/reach.hpp"
 #include "swiftlet/services/dds/vehicle_list.hpp"
 #include "swiftlet/services/px4/parameters.hpp"
 #include "swiftlet/services/px4/px4_bridge.hpp"
@@ -153,6 +153,7 @@ void run(const Options& options) {
 
   comms::NodeSettings network = options.node;
   network.announcement_period = comms::kFixturePeriod;
+  network.realtime_priority = settings.realtime.thread_priority();
   network.source_of = comms::topics::kImu.name;
   comms::Participant participant(network, names);
   const comms::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
@@ -164,8 +165,9 @@ void run(const Options& options) {
     vehicles.push_back(std::make_unique<Px4Bridge>(participant, name, settings));
     ++settings.instance;
   }
-  spdlog::info("ready: vehicle {} in domain {}, PX4 instance {}, topics rt{}", fmt::join(names, ","),
-               network.domain, first_instance, topic_folder(first_instance));
+  comms::log_reach(network);
+  runtime::log_info("ready: vehicle {} in domain {}, PX4 instance {}, topics rt{}", fmt::join(names, ","),
+                    network.domain, first_instance, topic_folder(first_instance));
   runtime::host(std::move(vehicles), stop, kReportPeriod);
   source.check();
 }

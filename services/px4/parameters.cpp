@@ -15,6 +15,7 @@
 
 #include "swiftlet/io/mavlink/messages.hpp"
 #include "swiftlet/io/mavlink/payload.hpp"
+#include "swiftlet/services/px4/words.hpp"
 
 namespace swiftlet::px4 {
 namespace {
@@ -25,7 +26,6 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kAnswerTime = 300ms;
 constexpr int kTries = 5;
 constexpr mavlink::Address kOwnAddress{255, 191};  // as a ground station's onboard computer
-constexpr std::uint8_t kAutopilotComponent = 1;
 
 constexpr ParameterValue whole(int value) { return {true, static_cast<double>(value)}; }
 constexpr ParameterValue real(double value) { return {false, value}; }

@@ -1,4 +1,4 @@
-// swiftlet-px4's vehicle: joins one PX4 to the topics of a vehicle.
+// swiftlet-px4's vehicle on the network: joins one PX4 to the topics of a vehicle. What it does is in px4_vehicle.hpp.
 //
 //   sensor_combined or vehicle_odometry, battery_status --> imu or vehicle_odometry, battery --> control
 //   offboard_control_mode, setpoint <-- rates_setpoint, attitude_setpoint or trajectory_setpoint <-- control
@@ -12,38 +12,21 @@
 #include <atomic>
 #include <cstdint>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "swiftlet/plant/model/vehicle.hpp"
-#include "swiftlet/plant/simulation/command_watchdog.hpp"
 #include "swiftlet/services/dds/clocks/clock_server.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/throttled_warning.hpp"
-#include "swiftlet/services/px4/offboard_session.hpp"
-#include "swiftlet/services/px4/px4_clock.hpp"
 #include "swiftlet/services/px4/px4_topics.hpp"
-#include "swiftlet/services/px4/thrust_scale.hpp"
-#include "swiftlet/services/px4/translate.hpp"
-#include "swiftlet/services/px4/versions.hpp"
-#include "swiftlet/services/px4/vision.hpp"
+#include "swiftlet/services/px4/px4_vehicle.hpp"
 #include "swiftlet/services/runtime/hosting.hpp"
 #include "swiftlet/services/runtime/realtime.hpp"
 
 namespace swiftlet::px4 {
 
-// What control is sent of PX4: its IMU, or its own estimate.
-enum class Samples { kImu, kOdometry };
-
-struct BridgeSettings {
-  plant::Vehicle vehicle;
+struct BridgeSettings : Px4VehicleSettings {
   int instance = 0;
-  plant::ControlLevels levels;
-  Samples samples = Samples::kImu;
-  double control_silence_s = 0.2;
-  std::optional<double> hover_throttle;
-  VisionSettings vision;
   runtime::RealtimeSettings realtime;
 };
 
@@ -68,40 +51,14 @@ class Px4Bridge final : public runtime::HostedVehicle {
   void on_setpoint(const Message& message);
   void on_pose(const comms::msg::MocapPose& message);
 
-  void stream(const plant::VehicleCommand& command);
-  OffboardInputs inputs(std::int64_t now_ns) const;
-  std::string arming_fault(std::int64_t now_ns) const;
+  void publish(const OffboardStream& stream);
   void log_changes();
-  comms::msg::VehicleInfo info() const;
 
   const BridgeSettings settings_;
   const Px4Topics topics_;
 
-  mutable std::mutex mutex_;  // guards all down to the publishers; held for microseconds
-  OffboardSession session_;
-  plant::CommandWatchdog watchdog_;
-  ThrustScale scale_;
-  Px4Clock clock_;  // of the samples that control is sent
-  Vision vision_;
-  Version version_;
-  std::optional<msg::VehicleStatus> status_;
-  std::optional<msg::FailsafeFlags> flags_;
-  plant::OdometrySample estimate_;  // PX4's
-  bool landed_ = true;
-  bool rotors_wanted_ = false;
-  std::int64_t commanded_ns_ = 0;
-  std::int64_t streamed_since_ns_ = 0;
-  std::int64_t status_ns_ = 0;
-  std::int64_t sampled_ns_ = 0;
-  std::int64_t estimated_ns_ = 0;
-  double thrust_n_ = 0.0;
-  plant::ControlLevel level_ = plant::ControlLevel::kActuators;
-  std::uint64_t samples_ = 0;  // of the IMU, or of PX4's estimate
-  std::uint64_t battery_samples_ = 0;
-  std::uint64_t refused_commands_ = 0;
-  std::uint64_t setpoints_ = 0;
-  plant::CommandFault refusal_ = plant::CommandFault::kNone;
-  std::int64_t battery_ns_ = 0;  // when the last one was passed on
+  mutable std::mutex mutex_;  // guards the vehicle; held for microseconds
+  Px4Vehicle vehicle_;
 
   comms::ThrottledWarning sensor_faults_{"sensor_combined"};
   comms::ThrottledWarning battery_faults_{"battery_status"};

@@ -22,7 +22,6 @@ constexpr std::array<float, 3> kUnusedVector{kUnused, kUnused, kUnused};
 // Of commands: what ground stations use, so that PX4 sees them as external.
 constexpr std::uint8_t kOurSystem = 255;
 constexpr std::uint16_t kOurComponent = 191;  // MAV_COMP_ID_ONBOARD_COMPUTER
-constexpr std::uint8_t kAutopilotComponent = 1;
 
 constexpr float kCustomMode = 1.0F;        // param1 of DO_SET_MODE
 constexpr float kMainModeOffboard = 6.0F;  // param2

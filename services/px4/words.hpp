@@ -8,6 +8,8 @@
 
 namespace swiftlet::px4 {
 
+constexpr std::uint8_t kAutopilotComponent = 1;  // of MAVLink: the flight controller
+
 // Of VehicleStatus.
 constexpr std::uint8_t kArmingStateArmed = 2;
 constexpr std::uint8_t kNavStateOffboard = 14;

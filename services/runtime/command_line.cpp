@@ -261,6 +261,9 @@ void Option::describe(const std::string& description) { option_->description(des
 CommandLine CommandLine::add_subcommand(const std::string& name, const std::string& description) const {
   return CommandLine(*app_->add_subcommand(name, description));
 }
+CommandLine CommandLine::subcommand(const std::string& name) const {
+  return CommandLine(*app_->get_subcommand(name));
+}
 void CommandLine::require_subcommand(std::size_t least, std::size_t most) const {
   app_->require_subcommand(least, most);
 }

@@ -57,6 +57,7 @@ class CommandLine {
   explicit CommandLine(CLI::App& app) : app_(&app) {}
 
   CommandLine add_subcommand(const std::string& name, const std::string& description) const;
+  CommandLine subcommand(const std::string& name) const;  // one that was added
   void require_subcommand(std::size_t least, std::size_t most) const;
   void footer(const std::string& text) const;
   std::string footer() const;

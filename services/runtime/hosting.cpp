@@ -6,8 +6,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include <spdlog/spdlog.h>
-
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/log_label.hpp"
 
 namespace swiftlet::runtime {
@@ -113,7 +112,7 @@ void host(std::vector<std::unique_ptr<HostedVehicle>> vehicles, StopSignal& stop
     for (const auto& one : fleet) one->attend();
     for (const auto& one : take_failed(fleet)) {
       failures.push_back(one->failure());
-      if (count > 1) spdlog::error("{}; this vehicle ends, {} go on", failures.back(), fleet.size());
+      if (count > 1) runtime::log_error("{}; this vehicle ends, {} go on", failures.back(), fleet.size());
     }
   } while (!fleet.empty() && !stop.wait_for(period));
   for (const auto& one : fleet) one->request_stop();

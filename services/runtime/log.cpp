@@ -1,11 +1,13 @@
 #include "swiftlet/services/runtime/log.hpp"
 
+#include <exception>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <spdlog/async.h>
 #include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -38,7 +40,33 @@ class LabellingLogger final : public spdlog::logger {
   std::shared_ptr<spdlog::logger> below_;
 };
 
+spdlog::level::level_enum level_of(LogLevel level) {
+  switch (level) {
+    case LogLevel::kDebug:
+      return spdlog::level::debug;
+    case LogLevel::kInfo:
+      return spdlog::level::info;
+    case LogLevel::kWarning:
+      return spdlog::level::warn;
+    case LogLevel::kError:
+      break;
+  }
+  return spdlog::level::err;
+}
+
 }  // namespace
+
+void write_log(LogLevel level, fmt::string_view format, fmt::format_args arguments) {
+  spdlog::logger& logger = *spdlog::default_logger_raw();
+  if (!logger.should_log(level_of(level))) return;
+  fmt::memory_buffer line;  // on the stack up to 500 bytes
+  try {
+    fmt::vformat_to(fmt::appender(line), format, arguments);
+    logger.log(level_of(level), spdlog::string_view_t(line.data(), line.size()));
+  } catch (const std::exception& error) {  // a line that cannot be written ends no flight
+    logger.log(spdlog::level::err, std::string("cannot write a log line: ") + error.what());
+  }
+}
 
 void log_to_stderr() {
   spdlog::default_logger()->sinks() = {std::make_shared<spdlog::sinks::stderr_color_sink_mt>()};

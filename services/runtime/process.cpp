@@ -9,9 +9,8 @@
 #include <thread>
 #include <unistd.h>
 
-#include <spdlog/spdlog.h>
-
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 
 namespace swiftlet::runtime {
 namespace {
@@ -84,7 +83,8 @@ RealtimeSettings prepare_realtime(RealtimeSettings settings, Clock clock) {
     if (!refusals.empty() && !refusal.empty()) refusals += "; ";
     refusals += refusal;
   }).join();
-  if (!refusals.empty()) spdlog::warn("real-time setup is incomplete, steps may be late: {}", refusals);
+  if (!refusals.empty())
+    runtime::log_warning("real-time setup is incomplete, steps may be late: {}", refusals);
   return settings;
 }
 

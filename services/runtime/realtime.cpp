@@ -73,6 +73,22 @@ bool this_thread_is_realtime() {
   return pthread_getschedparam(pthread_self(), &policy, &parameters) == 0 && policy == SCHED_FIFO;
 }
 
+RealtimeScope::RealtimeScope(int priority) {
+  if (priority == 0 || this_thread_is_realtime()) return;
+  sched_param parameters{};
+  parameters.sched_priority = priority;
+  raised_ = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
+}
+
+RealtimeScope::~RealtimeScope() {
+  if (raised_) make_this_thread_ordinary();
+}
+
+void make_this_thread_ordinary() {
+  const sched_param parameters{};
+  pthread_setschedparam(pthread_self(), SCHED_OTHER, &parameters);
+}
+
 // Compares kernel thread IDs: a new thread often gets the pthread_t of an ended one.
 void RealtimeThread::enter(const RealtimeSettings& settings) {
   static thread_local const pid_t this_thread = ::gettid();

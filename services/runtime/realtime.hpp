@@ -11,6 +11,8 @@ struct RealtimeSettings {
   bool enabled = true;
   int priority = 0;  // SCHED_FIFO, 1 .. 99
   int cpu = -1;      // CPU core of the real-time thread; -1: any
+
+  int thread_priority() const { return enabled ? priority : 0; }  // 0: ordinary
 };
 
 // Sets the stack size of new threads to 1 MiB instead of the system's 8 MiB. With locked memory the kernel
@@ -28,6 +30,23 @@ std::string make_this_thread_realtime(const RealtimeSettings& settings);
 
 // Returns whether the calling thread has SCHED_FIFO.
 bool this_thread_is_realtime();
+
+// Gives the calling thread SCHED_FIFO while it exists, if the system permits that and the thread has it not yet. For threads of
+// ordinary priority that take locks for which real-time threads wait: nothing but real-time threads keeps them from running
+// meanwhile. Threads that are started meanwhile have it too.
+class RealtimeScope {
+ public:
+  explicit RealtimeScope(int priority);  // 0: no effect
+  ~RealtimeScope();
+  RealtimeScope(const RealtimeScope&) = delete;
+  RealtimeScope& operator=(const RealtimeScope&) = delete;
+
+ private:
+  bool raised_ = false;
+};
+
+// Takes SCHED_FIFO from the calling thread, which may have it from the one that started it.
+void make_this_thread_ordinary();
 
 // The thread that currently runs the real-time steps; the middleware may replace it by another thread.
 class RealtimeThread {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include <fmt/core.h>
-#include <spdlog/spdlog.h>
 
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
@@ -45,9 +45,10 @@ void LinkReporter::update(const LinkMeasurements& measurements) {
   if (!clock_logged_ && last_.link.clock) {
     clock_logged_ = true;
     const std::int64_t now_ns = runtime::monotonic_ns();
-    spdlog::info("microcontroller's clock minus this host's monotonic clock: {:+.6f} s (within {:.3f} ms)",
-                 static_cast<double>(last_.link.clock->offset_at(now_ns)) * 1e-9,
-                 last_.link.clock->uncertainty_ns(now_ns) * 1e-6);
+    runtime::log_info(
+        "microcontroller's clock minus this host's monotonic clock: {:+.6f} s (within {:.3f} ms)",
+        static_cast<double>(last_.link.clock->offset_at(now_ns)) * 1e-9,
+        last_.link.clock->uncertainty_ns(now_ns) * 1e-6);
   }
   if (runtime::monotonic_ns() >= frames_due_ns_) log_frames();
 }
@@ -103,10 +104,10 @@ std::string LinkReporter::fault_of_microcontroller() const {
 
 void LinkReporter::log_link(const LinkMeasurements& before) const {
   const bool was_connected = before.link.state == LinkState::kConnected;
-  if (was_connected && !is_connected()) spdlog::error(fault_of_vehicle());
+  if (was_connected && !is_connected()) runtime::log_error("{}", fault_of_vehicle());
   if (is_connected() && before.link.sessions != last_.link.sessions) {
     const protocol::HelloReply& it = *last_.link.microcontroller;
-    spdlog::info(
+    runtime::log_info(
         "session {} with microcontroller '{}': protocol {}, {} rotors, IMU at {} Hz, command time-out {} ms",
         last_.link.sessions, text_of(it.name), it.version, it.rotor_count, it.imu_rate_hz,
         it.command_timeout_ms);
@@ -115,18 +116,18 @@ void LinkReporter::log_link(const LinkMeasurements& before) const {
   if (is_connected() || was_connected) return;
   const bool is_new =
       before.link.state != last_.link.state || before.link.open_fault != last_.link.open_fault;
-  if (is_new) spdlog::warn(fault_of_vehicle());
+  if (is_new) runtime::log_warning("{}", fault_of_vehicle());
 }
 
 void LinkReporter::log_rotors(const LinkMeasurements& before) const {
   if (before.state.rotors_running == last_.state.rotors_running) return;
   const std::string_view fault = text_of(last_.state.fault);
   if (last_.state.rotors_running != 0) {
-    spdlog::info("rotors started");
+    runtime::log_info("rotors started");
   } else if (!fault.empty()) {
-    spdlog::error("rotors stopped by the microcontroller: {}", fault);
+    runtime::log_error("rotors stopped by the microcontroller: {}", fault);
   } else {
-    spdlog::info("rotors stopped on command");
+    runtime::log_info("rotors stopped on command");
   }
 }
 
@@ -144,22 +145,22 @@ void LinkReporter::log_frames() {
   const std::uint32_t refused = since(last_.state.commands_refused, logged_.state.commands_refused);
   if (broken + lost + broken_down + lost_down + refused == 0) return;
   if (broken + lost + broken_down + lost_down > 0) {
-    spdlog::warn("frames from the microcontroller: {} broken, {} lost; to it: {} broken, {} lost", broken,
-                 lost, broken_down, lost_down);
+    runtime::log_warning("frames from the microcontroller: {} broken, {} lost; to it: {} broken, {} lost",
+                         broken, lost, broken_down, lost_down);
   }
   if (refused > 0)
-    spdlog::warn("the microcontroller refused {} commands, the last: {}", refused,
-                 text_of(last_.state.refusal));
+    runtime::log_warning("the microcontroller refused {} commands, the last: {}", refused,
+                         text_of(last_.state.refusal));
   logged_ = last_;
   frames_due_ns_ = runtime::monotonic_ns() + kFramesPeriodNs;
 }
 
 void LinkReporter::log_end() const {
   const protocol::FrameDecoder::Counts& up = last_.link.frames;
-  spdlog::info("link: sample to host {}; sample to motor {}; {} of {} samples answered, {} late",
-               quantiles(last_.sample_to_host), quantiles(last_.sample_to_motor), last_.answered,
-               last_.samples, last_.late);
-  spdlog::info(
+  runtime::log_info("link: sample to host {}; sample to motor {}; {} of {} samples answered, {} late",
+                    quantiles(last_.sample_to_host), quantiles(last_.sample_to_motor), last_.answered,
+                    last_.samples, last_.late);
+  runtime::log_info(
       "ended: {} sessions; {} frames from the microcontroller, {} broken, {} lost; to it: {}, {} broken, {} "
       "lost, {} not sent; {} commands obeyed, {} refused",
       last_.link.sessions, up.received, up.refused, up.lost, last_.state.frames_received,

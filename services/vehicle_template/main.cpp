@@ -18,14 +18,13 @@
 #include <utility>
 #include <vector>
 
-#include <spdlog/spdlog.h>
-
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/services/dds/clocks/clock_server.hpp"
 #include "swiftlet/services/dds/discovery/sole_source.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/node_options.hpp"
+#include "swiftlet/services/dds/reach.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/runtime/hosting.hpp"
 #include "swiftlet/services/runtime/latest_value.hpp"
@@ -193,14 +192,16 @@ void run(const Options& options) {
   network.hears_of_all = false;
   network.announcement_period = comms::kFixturePeriod;
   network.deadlines = false;  // the microcontroller tells the active controller by its term
+  network.realtime_priority = realtime.thread_priority();
   network.source_of = comms::topics::kImu.name;
   comms::Participant participant(network, {network.vehicle});
   const comms::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
   std::vector<std::unique_ptr<runtime::HostedVehicle>> vehicles;
   vehicles.push_back(
       std::make_unique<Vehicle>(participant, network.vehicle, parameters, options.link, realtime));
-  spdlog::info("ready: vehicle {} in domain {}, link {}", network.vehicle, network.domain,
-               options.link.name());
+  comms::log_reach(network);
+  runtime::log_info("ready: vehicle {} in domain {}, link {}", network.vehicle, network.domain,
+                    options.link.name());
   runtime::host(std::move(vehicles), stop, kReportPeriod);
   source.check();
 }

@@ -20,6 +20,7 @@
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/scripted_autopilot.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -93,9 +94,8 @@ class Flight {
   comms::msg::VehicleInfo newest_;
   comms::Subscription info_;
   std::unique_ptr<tests::Program> plant_;
-  tests::ScriptedAutopilot autopilot_{
-      runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml"), plant::SiteSettings(),
-      pilot_settings()};
+  tests::ScriptedAutopilot autopilot_{runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")),
+                                      plant::SiteSettings(), pilot_settings()};
 };
 
 double median(std::vector<double> values) {

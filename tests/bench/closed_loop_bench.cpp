@@ -1,6 +1,8 @@
 // The mission "square" from take-off to landing: simulated vehicle with all sensors, mocap and flight
 // controller in one thread. Plant and inner loop run at 1 kHz.
 #include <cstdint>
+#include <ctime>
+#include <vector>
 
 #include <benchmark/benchmark.h>
 
@@ -14,7 +16,24 @@
 namespace swiftlet {
 namespace {
 
-// An item is one step of plant and controller: 1 ms.
+constexpr std::uint64_t kSeed = 1;
+
+// CPU time of this process, s.
+double cpu_time_s() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+// The plant of a flight alone, with all its sensors: takes the commands of the flight again, one for each step.
+Eigen::Vector3d repeat(const std::vector<plant::MotorCommand>& commands, const plant::Vehicle& vehicle,
+                       const plant::SimulationSettings& simulation) {
+  plant::PlantSimulation plant(vehicle, simulation, kSeed);
+  for (const plant::MotorCommand& command : commands) {
+    plant.step(command);
+    benchmark::DoNotOptimize(plant.imu().has_value());
+  }
+  return plant.state().position_ned;
+}
+
+// An item is one step of plant and controller: 1 ms. plant_alone: CPU time of the plant's steps alone over that of the
+// flight, both measured in turn.
 void fly_square(benchmark::State& state, const char* settings_file) {
   const plant::Vehicle vehicle = runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml"));
   const control::ControlSettings settings =
@@ -28,13 +47,33 @@ void fly_square(benchmark::State& state, const char* settings_file) {
   mission.id = 1;
   const double planned_s = ground::planned_duration_s(mission, settings.limits);
 
+  std::vector<plant::MotorCommand> commands;
+  {
+    ground::ClosedLoop loop(vehicle, simulation, settings, kSeed);
+    const auto take_command = [&] { commands.push_back({loop.command.rotor_state, loop.command.throttle}); };
+    take_command();
+    ground::fly(loop, mission, planned_s, {nullptr, nullptr, {}, take_command, {}});
+    commands.pop_back();  // of the last sample: no step follows
+    if (repeat(commands, vehicle, simulation) != loop.plant.state().position_ned)
+      return state.SkipWithError("the plant alone moves otherwise than in the flight");
+  }
   std::int64_t simulated_ns = 0;
+  double flight_s = 0.0;
+  double plant_s = 0.0;
   for (auto _ : state) {
-    ground::ClosedLoop loop(vehicle, simulation, settings, 1);
+    const double begin_s = cpu_time_s();
+    ground::ClosedLoop loop(vehicle, simulation, settings, kSeed);
     const ground::SimulatedFlight flight = ground::fly(loop, mission, planned_s, {});
     if (!flight.completed) return state.SkipWithError(flight.reason.c_str());
     simulated_ns += loop.plant.stamp_ns();
+    state.PauseTiming();
+    flight_s += cpu_time_s() - begin_s;
+    const double alone_s = cpu_time_s();
+    repeat(commands, vehicle, simulation);
+    plant_s += cpu_time_s() - alone_s;
+    state.ResumeTiming();
   }
+  state.counters["plant_alone"] = plant_s / flight_s;
   state.SetItemsProcessed(simulated_ns / simulation.step_ns);
   state.counters["real_time_factor"] =
       benchmark::Counter(static_cast<double>(simulated_ns) * 1e-9, benchmark::Counter::kIsRate);

@@ -12,6 +12,7 @@
 #include "swiftlet/control/types/polynomial.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/math/euler.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/unit/plant/model/vehicles.hpp"
 
 namespace swiftlet::control {
@@ -21,7 +22,7 @@ using Eigen::Vector3d;
 
 const ControlSettings& settings() {
   static const ControlSettings loaded =
-      runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
+      runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml"));
   return loaded;
 }
 

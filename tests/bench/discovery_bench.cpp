@@ -36,7 +36,7 @@
 #include "swiftlet/services/runtime/process.hpp"
 #include "tests/bench/process_usage.hpp"
 #include "tests/support/eventually.hpp"
-#include "tests/support/network_namespace.hpp"
+#include "tests/support/network/network_namespace.hpp"
 
 namespace swiftlet {
 namespace {
@@ -150,6 +150,7 @@ class ServerProcess {
       network.hosts.enter(0);
       comms::DiscoveryServerSettings settings;
       settings.domain = network.domain;
+      settings.open_network = true;
       settings.port = comms::kDiscoveryServerPort;
       comms::DiscoveryServer server(settings, [](const comms::DiscoveryServerEvent&) {});
       pollfd input{input_[0], POLLIN, 0};
@@ -186,6 +187,7 @@ comms::NodeSettings settings_of(const std::string& name, const std::string& vehi
   settings.vehicle = vehicle;
   settings.domain = network.domain;
   settings.localhost_only = !network.server && network.hosts.count() == 1;
+  settings.open_network = !settings.localhost_only;
   if (network.server) settings.network.discovery_servers = network.hosts.server_address();
   return settings;
 }

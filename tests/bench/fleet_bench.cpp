@@ -43,17 +43,16 @@ constexpr int kSamplesPerPose = 5;
 struct Options {
   int vehicles = 8;
   double seconds = 5.0;
-  comms::Transport transport = comms::Transport::kUdp;
   bool json = false;
   runtime::ProcessOptions process;
 };
 
-comms::NodeSettings settings(const char* name, int domain, comms::Transport transport) {
+comms::NodeSettings settings(const char* name, int domain, const runtime::RealtimeSettings& realtime) {
   comms::NodeSettings settings;
   settings.name = name;
   settings.domain = domain;
   settings.localhost_only = true;
-  settings.transport = transport;
+  settings.realtime_priority = realtime.thread_priority();
   return settings;
 }
 
@@ -227,7 +226,7 @@ class ServingProcess {
     ::close(pipe_[1]);
     const runtime::RealtimeSettings realtime =
         runtime::prepare_realtime(options.process.realtime, runtime::Clock::kRealtime);
-    const comms::Participant participant(settings(name, domain, options.transport), names(options.vehicles));
+    const comms::Participant participant(settings(name, domain, realtime), names(options.vehicles));
     const auto vehicles = serve<Vehicle>(participant, options.vehicles, realtime);
     char byte = 0;
     while (::read(pipe_[0], &byte, 1) > 0) {
@@ -246,8 +245,7 @@ void run(const Options& options) {
   const ServingProcess<Mocap> mocap("mocap", lock.domain(), options);
   const runtime::RealtimeSettings realtime =
       runtime::prepare_realtime(options.process.realtime, runtime::Clock::kRealtime);
-  const comms::Participant participant(settings("plant", lock.domain(), options.transport),
-                                       names(options.vehicles));
+  const comms::Participant participant(settings("plant", lock.domain(), realtime), names(options.vehicles));
   std::vector<std::unique_ptr<Plant>> vehicles;
   for (const std::string& name : names(options.vehicles)) {
     const double phase = runtime::group_phase(vehicles.size(), static_cast<std::size_t>(options.vehicles));
@@ -301,11 +299,6 @@ int main(int argc, char** argv) {
       [&](runtime::CommandLine app) {
         app.add_option("--vehicles", options.vehicles, "number of vehicles").range(1, 50);
         app.add_option("--seconds", options.seconds, "duration, s").range(0.1, 3600.0);
-        app.add_choice("--transport", options.transport,
-                       {{"udp", comms::Transport::kUdp},
-                        {"shm", comms::Transport::kSharedMemory},
-                        {"data-sharing", comms::Transport::kDataSharing}},
-                       "of the messages; default: udp");
         app.add_flag("--json", options.json, "print JSON");
         runtime::add_process_options(app, options.process);
       },

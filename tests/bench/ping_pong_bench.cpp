@@ -60,15 +60,11 @@ struct Options {
   runtime::ProcessOptions process;
   // Options of the echo process.
   int echo_domain = -1;
-  int echo_transport = 0;
   std::string security;  // folder of the keys, also of the echo process; empty: none
   int echo_socket = -1;
 };
 
-constexpr std::pair<const char*, comms::Transport> kTransports[] = {
-    {"udp", comms::Transport::kUdp},
-    {"shm", comms::Transport::kSharedMemory},
-    {"data-sharing", comms::Transport::kDataSharing}};
+constexpr const char* kUdp = "udp";
 constexpr const char* kSocket = "unix-socket";
 constexpr const char* kSecureUdp = "udp-security";
 
@@ -97,14 +93,12 @@ T* require_created(T* made, const char* what) {
 template <class Sent, class SentType, class Received, class ReceivedType>
 class BarePair final : private dds::DataReaderListener {
  public:
-  BarePair(const Options& options, const char* name, int domain, comms::Transport transport,
-           const comms::Topic<Sent>& sent, const comms::Topic<Received>& received,
-           std::function<void(const Received&)> on_sample)
+  BarePair(const Options& options, const char* name, int domain, const comms::Topic<Sent>& sent,
+           const comms::Topic<Received>& received, std::function<void(const Received&)> on_sample)
       : on_sample_(std::move(on_sample)) {
     comms::NodeSettings settings;
     settings.name = name;
     settings.domain = domain;
-    settings.transport = transport;
     settings.localhost_only = true;
     settings.security = options.security;
     const int sent_deadline_ms = options.no_deadline ? 0 : sent.deadline_ms;
@@ -118,15 +112,14 @@ class BarePair final : private dds::DataReaderListener {
         require_created(participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT), "publisher");
     auto* const subscriber =
         require_created(participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT), "subscriber");
-    writer_ = require_created(
-        publisher->create_datawriter(topic<SentType>(wire_name(sent.name)),
-                                     comms::writer_qos(sent.qos, sent_deadline_ms, 0, transport)),
-        "writer");
+    writer_ = require_created(publisher->create_datawriter(topic<SentType>(wire_name(sent.name)),
+                                                           comms::writer_qos(sent.qos, sent_deadline_ms, 0)),
+                              "writer");
     reader_ = require_created(
         subscriber->create_datareader(
             topic<ReceivedType>(wire_name(received.name)),
-            comms::reader_qos(received.qos, received_deadline_ms, transport, comms::Delivery::kOwnThread),
-            this, dds::StatusMask::data_available()),
+            comms::reader_qos(received.qos, received_deadline_ms, comms::Delivery::kOwnThread), this,
+            dds::StatusMask::data_available()),
         "reader");
   }
   ~BarePair() override {
@@ -186,13 +179,13 @@ void echo_dds(const Options& options) {
   std::atomic<BareControl*> ready{nullptr};
   ThreadSetUp set_up(options.process.realtime);
   ActuatorCommand command;
-  pair = std::make_unique<BareControl>(
-      options, "control", options.echo_domain, static_cast<comms::Transport>(options.echo_transport),
-      comms::topics::kActuatorCommand, comms::topics::kImu, [&](const Imu& imu) {
-        set_up();
-        command.imu_sequence_number(imu.sequence_number());
-        if (BareControl* const self = ready.load()) self->send(command);
-      });
+  pair =
+      std::make_unique<BareControl>(options, "control", options.echo_domain, comms::topics::kActuatorCommand,
+                                    comms::topics::kImu, [&](const Imu& imu) {
+                                      set_up();
+                                      command.imu_sequence_number(imu.sequence_number());
+                                      if (BareControl* const self = ready.load()) self->send(command);
+                                    });
   ready = pair.get();
   char byte = 0;
   while (::read(STDIN_FILENO, &byte, 1) > 0) {
@@ -297,18 +290,16 @@ class RoundTrips {
   std::atomic<std::uint64_t> answers_{0};
 };
 
-void over_dds(const Options& options, comms::Transport transport, int rate_hz, RoundTrips& trips) {
+void over_udp(const Options& options, int rate_hz, RoundTrips& trips) {
   const comms::DomainLock lock;
   ThreadSetUp set_up(options.process.realtime);
-  BarePlant pair(options, "plant", lock.domain(), transport, comms::topics::kImu,
-                 comms::topics::kActuatorCommand, [&](const ActuatorCommand& command) {
+  BarePlant pair(options, "plant", lock.domain(), comms::topics::kImu, comms::topics::kActuatorCommand,
+                 [&](const ActuatorCommand& command) {
                    set_up();
                    trips.answered(command.imu_sequence_number());
                  });
-  const EchoProcess process(options,
-                            {"--echo-domain", std::to_string(lock.domain()), "--echo-transport",
-                             std::to_string(static_cast<int>(transport)), "--security", options.security},
-                            -1);
+  const EchoProcess process(
+      options, {"--echo-domain", std::to_string(lock.domain()), "--security", options.security}, -1);
   if (!tests::eventually([&] { return pair.matched(); }))
     throw std::runtime_error("the other process was not found");
   Imu imu;
@@ -321,7 +312,7 @@ void over_dds(const Options& options, comms::Transport transport, int rate_hz, R
 void over_secure_udp(Options options, int rate_hz, RoundTrips& trips) {
   const tests::TemporaryFolder folder;
   options.security = tests::make_security_keys(folder.path() / "keys", kVehicle);
-  over_dds(options, comms::Transport::kUdp, rate_hz, trips);
+  over_udp(options, rate_hz, trips);
 }
 
 void over_socket(const Options& options, int rate_hz, RoundTrips& trips) {
@@ -351,9 +342,7 @@ nlohmann::ordered_json measure(const Options& options, const std::string& name, 
   RoundTrips trips(static_cast<std::uint64_t>(options.seconds * rate_hz));
   if (name == kSocket) over_socket(options, rate_hz, trips);
   if (name == kSecureUdp) over_secure_udp(options, rate_hz, trips);
-  for (const auto& [transport_name, transport] : kTransports) {
-    if (name == transport_name) over_dds(options, transport, rate_hz, trips);
-  }
+  if (name == kUdp) over_udp(options, rate_hz, trips);
   const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-3; };
   const runtime::LatencyHistogram& times = trips.times();
   return {{"transport", name},
@@ -369,11 +358,7 @@ nlohmann::ordered_json measure(const Options& options, const std::string& name, 
 void run(Options options) {
   if (options.echo_domain >= 0) return echo_dds(options);
   if (options.echo_socket >= 0) return echo_socket(options);
-  if (options.transports.empty()) {
-    for (const auto& [name, transport] : kTransports) options.transports.emplace_back(name);
-    options.transports.emplace_back(kSecureUdp);
-    options.transports.emplace_back(kSocket);
-  }
+  if (options.transports.empty()) options.transports = {kUdp, kSecureUdp, kSocket};
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   if (!options.json) {
     std::printf("IMU out to command back, us\n%-14s %6s %8s %8s %8s %8s %6s\n", "transport", "Hz", "p50",
@@ -397,11 +382,10 @@ void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--seconds", options.seconds, "duration of each measurement, s").range(0.1, 3600.0);
   app.add_option("--rate", options.rates_hz, "samples per second; may be repeated").range(1, 10'000);
   app.add_option("--transport", options.transports, "only these transports; may be repeated")
-      .one_of({"udp", "shm", "data-sharing", kSecureUdp, kSocket});
+      .one_of({kUdp, kSecureUdp, kSocket});
   app.add_flag("--json", options.json, "print JSON");
   app.add_flag("--no-deadline", options.no_deadline, "without deadline QoS");
   app.add_option("--echo-domain", options.echo_domain, "").hidden();
-  app.add_option("--echo-transport", options.echo_transport, "").hidden();
   app.add_option("--echo-socket", options.echo_socket, "").hidden();
   app.add_option("--security", options.security, "").hidden();
   runtime::add_process_options(app, options.process);

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/ground/cli/simulation/level_gains.hpp"
+#include "swiftlet/ground/cli/analysis/level_gains.hpp"
 #include "swiftlet/ground/tuning/delay_design.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"

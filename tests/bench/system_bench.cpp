@@ -43,7 +43,6 @@ struct Options {
   double seconds = 5.0;
   std::vector<std::string> only;  // sections; empty: all
   std::vector<int> vehicles{1, 2, 4, 8, 16, 32};
-  comms::Transport transport = comms::Transport::kUdp;  // of the section fleet
   bool json = false;
 };
 
@@ -84,10 +83,6 @@ class CpuLoad {
 
 // ---- hovering vehicles
 
-std::string word_of(comms::Transport transport) {
-  return transport == comms::Transport::kSharedMemory ? "shm" : "udp";
-}
-
 constexpr std::array<const char*, 3> kProcesses = {"plant", "mocap", "control"};
 
 struct VehicleFigures {
@@ -109,8 +104,7 @@ struct FleetFigures {
 // Vehicles in one domain, served by one process of each role.
 class Fleet {
  public:
-  Fleet(int vehicles, int rate_hz, bool realtime, const fs::path& folder, int rotor_speed_rate_hz = 500,
-        comms::Transport transport = comms::Transport::kUdp) {
+  Fleet(int vehicles, int rate_hz, bool realtime, const fs::path& folder, int rotor_speed_rate_hz = 500) {
     std::string list;
     for (int i = 1; i <= vehicles; ++i) {
       names_.push_back("kl" + std::to_string(i));
@@ -118,12 +112,9 @@ class Fleet {
     }
     network_.domain = lock_.domain();
     network_.localhost_only = true;
-    network_.transport = transport;
     for (const char* name : kProcesses) {
-      std::vector<std::string> words{"--domain",         std::to_string(network_.domain),
-                                     "--vehicle-name",   list,
-                                     "--localhost-only", "--transport",
-                                     word_of(transport)};
+      std::vector<std::string> words{"--domain", std::to_string(network_.domain), "--vehicle-name", list,
+                                     "--localhost-only"};
       if (!realtime) words.emplace_back("--no-realtime");
       if (name == kProcesses[0])  // side by side, inside the fence
         words.insert(words.end(), {"--imu-rate", std::to_string(rate_hz), "--rotor-speed-rate",
@@ -306,10 +297,9 @@ constexpr std::chrono::milliseconds kLook{100};  // period of checks on the proc
 
 // Figures of vehicles that hover side by side; counters cover the last `seconds`. witness: measure the stalls.
 FleetFigures hover(int vehicles, int rate_hz, bool realtime, double seconds, bool loaded = false,
-                   bool with_witness = false, int rotor_speed_rate_hz = 500,
-                   comms::Transport transport = comms::Transport::kUdp) {
+                   bool with_witness = false, int rotor_speed_rate_hz = 500) {
   const tests::TemporaryFolder folder;
-  Fleet fleet(vehicles, rate_hz, realtime, folder.path(), rotor_speed_rate_hz, transport);
+  Fleet fleet(vehicles, rate_hz, realtime, folder.path(), rotor_speed_rate_hz);
   std::optional<CpuLoad> load;
   if (loaded) load.emplace();
   fleet.take_off();
@@ -405,9 +395,10 @@ void simulated_time(Table& table) {
 
   table.section("(e) closed loop in one process, 1 kHz control, all sensor models");
   for (const auto& [name, entry] : loop.items()) {
-    if (entry.contains("real_time_factor"))
-      table.add({name, entry.at("real_time_factor").get<double>(), "x", "plant steps alone", 1e6 / plant_ns,
-                 "at least 1000"});
+    if (!entry.contains("real_time_factor")) continue;
+    const double factor = entry.at("real_time_factor").get<double>();
+    table.add({name, factor, "x", "the plant of the same flight alone",
+               factor / entry.at("plant_alone").get<double>(), "at least 1000"});
   }
 
   table.section("(f) steps, CPU time, median of 5");
@@ -476,11 +467,9 @@ double percent(std::uint64_t part, std::uint64_t whole) {
 
 void fleet(Table& table, const Options& options, int vehicles, bool realtime, const std::string& name) {
   const double seconds = kFleetShare * options.seconds;
-  const FleetFigures flown =
-      hover(vehicles, 500, realtime, seconds, false, true, kFleetRotorSpeedRateHz, options.transport);
+  const FleetFigures flown = hover(vehicles, 500, realtime, seconds, false, true, kFleetRotorSpeedRateHz);
   const json bare = json::parse(output_of(program("fleet_bench").string() + " --json --vehicles " +
                                           std::to_string(vehicles) + " --seconds " + std::to_string(seconds) +
-                                          " --transport " + word_of(options.transport) +
                                           (realtime ? "" : " --no-realtime")));
   double worst_overdue = 0.0;
   double worst_late = 0.0;
@@ -501,8 +490,9 @@ void fleet(Table& table, const Options& options, int vehicles, bool realtime, co
 }
 
 void fleets(Table& table, const Options& options) {
-  table.section("(i) vehicles in one domain of this computer over " + word_of(options.transport) +
-                ", 500 Hz each, rotor speeds at 100 Hz, one process of each role");
+  table.section(
+      "(i) vehicles in one domain of this computer, 500 Hz each, rotor speeds at 100 Hz, one process of each "
+      "role");
   const int most_realtime =
       kRealtimeVehiclesPerCore * static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   for (const int vehicles : options.vehicles) {
@@ -543,9 +533,6 @@ void add_options(runtime::CommandLine app, Options& options) {
                  "numbers of vehicles of the section fleet; may be repeated; more than 8 for each core fly "
                  "without real-time priority")
       .range(1, 36);
-  app.add_choice("--transport", options.transport,
-                 {{"udp", comms::Transport::kUdp}, {"shm", comms::Transport::kSharedMemory}},
-                 "of the section fleet: udp, or shm: shared memory; default: udp");
   app.add_flag("--json", options.json, "print JSON");
 }
 

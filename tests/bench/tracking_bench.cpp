@@ -32,6 +32,7 @@
 #include "swiftlet/services/runtime/process.hpp"
 #include "swiftlet/simulation/closed_loop.hpp"
 #include "tests/bench/rough_air.hpp"
+#include "tests/support/paths.hpp"
 
 namespace swiftlet {
 namespace {
@@ -46,7 +47,7 @@ constexpr double kJoin = 0.5;    // s, join to a trajectory that starts at the c
 constexpr double kJump = 1e-4;   // m, step between segments with rounded coefficients
 
 struct Options {
-  std::string figure_of_eight = SWIFTLET_SOURCE_DIR "/tests/data/crazyswarm_figure8.csv";
+  std::string figure_of_eight = tests::in_source("tests/data/crazyswarm_figure8.csv");
   std::uint64_t seed = 1;
   std::vector<std::string> logs;
   bool json = false;

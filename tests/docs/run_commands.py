@@ -215,29 +215,14 @@ words=("$@")
 has() { local word; for word in "${words[@]}"; do [[ $word == "$1" || $word == "$1="* ]] && return; done; return 1; }
 add() { has "$1" || words+=("$@"); }
 case "$name ${1-} ${2-}" in
-  "swiftlet-plant "*)
-    add --localhost-only
-    [[ $DOCS_CLOCK == realtime ]] || { add --clock lockstep; add --speed 2; }
-    ;;
-  "swiftlet-mocap "* | "swiftlet-control "*)
-    add --localhost-only
-    [[ $DOCS_CLOCK == realtime ]] || add --clock lockstep
-    ;;
-  "swiftlet-vehicle-template "* | "swiftlet-microcontroller "* | "swiftlet-px4 "* | "swiftlet-ros "*) add --localhost-only ;;  # they have no lockstep
+  "swiftlet-plant "*) [[ $DOCS_CLOCK == realtime ]] || { add --clock lockstep; add --speed 2; } ;;
+  "swiftlet-mocap "* | "swiftlet-control "*) [[ $DOCS_CLOCK == realtime ]] || add --clock lockstep ;;
   "swiftlet fly "*)
-    if has --attach; then
-      add --localhost-only
-    else
+    if ! has --attach; then
       unset ROS_DOMAIN_ID  # it takes a free one
       [[ $DOCS_CLOCK == realtime ]] || has --speed || add --clock lockstep
     fi
     ;;
-  "swiftlet mission fly" | "swiftlet mission upload" | "swiftlet mission start" | "swiftlet mission pause" | \
-    "swiftlet mission resume" | "swiftlet mission skip" | "swiftlet mission clear" | \
-    "swiftlet arm "* | "swiftlet disarm "* | "swiftlet takeoff "* | "swiftlet goto "* | "swiftlet land "* | "swiftlet hold "* | \
-    "swiftlet stop "* | "swiftlet set control" | "swiftlet trajectory "* | "swiftlet stream "* | "swiftlet status "* | "swiftlet watch "* | \
-    "swiftlet list "* | "swiftlet record "* | "swiftlet check vehicle" | \
-    "swiftlet fleet goto" | "swiftlet fleet land" | "swiftlet fleet stop") add --localhost-only ;;
 esac
 exec "$DOCS_BIN/$name" "${words[@]}"
 """
@@ -301,7 +286,7 @@ class Page:
         """A reader of the manual types the next command seconds later; the test waits until the vehicle is ready for it."""
         while time.monotonic() < self.deadline:
             status = subprocess.run(
-                [str(self.bin_folder / "swiftlet"), "status", "--json", "--watch", "0.1", "--localhost-only", "--domain",
+                [str(self.bin_folder / "swiftlet"), "status", "--json", "--watch", "0.1", "--domain",
                  str(self.domain), "--vehicle-name", vehicle],
                 env=self.environment, capture_output=True, text=True, timeout=60, check=False)
             if status.returncode == 0 and json.loads(status.stdout).get("has_pose") is True:

@@ -3,13 +3,14 @@
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/simulation/dispersion_file.hpp"
 #include "tests/fuzz/refusal.hpp"
+#include "tests/support/paths.hpp"
 
 using namespace swiftlet;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const ground::World nominal{
-      runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml"),
-      runtime::load_simulation_settings(SWIFTLET_SOURCE_DIR "/config/simulation/default.yaml")};
+      runtime::load_vehicle(swiftlet::tests::in_source("config/vehicles/kaylion.yaml")),
+      runtime::load_simulation_settings(swiftlet::tests::in_source("config/simulation/default.yaml"))};
   tests::is_read([&] {
     const ground::Dispersion dispersion =
         ground::parse_dispersion_file(std::string(tests::text_of(data, size)), tests::kFuzzedFile, nominal);

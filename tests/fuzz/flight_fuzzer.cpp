@@ -11,6 +11,7 @@
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/simulation/closed_loop.hpp"
 #include "tests/fuzz/refusal.hpp"
+#include "tests/support/paths.hpp"
 
 using namespace swiftlet;
 
@@ -61,17 +62,17 @@ class Input {
 };
 
 const plant::Vehicle& vehicle() {
-  static const auto read = runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+  static const auto read = runtime::load_vehicle(swiftlet::tests::in_source("config/vehicles/kaylion.yaml"));
   return read;
 }
 const plant::SimulationSettings& simulation() {
   static const auto read =
-      runtime::load_simulation_settings(SWIFTLET_SOURCE_DIR "/config/simulation/default.yaml");
+      runtime::load_simulation_settings(swiftlet::tests::in_source("config/simulation/default.yaml"));
   return read;
 }
 const control::ControlSettings& settings() {
   static const auto read =
-      runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
+      runtime::load_control_settings(swiftlet::tests::in_source("config/control/motor_lag.yaml"));
   return read;
 }
 

@@ -13,7 +13,7 @@
 namespace {
 
 using namespace swiftlet;
-using namespace swiftlet::comms::tests;
+using namespace swiftlet::comms::fixtures;
 using comms::to_message;
 namespace msg = comms::msg;
 
@@ -55,23 +55,23 @@ int main(int argc, char** argv) {
   link.depends(true);
   write<GroundLink>(folder, "ground_link", link);
 
-  write<Mission>(folder, "mission", to_message(comms::tests::mission(5)));
+  write<Mission>(folder, "mission", to_message(comms::fixtures::mission(5)));
   write<Mission>(folder, "mission_empty", msg::Mission());
-  msg::Mission long_mission = to_message(comms::tests::mission(control::kMaxMissionItems, 0));
+  msg::Mission long_mission = to_message(comms::fixtures::mission(control::kMaxMissionItems, 0));
   write<Mission>(folder, "mission_at_its_bound", long_mission);
   long_mission.items().push_back(long_mission.items().front());
   write<Mission>(folder, "mission_past_its_bound", long_mission);
-  msg::Mission wrong = to_message(comms::tests::mission(2));
+  msg::Mission wrong = to_message(comms::fixtures::mission(2));
   wrong.items().front().speed(std::nan(""));
   write<Mission>(folder, "mission_nan", wrong);
 
-  write<Trajectory>(folder, "trajectory", to_message(comms::tests::trajectory(3)));
+  write<Trajectory>(folder, "trajectory", to_message(comms::fixtures::trajectory(3)));
   write<Trajectory>(folder, "trajectory_empty", msg::Trajectory());
-  msg::Trajectory long_trajectory = to_message(comms::tests::trajectory(control::kMaxTrajectorySegments));
+  msg::Trajectory long_trajectory = to_message(comms::fixtures::trajectory(control::kMaxTrajectorySegments));
   write<Trajectory>(folder, "trajectory_at_its_bound", long_trajectory);
   long_trajectory.segments().push_back(long_trajectory.segments().front());
   write<Trajectory>(folder, "trajectory_past_its_bound", long_trajectory);
-  msg::Trajectory endless = to_message(comms::tests::trajectory(1));
+  msg::Trajectory endless = to_message(comms::fixtures::trajectory(1));
   endless.segments().front().duration_s(std::numeric_limits<double>::infinity());
   write<Trajectory>(folder, "trajectory_infinite", endless);
   return 0;

@@ -2,7 +2,7 @@
 include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
 set(consumer ${WORK_DIR}/consumer)
 run(${CMAKE_COMMAND} --build ${consumer} --target fly_square)
-execute_process(COMMAND ${consumer}/fly_square nobody 229 --localhost-only RESULT_VARIABLE alone ERROR_VARIABLE said)
+execute_process(COMMAND ${consumer}/fly_square nobody 229 RESULT_VARIABLE alone ERROR_VARIABLE said)
 if(NOT alone EQUAL 1 OR NOT said MATCHES "no control service for vehicle nobody in domain 229")
   message(FATAL_ERROR "the example said: ${said}")
 endif()

@@ -23,6 +23,7 @@
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/scripted_autopilot.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -32,10 +33,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-std::string contents(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
+constexpr const char* kScaled = "3";  // times real time, of an autopilot without lockstep
 
 class Autopilot : public testing::Test {
  protected:
@@ -70,7 +68,7 @@ class Autopilot : public testing::Test {
   const comms::DomainLock lock_;
   const TemporaryFolder folder_;
   const int port_ = 14'600 + 2 * lock_.domain();  // and the next one: nobody else's, as the domain
-  const plant::Vehicle vehicle_ = runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+  const plant::Vehicle vehicle_ = runtime::load_vehicle(in_source("config/vehicles/kaylion.yaml"));
 };
 
 TEST_F(Autopilot, HoversInLockstepAndRepeatsExactly) {
@@ -119,8 +117,9 @@ TEST_F(Autopilot, HoversInLockstepAndRepeatsExactly) {
   EXPECT_TRUE(traces[0].compare(0, common, traces[1], 0, common) == 0);
 }
 
-TEST_F(Autopilot, HoversInRealTimeAndIsSeenByTheTools) {
-  const auto plant = start_plant({"--autopilot-port", std::to_string(port_), "--no-realtime"});
+TEST_F(Autopilot, HoversWithoutLockstepAndIsSeenByTheTools) {
+  const auto plant =
+      start_plant({"--autopilot-port", std::to_string(port_), "--no-realtime", "--speed", kScaled});
   ScriptedAutopilotSettings settings;
   settings.lockstep = false;  // a board in HITL mode
   const auto pilot = autopilot(settings);
@@ -159,7 +158,8 @@ TEST_F(Autopilot, HoversOverASerialDevice) {
   ::tcgetattr(keeps_it_open, &raw);
   ::cfmakeraw(&raw);
   ::tcsetattr(keeps_it_open, TCSANOW, &raw);
-  const auto plant = start_plant({"--autopilot-device", device, "--baud", "921600", "--no-realtime"});
+  const auto plant =
+      start_plant({"--autopilot-device", device, "--baud", "921600", "--no-realtime", "--speed", kScaled});
   ASSERT_TRUE(says(*plant, "ready: "));
   ScriptedAutopilotSettings settings;
   settings.lockstep = false;

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/paths.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -117,7 +118,7 @@ TEST_F(BadInput, MissionWithoutALanding) {
 
 TEST_F(BadInput, MissionThatTheVehicleCannotFly) {
   const std::string mass = "mass: {value: ";
-  std::string vehicle = text_of(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+  std::string vehicle = text_of(in_source("config/vehicles/kaylion.yaml"));
   const std::size_t at = vehicle.find(mass) + mass.size();
   vehicle.replace(at, vehicle.find(',', at) - at, "0.066");
   const std::string file = folder_.write("m.yaml", kMission);
@@ -125,7 +126,7 @@ TEST_F(BadInput, MissionThatTheVehicleCannotFly) {
 }
 
 TEST_F(BadInput, InvalidVehicle) {
-  const std::string vehicle = text_of(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+  const std::string vehicle = text_of(in_source("config/vehicles/kaylion.yaml"));
   const std::string key = "mass: {value: ";
   ASSERT_NE(vehicle.find(key), std::string::npos);
   const std::string file = folder_.write("heavy.yaml", replaced(vehicle, key, key + "-"));
@@ -133,7 +134,7 @@ TEST_F(BadInput, InvalidVehicle) {
 }
 
 TEST_F(BadInput, ControlSettingsWithAnUnknownKey) {
-  const std::string settings = text_of(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
+  const std::string settings = text_of(in_source("config/control/motor_lag.yaml"));
   const std::string file = folder_.write("odd.yaml", settings + "thrust: 3\n");
   expect_refusal({"square", "--control", file}, "odd.yaml:");
 }
@@ -151,7 +152,7 @@ TEST_F(BadInput, WrongUsage) {
   expect_refusal({"square", "--seed", "100000000000000000000000"},
                  "--seed: is 100000000000000000000000, must be a whole number from 0 to");
   expect_refusal({"square", "--speed", "nan"}, "--speed: is nan, must be from 0.01 to 100");
-  expect_refusal({"square", "--transport", "pigeon"}, "--transport: is pigeon, must be udp or shm");
+  expect_refusal({"square", "--clock", "sundial"}, "--clock: is sundial, must be realtime or lockstep");
 }
 
 TEST_F(BadInput, NameOfAVehicle) {

@@ -28,11 +28,6 @@ const std::string kHighMass =
     "parameters:\n"
     "  vehicle.mass: {distribution: uniform, min: 0.95, max: 1.8, unit: nominal, source: estimate}\n";
 
-std::string content(const fs::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 class SimBatch : public testing::Test {
  protected:
   std::vector<std::string> words(const std::string& command, const std::string& dispersion,
@@ -60,7 +55,7 @@ TEST_F(SimBatch, WritesFilesAndReportsFigures) {
   EXPECT_NE(result.errors.find("4/4 runs, 0 failed"), std::string::npos) << "no progress: " << result.errors;
   EXPECT_TRUE(fs::exists(out() / "batch.csv"));
   EXPECT_GT(fs::file_size(out() / "batch.png"), 20'000U);
-  EXPECT_NE(content(out() / "batch.html").find("<figcaption>phase margin (deg)</figcaption>"),
+  EXPECT_NE(contents(out() / "batch.html").find("<figcaption>phase margin (deg)</figcaption>"),
             std::string::npos);
 }
 
@@ -108,9 +103,9 @@ TEST_F(SimBatch, MergedShardsAreTheBatchByteForByte) {
   }
   const ProgramResult merged = run_program("swiftlet", merge, folder_.path());
   EXPECT_EQ(merged.exit_code, 1) << merged.errors;
-  EXPECT_EQ(content(folder_.path() / "merged" / "batch.csv"), content(out() / "batch.csv"));
-  EXPECT_EQ(content(folder_.path() / "merged" / "batch.png"), content(out() / "batch.png"));
-  EXPECT_EQ(content(folder_.path() / "merged" / "batch.html"), content(out() / "batch.html"));
+  EXPECT_EQ(contents(folder_.path() / "merged" / "batch.csv"), contents(out() / "batch.csv"));
+  EXPECT_EQ(contents(folder_.path() / "merged" / "batch.png"), contents(out() / "batch.png"));
+  EXPECT_EQ(contents(folder_.path() / "merged" / "batch.html"), contents(out() / "batch.html"));
   const auto without_time = [](const std::string& text) {
     json report = json::parse(text);
     for (const char* of_this_run : {"wall_s", "out_dir"}) EXPECT_EQ(report.erase(of_this_run), 1U);

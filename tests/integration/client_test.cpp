@@ -20,10 +20,10 @@ using ground::Vehicle;
 
 class OneContext : public testing::Test {
  protected:
-  // The processes of one vehicle, in lockstep at twice real time.
+  // The processes of one vehicle, in lockstep at up to ten times real time.
   struct Processes {
     Processes(const OneContext& test, const std::string& vehicle)
-        : plant("swiftlet-plant", test.words(vehicle, {"--speed", "2"}), test.folder_.path()),
+        : plant("swiftlet-plant", test.words(vehicle, {"--speed", "10"}), test.folder_.path()),
           mocap("swiftlet-mocap", test.words(vehicle), test.folder_.path()),
           control("swiftlet-control", test.words(vehicle), test.folder_.path()) {}
     Program plant, mocap, control;

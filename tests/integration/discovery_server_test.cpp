@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/eventually.hpp"
-#include "tests/support/network_namespace.hpp"
+#include "tests/support/network/network_namespace.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/rtps_message.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -112,7 +112,7 @@ class DiscoveryServers : public testing::Test {
   }
 
   void start_server() {
-    server_ = start("swiftlet", {"discovery-server"});
+    server_ = start("swiftlet", {"discovery-server", "--open-network"});
     ASSERT_TRUE(eventually([&] { return server_->output().find("listens on") != std::string::npos; }))
         << server_->errors();
   }
@@ -126,6 +126,17 @@ class DiscoveryServers : public testing::Test {
   bool server_says(const std::string& word, std::size_t times) const {
     return eventually(
                [&] { return count(server_->output(), word) >= times || !is_running(server_->pid()); }) &&
+           is_running(server_->pid());
+  }
+  // The client announces itself until it has joined, as clients do: a burst may overflow the server's socket.
+  bool joins(Client& newcomer, std::size_t joined) const {
+    return eventually(
+               [&, looks = 0]() mutable {
+                 if (count(server_->output(), " joined;") >= joined) return true;
+                 if (looks++ % 100 == 0) newcomer.change();
+                 return !is_running(server_->pid());
+               },
+               kStuck, std::chrono::milliseconds(5)) &&
            is_running(server_->pid());
   }
 
@@ -143,18 +154,15 @@ TEST_F(DiscoveryServers, OutliveParticipantsThatChangeAtOnceAndLeave) {
   constexpr std::size_t kAtATime = 8;
   constexpr int kChanges = 12;
   const std::unique_ptr<Client> hears_all = client(Client::Kind::kSuperClient);
-  hears_all->change();
   std::size_t joined = 1;
-  ASSERT_TRUE(server_says(" joined;", joined)) << server_->errors();
+  ASSERT_TRUE(joins(*hears_all, joined)) << server_->errors();
   for (int round = 0; round < kRounds; ++round) {
     std::vector<std::unique_ptr<Client>> clients;
     for (std::size_t i = 0; i < kAtATime; ++i) {
       clients.push_back(client());
-      clients.back()->change();
+      ASSERT_TRUE(joins(*clients.back(), ++joined)) << server_->errors();
       clients.back()->announce_writer();
     }
-    joined += kAtATime;
-    ASSERT_TRUE(server_says(" joined;", joined)) << server_->errors();
     const std::unique_ptr<Client> newcomer = client(Client::Kind::kSuperClient);
     server_->signal(SIGSTOP);
     for (const auto& it : clients) {
@@ -163,29 +171,22 @@ TEST_F(DiscoveryServers, OutliveParticipantsThatChangeAtOnceAndLeave) {
     }
     newcomer->change();
     server_->signal(SIGCONT);
-    ++joined;
-    ASSERT_TRUE(server_says(" joined;", joined)) << "round " << round << ": " << server_->errors();
+    ASSERT_TRUE(joins(*newcomer, ++joined)) << "round " << round << ": " << server_->errors();
   }
 }
 
-// A server that waits 0.1 s before it takes in each of the changes needs 15 s in each attempt, on any machine.
+// A server that waits 0.1 s before it takes in each of the changes needs 15 s, on any machine.
 TEST_F(DiscoveryServers, TakeInANewcomerBehindAFloodOfChanges) {
-  constexpr int kAttempts = 5;
   constexpr int kChanges = 150;
   constexpr std::chrono::seconds kSoon{10};
-  bool in_time = false;
-  for (int attempt = 0; attempt < kAttempts && !in_time; ++attempt) {
-    const std::unique_ptr<Client> flood = client();
-    const std::unique_ptr<Client> newcomer = client();
-    server_->signal(SIGSTOP);
-    for (int change = 0; change < kChanges; ++change) flood->change();
-    newcomer->change();
-    server_->signal(SIGCONT);
-    const std::size_t joined = 2 * static_cast<std::size_t>(attempt + 1);
-    in_time = eventually([&] { return count(server_->output(), " joined;") >= joined; }, kSoon);
-    ASSERT_TRUE(server_says(" joined;", joined)) << server_->errors();
-  }
-  EXPECT_TRUE(in_time);
+  const std::unique_ptr<Client> flood = client();
+  const std::unique_ptr<Client> newcomer = client();
+  server_->signal(SIGSTOP);
+  for (int change = 0; change < kChanges; ++change) flood->change();
+  newcomer->change();
+  server_->signal(SIGCONT);
+  EXPECT_TRUE(eventually([&] { return count(server_->output(), " joined;") == 2; }, kSoon))
+      << server_->output() << server_->errors();
 }
 
 // The lease of the participant would end after 300 s.
@@ -207,7 +208,7 @@ TEST_F(DiscoveryServers, HearGoodbyesThatComeTooEarly) {
 // GIVEN a vehicle in flight WHEN the server is killed and started again at once THEN newcomers find the vehicle, and land it.
 // In lockstep, so that a busy machine slows the flight down.
 TEST_F(DiscoveryServers, IntroduceNewcomersAfterAKillInFlight) {
-  const Words client = {"--discovery-server", address()};
+  const Words client = {"--open-network", "--discovery-server", address()};
   const auto start_client = [&](const std::string& program, Words words) {
     words.insert(words.end(), client.begin(), client.end());
     return start(program, std::move(words));

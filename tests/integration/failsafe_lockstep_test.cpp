@@ -1,5 +1,6 @@
-// Faults of sensors and vehicle, flown by real processes in lockstep: one fault per flight, at the same time
-// in each. The vehicle's motion is read from its trace, which is ground truth.
+// Faults of sensors and vehicle: one fault per flight, at the same time in each. The vehicle's motion is read from its trace,
+// which is ground truth. Flights that are completed are flown in one process: lockstep_test.cpp compares them with those of
+// real processes in lockstep, bit for bit. `sim fly` ends when a mission is aborted, so the others are flown by processes.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -11,6 +12,8 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/io/text_file.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -102,16 +105,25 @@ class FaultInFlight : public testing::Test {
   // parameters: of the fault beside its kind, as YAML.
   FaultFlight fly(const std::string& kind, const std::string& for_s, const std::string& parameters = "",
                   double at_s = kFault_s) {
-    std::string simulation = runtime::read_text_file(SWIFTLET_SOURCE_DIR "/config/simulation/default.yaml");
+    return fly({"sim", "fly"}, kind, for_s, parameters, at_s);
+  }
+  FaultFlight fly_over_dds(const std::string& kind, const std::string& for_s = "60",
+                           const std::string& parameters = "", double at_s = kFault_s) {
+    return fly({"fly", "--clock", "lockstep"}, kind, for_s, parameters, at_s);
+  }
+  static std::string reason(const FaultFlight& flight) { return flight.report.value("reason", "completed"); }
+
+ private:
+  FaultFlight fly(std::vector<std::string> words, const std::string& kind, const std::string& for_s,
+                  const std::string& parameters, double at_s) {
+    std::string simulation = runtime::read_text_file(in_source("config/simulation/default.yaml"));
     simulation += "faults:\n  - {kind: " + kind + ", at_s: " + std::to_string(at_s) + ", for_s: " + for_s +
                   (parameters.empty() ? "" : ", " + parameters) + "}\n";
     const std::string file = folder_.write("faulty.yaml", simulation);
     const auto record = folder_.path() / ("record-" + std::to_string(++flights_));
-    const ProgramResult result =
-        run_program("swiftlet",
-                    {"fly", folder_.write("hover.yaml", kHover), "--simulation", file, "--clock", "lockstep",
-                     "--trace", "--json", "--record", record.string()},
-                    folder_.path(), 120s);
+    words.insert(words.end(), {folder_.write("hover.yaml", kHover), "--simulation", file, "--trace", "--json",
+                               "--record", record.string()});
+    const ProgramResult result = run_program("swiftlet", words, folder_.path(), kStuck);
     FaultFlight flight;
     flight.report = json::parse(result.output, nullptr, false);
     EXPECT_TRUE(flight.report.is_object()) << result.errors;
@@ -120,7 +132,6 @@ class FaultInFlight : public testing::Test {
     }
     return flight;
   }
-  static std::string reason(const FaultFlight& flight) { return flight.report.value("reason", "completed"); }
 
   TemporaryFolder folder_;
   int flights_ = 0;
@@ -134,26 +145,26 @@ void expect_descended_level(const FaultFlight& flight) {
 }
 
 TEST_F(FaultInFlight, DescendsLevelWhenMocapStops) {
-  const FaultFlight flight = fly("mocap_stop", "60");
+  const FaultFlight flight = fly_over_dds("mocap_stop");
   EXPECT_EQ(reason(flight), "the mission was aborted: no mocap pose; landed");
   expect_descended_level(flight);
 }
 
 TEST_F(FaultInFlight, DescendsLevelWhenMocapFreezes) {
-  const FaultFlight flight = fly("mocap_freeze", "60");
+  const FaultFlight flight = fly_over_dds("mocap_freeze", "60");
   EXPECT_EQ(reason(flight), "the mission was aborted: no mocap pose; landed");
   expect_descended_level(flight);
 }
 
 TEST_F(FaultInFlight, DescendsLevelWhenMocapLosesTheMarkers) {
-  const FaultFlight flight = fly("mocap_untracked", "60");
+  const FaultFlight flight = fly_over_dds("mocap_untracked", "60");
   EXPECT_EQ(reason(flight), "the mission was aborted: no mocap pose; landed");
   expect_descended_level(flight);
 }
 
 TEST_F(FaultInFlight, DescendsLevelWhenMocapConfusesTheMarkers) {
   const FaultFlight flight =
-      fly("mocap_jump", "60", "position_ned_m: [0, 0, 0], rotation_frd_rad: [0, 0, 3.1416]");
+      fly_over_dds("mocap_jump", "60", "position_ned_m: [0, 0, 0], rotation_frd_rad: [0, 0, 3.1416]");
   EXPECT_EQ(reason(flight), "the mission was aborted: no mocap pose; landed");
   expect_descended_level(flight);
 }
@@ -178,7 +189,7 @@ TEST_F(FaultInFlight, FliesOnAfterMocapBrieflyTracksAnotherBody) {
 }
 
 TEST_F(FaultInFlight, StopsRotorsWhenPosesDoNotFollowTheTakeoff) {
-  const FaultFlight flight = fly("mocap_swap", "60", "position_ned_m: [1, -1, 0], yaw_rad: 2", 0.1);
+  const FaultFlight flight = fly_over_dds("mocap_swap", "60", "position_ned_m: [1, -1, 0], yaw_rad: 2", 0.1);
   EXPECT_EQ(reason(flight), "the mission was aborted: poses do not follow the take-off; rotors stopped");
   EXPECT_FALSE(flight.after.back().commanded);
   double highest = 0.0;
@@ -188,7 +199,7 @@ TEST_F(FaultInFlight, StopsRotorsWhenPosesDoNotFollowTheTakeoff) {
 }
 
 TEST_F(FaultInFlight, StopsRotorsWhenTheImuSendsNaN) {
-  const FaultFlight flight = fly("imu_nan", "60");
+  const FaultFlight flight = fly_over_dds("imu_nan");
   EXPECT_EQ(reason(flight), "the mission was aborted: IMU samples are not usable; rotors stopped");
   EXPECT_NEAR(flight.last_commanded_s(), kFault_s + 0.1, 0.01);
 }
@@ -198,35 +209,33 @@ TEST_F(FaultInFlight, FliesOnAfterAShortImuNaN) {
   EXPECT_EQ(reason(flight), "completed");
 }
 
-TEST_F(FaultInFlight, LandsWhenTheBatteryIsLow) {
-  const FaultFlight flight = fly("battery_drop", "60", "voltage_v: 0.8");
-  EXPECT_EQ(reason(flight), "the mission was aborted: battery is low; landed");
-  expect_descended_level(flight);
-}
-
-TEST_F(FaultInFlight, LandsFasterWhenTheBatteryIsCritical) {
-  const FaultFlight low = fly("battery_drop", "60", "voltage_v: 0.8");
-  const FaultFlight critical = fly("battery_drop", "60", "voltage_v: 1.0");
+TEST_F(FaultInFlight, LandsWhenTheBatteryIsLowAndFasterWhenItIsCritical) {
+  const FaultFlight low = fly_over_dds("battery_drop", "60", "voltage_v: 0.8");
+  EXPECT_EQ(reason(low), "the mission was aborted: battery is low; landed");
+  expect_descended_level(low);
+  const FaultFlight critical = fly_over_dds("battery_drop", "60", "voltage_v: 1.0");
   EXPECT_EQ(reason(critical), "the mission was aborted: battery is critical; landed");
   critical.expect_landed();
   EXPECT_LT(critical.last_commanded_s(), low.last_commanded_s() - 0.5);
 }
 
 TEST_F(FaultInFlight, LandsWithoutBatterySamples) {
-  const FaultFlight flight = fly("battery_stop", "60");
+  const FaultFlight flight = fly_over_dds("battery_stop", "60");
   EXPECT_EQ(reason(flight), "the mission was aborted: no battery voltage; landed");
   expect_descended_level(flight);
 }
 
 TEST_F(FaultInFlight, StopsRotorsWhenTippedOver) {
-  const FaultFlight flight = fly("push", "0.1", "force_ned_n: [0, 0, 0], moment_frd_n_m: [0.02, 0, 0]");
+  const FaultFlight flight =
+      fly_over_dds("push", "0.1", "force_ned_n: [0, 0, 0], moment_frd_n_m: [0.02, 0, 0]");
   EXPECT_EQ(reason(flight), "the mission was aborted: tipped over; rotors stopped");
   EXPECT_LT(flight.last_commanded_s(), kFault_s + 0.5);
   EXPECT_NEAR(flight.after.back().tilt_rad, 1.4, 0.3) << "the rotors must stop right at the tilt limit";
 }
 
 TEST_F(FaultInFlight, LandsInsideTheFenceWhenBlownOut) {
-  const FaultFlight flight = fly("push", "1.6", "force_ned_n: [0.42, 0, 0], moment_frd_n_m: [0, 0, 0]");
+  const FaultFlight flight =
+      fly_over_dds("push", "1.6", "force_ned_n: [0.42, 0, 0], moment_frd_n_m: [0, 0, 0]");
   EXPECT_EQ(reason(flight), "the mission was aborted: outside the fence; landed");
   EXPECT_GT(flight.farthest_m(), 3.2);
   flight.expect_landed();

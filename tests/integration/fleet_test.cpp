@@ -32,70 +32,64 @@ double first_east_m(const fs::path& flight_csv) {
 
 class FleetFlight : public testing::Test {
  protected:
-  std::vector<std::string> arguments(std::vector<std::string> more) const {
-    std::vector<std::string> words = {"fly",
-                                      folder_.write("hop.yaml", kHopMission),
-                                      "--vehicle-name",
-                                      "kl1,kl2",
-                                      "--record",
-                                      record().string()};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
+  // Two vehicles that hover for a minute: long enough for whatever shall happen to them.
+  Program hovering() const {
+    return Program(
+        "swiftlet",
+        {"fly",
+         folder_.write("hover.yaml",
+                       "name: hover\nframe: ned\ntolerance_m: 0.1\nitems:\n"
+                       "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.5}\n"
+                       "  - {kind: wait, duration_s: 60}\n"
+                       "  - {kind: land, speed_m_s: 0.5}\n"),
+         "--vehicle-name", "kl1,kl2", "--clock", "lockstep", "--speed", "4", "--record", record().string()},
+        folder_.path());
+  }
+  static void wait_for_item(const std::string& item, Program& fly) {
+    ASSERT_TRUE(eventually([&] { return fly.errors().find(item) != std::string::npos || fly.exit_code(); }));
+    ASSERT_FALSE(fly.exit_code()) << fly.errors();
   }
   fs::path record() const { return folder_.path() / "record"; }
 
   TemporaryFolder folder_;
 };
 
-TEST_F(FleetFlight, StartsTogetherSideBySide) {
-  const ProgramResult result = run_program(
-      "swiftlet", arguments({"--clock", "lockstep", "--spacing", "2", "--json"}), folder_.path(), kStuck);
-  ASSERT_EQ(result.exit_code, 0) << result.errors;
-  const json report_of_all = json::parse(result.output);
+TEST_F(FleetFlight, StartsTogetherInRowsServedByThreeProcesses) {
+  constexpr std::size_t kVehicles = 3;
+  Program fly(
+      "swiftlet",
+      {"fly", folder_.write("hop.yaml", kHopMission), "--vehicles", std::to_string(kVehicles), "--clock",
+       "lockstep", "--spacing", "2", "--per-row", "2", "--record", record().string(), "--json"},
+      folder_.path());
+  ASSERT_NO_FATAL_FAILURE(wait_for_item("2/3 waypoint", fly));
+  EXPECT_EQ(children_of(fly.pid()).size(), 3U) << fly.errors();
+  for (const char* const program : {"swiftlet-plant", "swiftlet-mocap", "swiftlet-control"})
+    EXPECT_GT(child_of(fly.pid(), program), 0) << program;
+  ASSERT_EQ(fly.wait(kStuck), 0) << fly.errors();
+  const json report_of_all = json::parse(fly.output());
   EXPECT_EQ(report_of_all.at("completed"), true);
-  ASSERT_EQ(report_of_all.at("vehicles").size(), 2U);
-  for (const int i : {0, 1}) {
-    const json& report = report_of_all.at("vehicles")[static_cast<std::size_t>(i)];
+  ASSERT_EQ(report_of_all.at("vehicles").size(), kVehicles);
+  for (std::size_t i = 0; i < kVehicles; ++i) {
+    const json& report = report_of_all.at("vehicles")[i];
     const std::string name = "kl" + std::to_string(i + 1);
+    const double north_m = i < 2 ? -1.0 : 1.0, east_m = i % 2 == 0 ? -1.0 : 1.0;
     EXPECT_EQ(report.at("vehicle_name"), name);
+    EXPECT_EQ(report.at("completed"), true);
     EXPECT_EQ(report.at("record_dir"), (record() / name).string());
-    EXPECT_EQ(report.at("start_m"), json({0.0, 2.0 * i - 1.0}));
+    EXPECT_EQ(report.at("start_m"), json({north_m, east_m}));
     EXPECT_EQ(report.at("seed"), 1 + i);
     EXPECT_LT(report.at("rms_3d_m"), 0.01);
-    EXPECT_NEAR(first_east_m(record() / name / "flight.csv"), 2.0 * i - 1.0, 0.01);
+    EXPECT_NEAR(first_east_m(record() / name / "flight.csv"), east_m, 0.01);
     EXPECT_TRUE(fs::exists(record() / name / "flight.png"));
   }
   const ProgramResult listed = run_program("swiftlet", {"report", record().string()}, folder_.path());
   EXPECT_EQ(listed.exit_code, 0) << listed.errors;
-  EXPECT_NE(listed.output.find("record/kl1  record/kl2"), std::string::npos) << listed.output;
-}
-
-TEST_F(FleetFlight, ThreeProcessesServeTheNumberOfVehiclesThatIsAskedFor) {
-  constexpr int kVehicles = 4;
-  Program fly(
-      "swiftlet",
-      {"fly", folder_.write("hop.yaml", kHopMission), "--vehicles", std::to_string(kVehicles), "--clock",
-       "lockstep", "--spacing", "0.5", "--per-row", "2", "--record", record().string(), "--json"},
-      folder_.path());
-  ASSERT_TRUE(eventually(
-      [&] { return fly.errors().find("2/3 waypoint") != std::string::npos || fly.exit_code(); }, kStuck));
-  EXPECT_EQ(children_of(fly.pid()).size(), 3U) << fly.errors();
-  ASSERT_EQ(fly.wait(kStuck), 0) << fly.errors();
-  const json report = json::parse(fly.output());
-  ASSERT_EQ(report.at("vehicles").size(), std::size_t{kVehicles});
-  for (std::size_t i = 0; i < std::size_t{kVehicles}; ++i) {
-    const json& one = report.at("vehicles")[i];
-    EXPECT_EQ(one.at("vehicle_name"), "kl" + std::to_string(i + 1));
-    EXPECT_EQ(one.at("completed"), true);
-    EXPECT_EQ(one.at("start_m"), json({i < 2 ? -0.25 : 0.25, i % 2 == 0 ? -0.25 : 0.25}));
-    EXPECT_LT(one.at("rms_3d_m"), 0.01);
-  }
+  EXPECT_NE(listed.output.find("record/kl1  record/kl2  record/kl3"), std::string::npos) << listed.output;
 }
 
 TEST_F(FleetFlight, LandsTheOthersWhenOneFails) {
-  Program fly("swiftlet", arguments({}), folder_.path());
-  ASSERT_TRUE(eventually(
-      [&] { return fly.errors().find("2/3 waypoint") != std::string::npos || fly.exit_code(); }, kStuck));
+  Program fly = hovering();
+  ASSERT_NO_FATAL_FAILURE(wait_for_item("2/3 wait", fly));
   const std::string text = fly.errors();
   const std::size_t domain = text.find(" in domain ");
   ASSERT_NE(domain, std::string::npos) << text;
@@ -107,23 +101,22 @@ TEST_F(FleetFlight, LandsTheOthersWhenOneFails) {
             0);
   EXPECT_EQ(fly.wait(kStuck), 1);
   const std::string errors = fly.errors();
-  EXPECT_NE(errors.find("kl2, hop: NOT completed: "), std::string::npos) << errors;
-  EXPECT_NE(errors.find("kl1, hop: NOT completed: kl2 failed: "), std::string::npos) << errors;
+  EXPECT_NE(errors.find("kl2, hover: NOT completed: "), std::string::npos) << errors;
+  EXPECT_NE(errors.find("kl1, hover: NOT completed: kl2 failed: "), std::string::npos) << errors;
   EXPECT_NE(errors.find("; landed"), std::string::npos) << errors;
   EXPECT_NE(fly.output().find("0 of 2 flights completed"), std::string::npos) << fly.output();
 }
 
 TEST_F(FleetFlight, EndsWhenAProcessThatServesAllDies) {
-  Program fly("swiftlet", arguments({}), folder_.path());
-  ASSERT_TRUE(eventually(
-      [&] { return fly.errors().find("2/3 waypoint") != std::string::npos || fly.exit_code(); }, kStuck));
+  Program fly = hovering();
+  ASSERT_NO_FATAL_FAILURE(wait_for_item("2/3 wait", fly));
   const pid_t control = child_of(fly.pid(), "swiftlet-control");
   ASSERT_GT(control, 0) << fly.errors();
   kill(control, SIGKILL);
   EXPECT_EQ(fly.wait(kStuck), 1);
   const std::string errors = fly.errors();
   for (const char* const vehicle : {"kl1", "kl2"}) {
-    const std::size_t reason = errors.find(vehicle + std::string(", hop: NOT completed: "));
+    const std::size_t reason = errors.find(vehicle + std::string(", hover: NOT completed: "));
     ASSERT_NE(reason, std::string::npos) << errors;
     EXPECT_NE(errors.find("swiftlet-control was killed by signal 9", reason), std::string::npos) << errors;
   }
@@ -156,39 +149,21 @@ class TwoVehicles : public testing::Test {
 
   comms::DomainLock lock_;
   TemporaryFolder folder_;
-  Program plant_1_{"swiftlet-plant", lockstep("kl1", {"--speed", "1"}), folder_.path()};
+  Program plant_1_{"swiftlet-plant", lockstep("kl1", {"--speed", "4"}), folder_.path()};
   Program mocap_1_{"swiftlet-mocap", lockstep("kl1"), folder_.path()};
   Program control_1_{"swiftlet-control", lockstep("kl1"), folder_.path()};
-  Program plant_2_{"swiftlet-plant", lockstep("kl2", {"--speed", "1"}), folder_.path()};
+  Program plant_2_{"swiftlet-plant", lockstep("kl2", {"--speed", "4"}), folder_.path()};
   Program mocap_2_{"swiftlet-mocap", lockstep("kl2"), folder_.path()};
   Program control_2_{"swiftlet-control", lockstep("kl2"), folder_.path()};
 };
 
-TEST_F(TwoVehicles, AnswerOneCommandIndependently) {
-  ProgramResult armed;
-  ASSERT_TRUE(eventually([&] {
-    armed = swiftlet("kl1,kl2", {"arm", "--json"});
-    return armed.exit_code == 0;
-  })) << armed.errors;
-  EXPECT_EQ(
-      json::parse(armed.output),
-      json::parse(R"({"kl1": {"accepted": true, "done": true}, "kl2": {"accepted": true, "done": true}})"));
-
-  const ProgramResult disarmed = swiftlet("kl2", {"disarm"});
-  EXPECT_EQ(disarmed.exit_code, 0) << disarmed.errors;
-  const ProgramResult taken_off = swiftlet("kl1,kl2", {"takeoff", "0.5", "--wait", "20"});
-  EXPECT_EQ(taken_off.exit_code, 1);
-  EXPECT_EQ(taken_off.output, "takeoff: accepted by kl1\ntakeoff: kl1: done\n");
-  EXPECT_NE(taken_off.errors.find("swiftlet: takeoff: kl2: "), std::string::npos) << taken_off.errors;
-  EXPECT_EQ(taken_off.errors.find("kl1"), std::string::npos) << taken_off.errors;
-}
-
-TEST_F(TwoVehicles, ArmTogetherOrNotAtAll) {
+TEST_F(TwoVehicles, AnswerOneCommandAsOneOrEachForItself) {
   const auto mode_of = [this](const std::string& vehicle) {
     const ProgramResult result = swiftlet(vehicle, {"status", "--json", "--watch", "0.1"});
     return result.exit_code == 0 ? json::parse(result.output).value("mode", "") : "";
   };
-  const ProgramResult absent = swiftlet("kl1,kl9", {"arm", "--timeout", "5"});
+  // GIVEN one that is not there WHEN both are to arm THEN none is asked.
+  const ProgramResult absent = swiftlet("kl1,kl9", {"arm", "--timeout", "3"});
   EXPECT_EQ(absent.exit_code, 1);
   EXPECT_EQ(absent.output, "");
   EXPECT_NE(absent.errors.find("swiftlet: arm: kl1: nothing was sent, because kl9 was not found\n"),
@@ -198,7 +173,27 @@ TEST_F(TwoVehicles, ArmTogetherOrNotAtAll) {
       << absent.errors;
   EXPECT_EQ(mode_of("kl1"), "disarmed");
 
-  // GIVEN one vehicle that refuses WHEN both are to arm THEN the other one is disarmed again.
+  ProgramResult armed;
+  ASSERT_TRUE(eventually([&] {
+    armed = swiftlet("kl1,kl2", {"arm", "--json"});
+    return armed.exit_code == 0;
+  })) << armed.errors;
+  EXPECT_EQ(
+      json::parse(armed.output),
+      json::parse(R"({"kl1": {"accepted": true, "done": true}, "kl2": {"accepted": true, "done": true}})"));
+
+  // GIVEN one that cannot WHEN both are to take off THEN the other one does.
+  const ProgramResult disarmed = swiftlet("kl2", {"disarm"});
+  EXPECT_EQ(disarmed.exit_code, 0) << disarmed.errors;
+  const ProgramResult taken_off = swiftlet("kl1,kl2", {"takeoff", "0.5", "--wait", "20"});
+  EXPECT_EQ(taken_off.exit_code, 1);
+  EXPECT_EQ(taken_off.output, "takeoff: accepted by kl1\ntakeoff: kl1: done\n");
+  EXPECT_NE(taken_off.errors.find("swiftlet: takeoff: kl2: "), std::string::npos) << taken_off.errors;
+  EXPECT_EQ(taken_off.errors.find("kl1"), std::string::npos) << taken_off.errors;
+  const ProgramResult landed = swiftlet("kl1", {"land"});
+  ASSERT_EQ(landed.exit_code, 0) << landed.errors;
+
+  // GIVEN one that refuses WHEN both are to arm THEN the other one is disarmed again.
   ASSERT_EQ(swiftlet("kl2", {"stop", "--yes"}).exit_code, 0);
   ProgramResult refused;
   ASSERT_TRUE(eventually([&] {
@@ -210,17 +205,15 @@ TEST_F(TwoVehicles, ArmTogetherOrNotAtAll) {
   EXPECT_EQ(mode_of("kl1"), "disarmed");
   EXPECT_EQ(mode_of("kl2"), "stopped");
 
-  // GIVEN a vehicle that was armed before THEN it stays armed.
+  // GIVEN one that was armed before THEN it stays armed.
   ASSERT_EQ(swiftlet("kl1", {"arm"}).exit_code, 0);
   EXPECT_EQ(swiftlet("kl1,kl2", {"arm"}).exit_code, 1);
   EXPECT_EQ(mode_of("kl1"), "armed");
-}
 
-TEST_F(TwoVehicles, MissingVehicleIsNamed) {
-  const ProgramResult result = swiftlet("kl1,kl9", {"stop", "--yes", "--timeout", "5"});
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_EQ(result.output, "stop: accepted by kl1\nstop: kl1: done\n");
-  EXPECT_NE(result.errors.find("swiftlet: stop: kl9: "), std::string::npos) << result.errors;
+  const ProgramResult stopped = swiftlet("kl1,kl9", {"stop", "--yes", "--timeout", "3"});
+  EXPECT_EQ(stopped.exit_code, 1);
+  EXPECT_EQ(stopped.output, "stop: accepted by kl1\nstop: kl1: done\n");
+  EXPECT_NE(stopped.errors.find("swiftlet: stop: kl9: "), std::string::npos) << stopped.errors;
 }
 
 }  // namespace

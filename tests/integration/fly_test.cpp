@@ -1,9 +1,11 @@
-// `swiftlet fly` from end to end: real processes, real time, real network.
+// `swiftlet fly` from end to end: real processes, real network.
 #include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -22,17 +24,14 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using nlohmann::json;
 
-constexpr auto kStartTimeout =
-    kStuck;  // until the vehicle is airborne; processes start slowly on a busy machine
-
 // Long enough to disturb it in flight.
 const std::string kLongMission =
     "name: hover\n"
     "frame: ned\n"
     "tolerance_m: 0.1\n"
     "items:\n"
-    "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.5}\n"
-    "  - {kind: waypoint, position_m: [0, 0, -0.6], speed_m_s: 0.5, hold_s: 120}\n"
+    "  - {kind: takeoff, height_m: 1.2, speed_m_s: 0.8}\n"
+    "  - {kind: waypoint, position_m: [0, 0, -1.3], speed_m_s: 0.5, hold_s: 2000}\n"
     "  - {kind: land, speed_m_s: 0.5}\n";
 
 class Fly : public testing::Test {
@@ -44,18 +43,6 @@ class Fly : public testing::Test {
   }
   fs::path record() const { return folder_.path() / "record"; }
 
-  // Flies in real time. A flight during which the machine stalls for 100 ms in total is repeated, twice at
-  // most.
-  void fly_in_real_time(const std::vector<std::string>& words) {
-    for (int attempt = 0; attempt < 3; ++attempt) {
-      Program fly("swiftlet", words, folder_.path());
-      exit_code_ = fly.wait(kStuck);
-      log_text_ = all_output(fly);
-      output_ = fly.output();
-      errors_ = fly.errors();
-      if (behind_real_time_ms(log_text_) < 100.0) return;
-    }
-  }
   // All output, for failure messages.
   std::string all_output(const Program& fly) const {
     std::string text = fly.output() + fly.errors();
@@ -67,10 +54,6 @@ class Fly : public testing::Test {
   }
 
   TemporaryFolder folder_;
-  int exit_code_ = -1;  // of fly_in_real_time(), with its output
-  std::string log_text_;
-  std::string output_;
-  std::string errors_;
 };
 
 // Expects one control step per IMU sample of the flight, by the vehicle's clock. A machine that stalls slows
@@ -83,12 +66,12 @@ void expect_control_rate(const json& report, double rate_hz) {
   EXPECT_LT(report.at("control_rate_hz"), 1.05 * rate_hz);
 }
 
-// This test and the next two measure rates, latencies and errors in real time and run alone (ALONE in CMakeLists.txt).
-TEST_F(Fly, FliesReportsAndRecordsAMission) {
-  fly_in_real_time(arguments(folder_.write("hop.yaml", kHopMission), {"--seed", "7"}));
-  ASSERT_EQ(exit_code_, 0) << log_text_;
+// Waits for the wall clock: real time is kept, and latencies are measured by it.
+TEST_F(Fly, FliesReportsAndRecordsAMissionInRealTime) {
+  Program fly("swiftlet", arguments(folder_.write("hop.yaml", kHopMission), {"--seed", "7"}), folder_.path());
+  ASSERT_EQ(fly.wait(kStuck), 0) << all_output(fly);
 
-  const json report = json::parse(output_);
+  const json report = json::parse(fly.output());
   EXPECT_EQ(report.at("completed"), true);
   EXPECT_FALSE(report.contains("reason"));
   EXPECT_EQ(report.at("mission"), "hop");
@@ -110,46 +93,23 @@ TEST_F(Fly, FliesReportsAndRecordsAMission) {
   EXPECT_EQ(json::parse(report_file), report);
   EXPECT_GT(fs::file_size(record() / "flight.csv"), 50'000U);
   EXPECT_GT(fs::file_size(record() / "flight.png"), 20'000U);
-  EXPECT_NE(errors_.find("2/3 waypoint"), std::string::npos) << "no progress shown: " << errors_;
+  EXPECT_NE(fly.errors().find("2/3 waypoint"), std::string::npos) << "no progress shown: " << fly.errors();
 }
 
-TEST_F(Fly, FliesAtOneKilohertz) {
-  fly_in_real_time(arguments(folder_.write("hop.yaml", kHopMission), {"--imu-rate", "1000"}));
-  ASSERT_EQ(exit_code_, 0) << log_text_;
-  const json report = json::parse(output_);
-  expect_control_rate(report, 1000.0);
-  EXPECT_LT(report.at("rms_3d_m"), 0.010);
-}
-
+// Three times as fast as the wall clock, and with it the rate of control.
 TEST_F(Fly, SpeedScalesRealTime) {
-  fly_in_real_time(arguments(folder_.write("hop.yaml", kHopMission), {"--speed", "1.5"}));
-  ASSERT_EQ(exit_code_, 0) << log_text_;
-  const json report = json::parse(output_);
+  constexpr double kSpeed = 3.0;
+  Program fly("swiftlet", arguments(folder_.write("hop.yaml", kHopMission), {"--speed", "3"}),
+              folder_.path());
+  ASSERT_EQ(fly.wait(kStuck), 0) << all_output(fly);
+  const json report = json::parse(fly.output());
   const double rate_hz = report.at("control_rate_hz");
-  EXPECT_LT(rate_hz, 1.5 * 550.0);
+  EXPECT_LT(rate_hz, kSpeed * 550.0);
   // The plant says for how long it did not run: time stood still meanwhile.
   const double measured_s = report.at("cycles").get<double>() / rate_hz;
-  EXPECT_GT(rate_hz * measured_s / (measured_s - 1e-3 * behind_real_time_ms(log_text_)), 1.5 * 450.0)
-      << log_text_;
-  EXPECT_LT(report.at("rms_3d_m"), 0.010);
-}
-
-TEST_F(Fly, FliesOverSharedMemoryAndRemovesIt) {
-  Program fly("swiftlet", arguments("square", {"--transport", "shm", "--clock", "lockstep"}), folder_.path());
-  const auto children = [&] { return children_of(fly.pid()); };
-  std::vector<std::string> files;
-  EXPECT_TRUE(eventually(
-      [&] {
-        for (const pid_t child : children()) {
-          for (const std::string& file : shared_memory_of(child)) files.push_back(file);
-        }
-        return fly.errors().find("2/6 waypoint") != std::string::npos;
-      },
-      kStartTimeout, 20ms))
+  EXPECT_GT(rate_hz * measured_s / (measured_s - 1e-3 * behind_real_time_ms(all_output(fly))), kSpeed * 450.0)
       << all_output(fly);
-  EXPECT_FALSE(files.empty()) << "no process used shared memory";
-  ASSERT_EQ(fly.wait(kStuck), 0) << all_output(fly);
-  for (const std::string& file : files) EXPECT_FALSE(fs::exists(file)) << file;
+  EXPECT_LT(report.at("rms_3d_m"), 0.010);
 }
 
 TEST_F(Fly, FailsBeyondTheMissionsTolerance) {
@@ -164,14 +124,11 @@ TEST_F(Fly, FailsBeyondTheMissionsTolerance) {
       << report;
 }
 
-class FlyTwoAtOnce : public Fly, public testing::WithParamInterface<const char*> {};
-
-TEST_P(FlyTwoAtOnce, DoNotInterfere) {
+TEST_F(Fly, TwoAtOnceDoNotInterfere) {
   const std::string mission = folder_.write("hop.yaml", kHopMission);
   const auto words = [&](const char* name) {
-    return std::vector<std::string>{"fly",      mission,    "--json",
-                                    "--clock",  "lockstep", "--transport",
-                                    GetParam(), "--record", folder_.path() / name};
+    return std::vector<std::string>{
+        "fly", mission, "--json", "--clock", "lockstep", "--record", folder_.path() / name};
   };
   Program first("swiftlet", words("a"), folder_.path());
   Program second("swiftlet", words("b"), folder_.path());
@@ -179,102 +136,86 @@ TEST_P(FlyTwoAtOnce, DoNotInterfere) {
   EXPECT_EQ(second.wait(kStuck), 0) << second.errors();
 }
 
-INSTANTIATE_TEST_SUITE_P(, FlyTwoAtOnce, testing::Values("udp", "shm"));
-
-// A flight that is interrupted once it is airborne.
+// A flight in lockstep that is interrupted once it is airborne.
 class FlyInterrupted : public Fly {
  protected:
-  explicit FlyInterrupted(const std::string& transport = "udp")
-      : fly_("swiftlet", arguments(folder_.write("hover.yaml", kLongMission), {"--transport", transport}),
-             folder_.path()) {}
-
-  void SetUp() override {
-    ASSERT_TRUE(
-        eventually([&] { return fly_.errors().find("2/3 waypoint") != std::string::npos; }, kStartTimeout))
-        << all_output(fly_);
-    children_ = children_of(fly_.pid());
+  void start(std::vector<std::string> more = {}) {
+    more.insert(more.end(), {"--clock", "lockstep"});
+    fly_.emplace("swiftlet", arguments(folder_.write("hover.yaml", kLongMission), more), folder_.path());
+    ASSERT_TRUE(eventually([&] { return fly_->errors().find("2/3 waypoint") != std::string::npos; }))
+        << all_output(*fly_);
+    children_ = children_of(fly_->pid());
     ASSERT_EQ(children_.size(), 3U);
   }
 
   void expect_end_without_leftovers() {
-    for (const pid_t child : children_) {
-      EXPECT_TRUE(eventually([&] { return !is_running(child); }, kStuck)) << child << " still runs";
-    }
+    for (const pid_t child : children_)
+      EXPECT_TRUE(eventually([&] { return !is_running(child); })) << child << " still runs";
   }
 
-  Program fly_;
+  std::optional<Program> fly_;
   std::vector<pid_t> children_;
 };
 
-class FlyWithADeadProcess : public FlyInterrupted, public testing::WithParamInterface<const char*> {};
+class FlyWithADeadProcess : public FlyInterrupted, public testing::WithParamInterface<std::string> {};
 
 TEST_P(FlyWithADeadProcess, NamesTheProcessThatDied) {
-  const pid_t victim = child_of(fly_.pid(), GetParam());
+  const std::string name = "swiftlet-" + GetParam();
+  start();
+  const pid_t victim = child_of(fly_->pid(), name);
   ASSERT_GT(victim, 0);
   ASSERT_EQ(kill(victim, SIGKILL), 0);
-  ASSERT_EQ(fly_.wait(kStuck), 1) << all_output(fly_);
-  const json report = json::parse(fly_.output());
+  ASSERT_EQ(fly_->wait(kStuck), 1) << all_output(*fly_);
+  const json report = json::parse(fly_->output());
   EXPECT_EQ(report.at("completed"), false);
-  EXPECT_EQ(report.at("reason").get<std::string>().find(std::string(GetParam()) +
-                                                        " was killed by signal 9 (Killed)"),
-            0U)
+  EXPECT_EQ(report.at("reason").get<std::string>().find(name + " was killed by signal 9 (Killed)"), 0U)
       << report;
-  EXPECT_NE(fly_.errors().find(GetParam()), std::string::npos);
+  EXPECT_NE(fly_->errors().find(name), std::string::npos);
   EXPECT_TRUE(fs::exists(record() / "flight.csv")) << "the record so far must be kept";
   expect_end_without_leftovers();
 }
 
-INSTANTIATE_TEST_SUITE_P(, FlyWithADeadProcess,
-                         testing::Values("swiftlet-plant", "swiftlet-mocap", "swiftlet-control"));
-
-class FlyOverSharedMemoryWithADeadProcess : public FlyInterrupted {
- protected:
-  FlyOverSharedMemoryWithADeadProcess() : FlyInterrupted("shm") {}
-};
-
-TEST_F(FlyOverSharedMemoryWithADeadProcess, RemovesItsSharedMemory) {
-  std::vector<std::string> files;
-  for (const pid_t child : children_) {
-    for (const std::string& file : shared_memory_of(child)) files.push_back(file);
-  }
-  EXPECT_FALSE(files.empty()) << "no process used shared memory";
-  ASSERT_EQ(kill(child_of(fly_.pid(), "swiftlet-control"), SIGKILL), 0);
-  ASSERT_EQ(fly_.wait(kStuck), 1) << all_output(fly_);
-  for (const std::string& file : files) EXPECT_FALSE(fs::exists(file)) << file;
-}
+INSTANTIATE_TEST_SUITE_P(, FlyWithADeadProcess, testing::Values("plant", "mocap", "control"),
+                         [](const auto& run) { return run.param; });
 
 TEST_F(FlyInterrupted, LandsOnTheFirstInterrupt) {
-  fly_.signal(SIGINT);
-  ASSERT_EQ(fly_.wait(kStuck), 1) << all_output(fly_);
-  const json report = json::parse(fly_.output());
+  start();
+  fly_->signal(SIGINT);
+  ASSERT_EQ(fly_->wait(kStuck), 1) << all_output(*fly_);
+  const json report = json::parse(fly_->output());
   EXPECT_EQ(report.at("completed"), false);
   EXPECT_EQ(report.at("reason"), "interrupted; landed");
   expect_end_without_leftovers();
 }
 
+// The landing takes long enough to be interrupted.
 TEST_F(FlyInterrupted, QuitsOnTheSecondInterrupt) {
-  fly_.signal(SIGINT);
+  start({"--speed", "2"});
+  fly_->signal(SIGINT);
   ASSERT_TRUE(eventually(
-      [&] { return fly_.errors().find("interrupt again to quit at once") != std::string::npos; }, kStuck));
+      [&] { return fly_->errors().find("interrupt again to quit at once") != std::string::npos; }));
   const auto second = std::chrono::steady_clock::now();
-  fly_.signal(SIGINT);
-  ASSERT_EQ(fly_.wait(kStuck), 1) << all_output(fly_);
-  EXPECT_EQ(json::parse(fly_.output()).at("reason"), "interrupted; quit in flight");
+  fly_->signal(SIGINT);
+  ASSERT_EQ(fly_->wait(kStuck), 1) << all_output(*fly_);
+  EXPECT_EQ(json::parse(fly_->output()).at("reason"), "interrupted; quit in flight");
   EXPECT_LT(std::chrono::steady_clock::now() - second, 10s);
   expect_end_without_leftovers();
 }
 
 TEST_F(FlyInterrupted, EndsItsProcessesWhenKilled) {
-  fly_.signal(SIGKILL);
-  ASSERT_EQ(fly_.wait(kStuck), 128 + SIGKILL);
+  start();
+  fly_->signal(SIGKILL);
+  ASSERT_EQ(fly_->wait(kStuck), 128 + SIGKILL);
   expect_end_without_leftovers();
 }
 
-// The whole paths of the paper's Figs. 8 and 9, in lockstep; `./dev soak flights` flies them in real time.
+// The whole paths of the paper's Figs. 8 and 9: one in lockstep, the others in one process, which flies the same (lockstep_test.cpp);
+// `./dev soak flights` flies them in real time.
 struct PaperFlight {
   const char* name;
   const char* mission;
   const char* control;
+  bool over_dds;
   double rms_limit_m;
 };
 void PrintTo(const PaperFlight& flight, std::ostream* out) { *out << flight.name; }
@@ -283,10 +224,11 @@ class FlyPaper : public Fly, public testing::WithParamInterface<PaperFlight> {};
 
 TEST_P(FlyPaper, TracksItsPath) {
   const PaperFlight& flight = GetParam();
-  const char* const clock = is_soak() ? "realtime" : "lockstep";
-  Program fly("swiftlet", arguments(flight.mission, {"--control", flight.control, "--clock", clock}),
-              folder_.path());
-  ASSERT_EQ(fly.wait(120s), 0) << all_output(fly);
+  std::vector<std::string> words = arguments(flight.mission, {"--control", flight.control});
+  if (!is_soak() && flight.over_dds) words.insert(words.end(), {"--clock", "lockstep"});
+  if (!is_soak() && !flight.over_dds) words.insert(words.begin(), "sim");
+  Program fly("swiftlet", words, folder_.path());
+  ASSERT_EQ(fly.wait(kStuck), 0) << all_output(fly);
   const json report = json::parse(fly.output());
   EXPECT_EQ(report.at("completed"), true) << report;
   EXPECT_NEAR(report.at("duration_s"), 40.0, 4.0);
@@ -296,9 +238,10 @@ TEST_P(FlyPaper, TracksItsPath) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, FlyPaper,
-                         testing::Values(PaperFlight{"Square", "square", "motor_lag", 0.010},
-                                         PaperFlight{"ZigZag", "zigzag", "motor_lag", 0.010},
-                                         PaperFlight{"SquareWithThePapersLoops", "square", "paper", 0.030}),
+                         testing::Values(PaperFlight{"Square", "square", "motor_lag", true, 0.010},
+                                         PaperFlight{"ZigZag", "zigzag", "motor_lag", false, 0.010},
+                                         PaperFlight{"SquareWithThePapersLoops", "square", "paper", false,
+                                                     0.030}),
                          [](const auto& flight) { return std::string(flight.param.name); });
 
 }  // namespace

@@ -47,7 +47,7 @@ class Hosting : public testing::Test {
 TEST_F(Hosting, AVehicleWhoseControllerIsSuspendedEndsAloneAndCanBeReplaced) {
   const std::vector<std::string> lockstep{"--clock", "lockstep"};
   const auto plant =
-      start("plant", "kl1..kl2,base", {"--clock", "lockstep", "--speed", "1", "--spacing", "0.5"});
+      start("plant", "kl1..kl2,base", {"--clock", "lockstep", "--spacing", "0.5", "--patience", "1"});
   const auto mocap = start("mocap", "kl1,kl2,base", lockstep);
   const auto control = start("control", "kl1,base", lockstep);
   const auto suspended = start("control", "kl2", lockstep);
@@ -79,7 +79,7 @@ TEST_F(Hosting, AVehicleWhoseControllerIsSuspendedEndsAloneAndCanBeReplaced) {
 }
 
 TEST_F(Hosting, AStandbyTakesOverAHostedVehicle) {
-  const auto plant = start("plant", "kl1..kl2", {});
+  const auto plant = start("plant", "kl1..kl2", {"--speed", "2"});
   const auto mocap = start("mocap", "kl1..kl2", {});
   const auto first = start("control", "kl1..kl2", {"--failover-priority", "5"});
   ASSERT_TRUE(accepts("kl1,kl2", {"arm"})) << first->errors();

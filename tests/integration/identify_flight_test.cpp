@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -75,7 +76,7 @@ TEST_F(IdentifyFlight, ReadsTheRecordOfSeparateProcesses) {
 }
 
 TEST_F(IdentifyFlight, ReportsWhatALogWithoutPosesDetermines) {
-  const std::string log = SWIFTLET_SOURCE_DIR "/tests/data/crazyflie_flight.csv.gz";
+  const std::string log = in_source("tests/data/crazyflie_flight.csv.gz");
   const ProgramResult result = run({"identify", "flight", log, "--base", "crazyflie2", "--out",
                                     in_folder("mine.yaml"), "--report", in_folder("report.html"), "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;

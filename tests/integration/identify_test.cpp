@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -115,7 +116,7 @@ TEST_F(Identify, NamesTheLineOfAMissingBase) {
 
 TEST_F(Identify, RefusesToOverwriteItsInputs) {
   const std::string base = (folder_.path() / "base.yaml").string();
-  fs::copy_file(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml", base);
+  fs::copy_file(in_source("config/vehicles/kaylion.yaml"), base);
   const ProgramResult result = run({"identify", bench().string(), "--base", base, "--out", base});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_NE(result.errors.find("--out: " + base + " is also an input file"), std::string::npos)

@@ -9,6 +9,7 @@
 
 #include "swiftlet/plant/model/control_level.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/redundant_flight.hpp"
 #include "tests/support/separate_processes.hpp"
@@ -20,13 +21,6 @@ namespace {
 namespace msg = comms::msg;
 using nlohmann::json;
 using plant::ControlLevel;
-
-constexpr std::int64_t kSecond = 1'000'000'000;  // ns
-
-std::string contents(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 class LevelsInLockstep : public testing::TestWithParam<ControlLevel> {
  protected:
@@ -54,7 +48,7 @@ class LevelsInLockstep : public testing::TestWithParam<ControlLevel> {
 };
 
 // GIVEN a vehicle of one level WHEN plant, mocap and control fly it in lockstep THEN the flight is that in one process,
-// to the last bit.
+// to the last bit. lockstep_test.cpp flies at level actuators.
 TEST_P(LevelsInLockstep, EqualsTheFlightInOneProcess) {
   const Flight over_dds = fly({"fly", "--clock", "lockstep"}, "dds");
   const Flight in_process = fly({"sim", "fly"}, "process");
@@ -82,19 +76,20 @@ TEST_P(RadioInLockstep, EqualsTheFlightInOneProcess) {
   EXPECT_LT(over_dds.report.at("rms_3d_m").get<double>(), 0.05);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, RadioInLockstep,
-                         testing::Values(ControlLevel::kRates, ControlLevel::kAttitude,
-                                         ControlLevel::kTrajectory),
-                         [](const auto& level) { return std::string(plant::to_string(level.param)); });
+const auto kLevelsOfFirmware =
+    testing::Values(ControlLevel::kRates, ControlLevel::kAttitude, ControlLevel::kTrajectory);
+std::string name_of(const testing::TestParamInfo<ControlLevel>& level) {
+  return plant::to_string(level.param);
+}
 
-INSTANTIATE_TEST_SUITE_P(All, LevelsInLockstep, testing::ValuesIn(plant::kControlLevels),
-                         [](const auto& level) { return std::string(plant::to_string(level.param)); });
+INSTANTIATE_TEST_SUITE_P(All, RadioInLockstep, kLevelsOfFirmware, name_of);
+INSTANTIATE_TEST_SUITE_P(All, LevelsInLockstep, kLevelsOfFirmware, name_of);
 
 class OdometryInLockstep : public testing::TestWithParam<const char*> {
  protected:
   // The default simulation, in which the vehicle's own estimate jumps in flight, and motion capture is lost for 2 s if it may be.
   std::string simulation() const {
-    std::string text = contents(SWIFTLET_SOURCE_DIR "/config/simulation/default.yaml");
+    std::string text = contents(in_source("config/simulation/default.yaml"));
     text +=
         "\nfaults:\n  - {kind: odometry_jump, at_s: 4, for_s: 100, position_ned_m: [0.4, -0.3, 0.1], "
         "yaw_rad: 0.2}\n";
@@ -102,7 +97,7 @@ class OdometryInLockstep : public testing::TestWithParam<const char*> {
     return folder_.write("simulation.yaml", text);
   }
   std::string control() const {
-    std::string text = contents(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
+    std::string text = contents(in_source("config/control/motor_lag.yaml"));
     const std::string before = "odometry: {estimate: mocap";
     const std::size_t at = text.find(before);
     EXPECT_NE(at, std::string::npos);
@@ -164,16 +159,24 @@ TEST_P(LevelsWithStandby, TakesOverDuringAMission) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LevelsWithStandby,
-                         testing::Values(ControlLevel::kRates, ControlLevel::kTrajectory),
-                         [](const auto& level) { return std::string(plant::to_string(level.param)); });
+                         testing::Values(ControlLevel::kRates, ControlLevel::kTrajectory), name_of);
 
-using LevelsRefused = SeparateProcesses;
+class LevelsOfAVehicle : public SeparateProcesses {
+ protected:
+  void start_in_lockstep(const std::string& of_vehicle, std::vector<std::string> control = {}) {
+    const std::vector<std::string> lockstep{"--clock", "lockstep"};
+    control.insert(control.end(), lockstep.begin(), lockstep.end());
+    control_ = start("swiftlet-control", control);
+    plant_ = start("swiftlet-plant", {"--clock", "lockstep", "--speed", "10", "--level", of_vehicle});
+    mocap_ = start("swiftlet-mocap", lockstep);
+    wait_until_ready();
+  }
+};
 
 // GIVEN a vehicle that accepts attitudes only WHEN control is told to send body rates THEN arming is refused with both
 // names, and the rotors stay off.
-TEST_F(LevelsRefused, ArmingNamesTheLevelThatTheVehicleDoesNotAccept) {
-  start_all({"--level", "rates"}, {"--level", "attitude"});
-  wait_until_ready();
+TEST_F(LevelsOfAVehicle, ArmingNamesTheLevelThatTheVehicleDoesNotAccept) {
+  start_in_lockstep("attitude", {"--level", "rates"});
   const std::string refusal =
       "cannot arm: the vehicle does not accept commands at level rates, it accepts attitude";
   ground::Result armed;
@@ -186,9 +189,8 @@ TEST_F(LevelsRefused, ArmingNamesTheLevelThatTheVehicleDoesNotAccept) {
 }
 
 // GIVEN a vehicle that accepts several levels WHEN control is not told one THEN it takes the lowest.
-TEST_F(LevelsRefused, TheLowestLevelIsTaken) {
-  start_all({}, {"--level", "trajectory,attitude"});
-  wait_until_ready();
+TEST_F(LevelsOfAVehicle, TheLowestLevelIsTaken) {
+  start_in_lockstep("trajectory,attitude");
   EXPECT_TRUE(eventually([&] {
     return client_->view().control.message.control_level() ==
            plant::ControlLevels(ControlLevel::kAttitude).bits();

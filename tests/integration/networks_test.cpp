@@ -1,12 +1,15 @@
 // Hosts on a switch, and behind routers that forward no multicast: who reaches whom.
 #include <algorithm>
 #include <arpa/inet.h>
-#include <cmath>
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
+#include <fstream>
 #include <functional>
 #include <memory>
 #include <netinet/in.h>
+#include <set>
 #include <string>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -17,8 +20,9 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/eventually.hpp"
-#include "tests/support/network_namespace.hpp"
+#include "tests/support/network/network_namespace.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/rtps_message.hpp"
 #include "tests/support/shifted_clock.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/terminal.hpp"
@@ -32,6 +36,7 @@ using Words = std::vector<std::string>;
 
 constexpr const char* kGroup = "239.255.0.1";
 constexpr std::uint16_t kPort = 7400;
+constexpr std::uint16_t kFirstDiscoveryPort = 7410;
 
 sockaddr_in socket_address(const std::string& address) {
   sockaddr_in result{};
@@ -41,8 +46,8 @@ sockaddr_in socket_address(const std::string& address) {
   return result;
 }
 
-// True if a datagram from one host to this address arrives at the other host within a second.
-bool arrives(const HostNetwork& network, int from, int at, const std::string& address) {
+// True if a datagram from one host to this address arrives at the other host within this time.
+bool arrives(const HostNetwork& network, int from, int at, const std::string& address, timeval patience) {
   int receiver = -1;
   {
     const HostNetwork::Inside inside(network, at);
@@ -51,7 +56,6 @@ bool arrives(const HostNetwork& network, int from, int at, const std::string& ad
     EXPECT_EQ(bind(receiver, reinterpret_cast<const sockaddr*>(&any), sizeof any), 0);
     const ip_mreq group{{inet_addr(kGroup)}, {inet_addr(network.address(at).c_str())}};
     setsockopt(receiver, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group);
-    const timeval patience{1, 0};
     setsockopt(receiver, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   }
   {
@@ -69,16 +73,17 @@ bool arrives(const HostNetwork& network, int from, int at, const std::string& ad
 
 TEST(HostNetwork, CarriesMulticastOverASwitchButNotThroughARouter) {
   if (const std::string why = HostNetwork::why_unavailable(); !why.empty()) GTEST_SKIP() << why;
+  constexpr timeval kPatience{60, 0}, kMoment{0, 200'000};
   {
     const HostNetwork network(Layout::kSwitch, 2);
-    EXPECT_TRUE(arrives(network, 0, 1, network.address(1)));
-    EXPECT_TRUE(arrives(network, 0, 1, kGroup));
+    EXPECT_TRUE(arrives(network, 0, 1, network.address(1), kPatience));
+    EXPECT_TRUE(arrives(network, 0, 1, kGroup, kPatience));
   }
   const HostNetwork network(Layout::kRouter, 2);
-  EXPECT_TRUE(arrives(network, 0, 1, network.address(1)));
-  EXPECT_FALSE(arrives(network, 0, 1, kGroup));
+  EXPECT_TRUE(arrives(network, 0, 1, network.address(1), kPatience));
+  EXPECT_FALSE(arrives(network, 0, 1, kGroup, kMoment));
   network.run(0, "ip link set eth0 down");
-  EXPECT_FALSE(arrives(network, 0, 1, network.address(1)));
+  EXPECT_FALSE(arrives(network, 0, 1, network.address(1), kMoment));
 }
 
 // Plant and motion capture on host 0, control on host 1, and the ground tools on host 2. In lockstep, so that a busy
@@ -107,6 +112,7 @@ class Networks : public testing::Test {
   std::unique_ptr<Program> start(int host, const std::string& program, Words words) const {
     const Words& options = options_.at(static_cast<std::size_t>(host));
     words.insert(words.end(), options.begin(), options.end());
+    if (reach_ != nullptr) words.emplace_back(reach_);
     const HostNetwork::Inside inside(*hosts_, host);
     return std::make_unique<Program>(program, std::move(words), folder_.path());
   }
@@ -130,6 +136,7 @@ class Networks : public testing::Test {
     EXPECT_EQ(status.exit_code, 0) << status.errors;
     Words words = options_.at(static_cast<std::size_t>(host));
     words.insert(words.begin(), "watch");
+    words.emplace_back(reach_);
     const HostNetwork::Inside inside(*hosts_, host);
     Terminal watch("swiftlet", words, 100, 40);
     EXPECT_TRUE(eventually([&] { return watch.text().find("disarmed") != std::string::npos; }))
@@ -147,6 +154,7 @@ class Networks : public testing::Test {
   }
   std::string logs() const { return plant_->errors() + mocap_->errors() + control_->errors(); }
 
+  const char* reach_ = "--open-network";  // an option of all programs
   TemporaryFolder folder_;
   std::unique_ptr<HostNetwork> hosts_;
   std::vector<Words> options_;
@@ -193,13 +201,14 @@ TEST_F(Networks, UseTheChosenInterfaceOnly) {
   EXPECT_EQ(swiftlet(2, {"list", "--time", "1"}).exit_code, 1);
 }
 
-// GIVEN a discovery server on host 1 WHEN it ends in flight THEN the flight goes on.
-TEST_F(Networks, ADiscoveryServerIntroducesTheHosts) {
+// GIVEN a discovery server on the host of control WHEN it ends in flight THEN the flight goes on. With --interface: Fast DDS
+// fails an assertion where a client knows a server of its host by the address of the network.
+TEST_F(Networks, ADiscoveryServerIntroducesTheHostsAndServesItsOwn) {
   connect(Layout::kRouter);
   const Words client = {"--discovery-server", hosts_->address(1)};
   options_ = {{}, {}, {}};
-  const std::unique_ptr<Program> server = start(1, "swiftlet", {"discovery-server"});
-  start_all({client, client, client});
+  const std::unique_ptr<Program> server = start(1, "swiftlet", {"discovery-server", "--interface", "eth0"});
+  start_all({client, {"--discovery-server", hosts_->address(1), "--interface", "eth0"}, client});
   ASSERT_TRUE(finds_the_vehicle(2)) << logs() << server->output();
   const std::string begin =
       "discovery server 0 of domain 0 listens on UDP port 11811; start the others with --domain 0 "
@@ -223,16 +232,6 @@ TEST_F(Networks, ADiscoveryServerIntroducesTheHosts) {
   EXPECT_EQ(server->wait(kStuck), 0) << server->errors();
   EXPECT_NE(server->output().find("remain and keep what they know of each other"), std::string::npos);
   EXPECT_EQ(takeoff->wait(kStuck), 0) << takeoff->errors();
-}
-
-// Fast DDS fails an assertion where a client knows a server of its host by the address of the network.
-TEST_F(Networks, ADiscoveryServerServesItsOwnHost) {
-  connect(Layout::kRouter);
-  options_ = {{}, {}, {}};
-  const std::unique_ptr<Program> server = start(0, "swiftlet", {"discovery-server", "--interface", "eth0"});
-  const Words client = {"--discovery-server", hosts_->address(0)};
-  start_all({{"--discovery-server", hosts_->address(0), "--interface", "eth0"}, client, client});
-  EXPECT_TRUE(finds_the_vehicle(2)) << logs() << server->output();
   for (Program* const program : {plant_.get(), mocap_.get(), control_.get()}) {
     program->signal(SIGTERM);
     EXPECT_EQ(program->wait(kStuck), 0) << program->errors();
@@ -263,11 +262,116 @@ TEST_F(Networks, ASecondPlantIsRefusedThroughADiscoveryServer) {
   EXPECT_EQ(remaining->wait(kStuck), 0) << remaining->errors();
 }
 
+// Announces a participant of host `from` to the first process of a host, by the rules and without a key. Returns whether that
+// process sends it anything within a second.
+bool answers(const HostNetwork& network, int at, int from) {
+  const HostNetwork::Inside inside(network, from);
+  const int stranger = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in own = socket_address(network.address(from));
+  own.sin_port = 0;
+  socklen_t size = sizeof own;
+  EXPECT_EQ(bind(stranger, reinterpret_cast<const sockaddr*>(&own), size), 0);
+  getsockname(stranger, reinterpret_cast<sockaddr*>(&own), &size);
+  const timeval patience{1, 0};
+  setsockopt(stranger, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  Bytes address(4);
+  std::memcpy(address.data(), &own.sin_addr, address.size());
+  const ByteWriter locator = ByteWriter().u32(1).u32(ntohs(own.sin_port)).zeros(12).bytes(address);
+  ByteWriter parameters = participant_parameters(kAlice);
+  parameters.parameter(0x0032, locator)
+      .parameter(0x0031, locator)
+      .parameter(0x0058, ByteWriter().u32(0x0c3f));
+  const Bytes datagram = announcement(kAlice, parameters).bytes();
+  sockaddr_in to = socket_address(network.address(at));
+  to.sin_port = htons(kFirstDiscoveryPort);
+  sendto(stranger, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
+  char byte = 0;
+  const bool answered = recv(stranger, &byte, 1, MSG_TRUNC) > 0;
+  close(stranger);
+  return answered;
+}
+
+// The addresses, in hexadecimal digits, of the UDP sockets of a host.
+std::set<std::string> listening_addresses(const HostNetwork& network, int host) {
+  const HostNetwork::Inside inside(network, host);
+  std::ifstream table("/proc/thread-self/net/udp");
+  std::string line;
+  std::getline(table, line);
+  std::set<std::string> addresses;
+  while (std::getline(table, line)) {
+    const std::size_t colon = line.find(':');
+    addresses.insert(line.substr(colon + 2, 8));
+  }
+  return addresses;
+}
+
+// WHEN neither a key, certificates nor --open-network is given THEN a process listens on the loopback interface only, and says
+// so; tools of its host find it without options, those of others do not; a peer is refused.
+TEST_F(Networks, AProcessWithoutOptionsStaysOnItsHost) {
+  connect(Layout::kSwitch);
+  options_ = {{}, {}, {}};
+  reach_ = nullptr;
+  const std::unique_ptr<Program> server = start(0, "swiftlet", {"discovery-server"});
+  const std::unique_ptr<Program> plant = start(0, "swiftlet-plant", {});
+  EXPECT_TRUE(eventually([&] {
+    return server->output().find("listens on UDP port 11811 of this host only; ") != std::string::npos;
+  })) << server->errors();
+  EXPECT_TRUE(eventually([&] { return swiftlet(0, {"list", "--names", "--time", "1"}).output == "kl1\n"; }));
+  EXPECT_NE(plant->errors().find("on this host only: --network-key FILE or --security DIR opens the network"),
+            std::string::npos)
+      << plant->errors();
+  EXPECT_EQ(listening_addresses(*hosts_, 0), std::set<std::string>{"0100007F"});
+  EXPECT_FALSE(answers(*hosts_, 0, 1));
+  const ProgramResult peer = swiftlet(1, {"list", "--peer", hosts_->address(0)});
+  EXPECT_EQ(peer.exit_code, 2) << peer.output;
+  EXPECT_NE(peer.errors.find("a peer (--peer, ROS_STATIC_PEERS) is given, but the process stays on the "
+                             "loopback interface without "
+                             "--network-key FILE, --security DIR or --open-network"),
+            std::string::npos)
+      << peer.errors;
+  const ProgramResult interface = swiftlet(1, {"discovery-server", "--interface", "eth0"});
+  EXPECT_EQ(interface.exit_code, 2) << interface.output;
+  EXPECT_NE(
+      interface.errors.find("stays on the loopback interface without --network-key FILE or --open-network"),
+      std::string::npos)
+      << interface.errors;
+  reach_ = "--open-network";
+  EXPECT_EQ(swiftlet(1, {"list", "--time", "1"}).exit_code, 1);
+  EXPECT_EQ(swiftlet(0, {"list", "--names", "--time", "2"}).output, "kl1\n") << "they share the host";
+}
+
+// A stranger that keeps to the rules of RTPS, but has no key.
+TEST_F(Networks, WhoHasNoKeyIsNeitherParsedNorAnswered) {
+  connect(Layout::kSwitch);
+  options_ = {{}, {}, {}};
+  reach_ = nullptr;
+  const std::string key = (folder_.path() / "lab.key").string();
+  ASSERT_EQ(swiftlet(0, {"keys", "network", key}).exit_code, 0);
+  std::unique_ptr<Program> plant = start(0, "swiftlet-plant", {"--network-key", key});
+  ASSERT_TRUE(eventually([&] {
+    return swiftlet(1, {"list", "--names", "--time", "1", "--network-key", key}).output == "kl1\n";
+  })) << plant->errors();
+  EXPECT_FALSE(answers(*hosts_, 0, 1));
+  EXPECT_TRUE(eventually([&] {
+    return plant->errors().find(hosts_->address(1) + "; the last: not sealed with a network key") !=
+           std::string::npos;
+  })) << plant->errors();
+  reach_ = "--open-network";
+  EXPECT_EQ(swiftlet(1, {"list", "--time", "1"}).exit_code, 1);
+
+  plant.reset();
+  plant = start(0, "swiftlet-plant", {});
+  EXPECT_TRUE(eventually([&] { return answers(*hosts_, 0, 1); })) << "without a key it is";
+  EXPECT_TRUE(eventually([&] {
+    return plant->errors().find("--open-network: who is in the network of ") != std::string::npos;
+  })) << plant->errors();
+}
+
 class Doctors : public Networks {
  protected:
   // Runs `swiftlet doctor network` on hosts 0 and 1 at the same time. Returns the report of host 0.
   json examine() const {
-    const Words words = {"doctor", "network", "--time", "1", "--json"};
+    const Words words = {"doctor", "network", "--time", time_s_, "--json"};
     const std::unique_ptr<Program> other = start_other(words);
     const ProgramResult own = swiftlet(0, words);
     EXPECT_NE(other->wait(kStuck), -1) << other->errors();
@@ -305,10 +409,11 @@ class Doctors : public Networks {
     EXPECT_GT(uncertainty_ms, 0.0);
   }
 
+  std::string time_s_ = "1";
   ClockShift clock_{};  // of host 1
 };
 
-TEST_F(Doctors, MeasureMulticastBothWaysOverASwitch) {
+TEST_F(Doctors, MeasureMulticastAndTheClockOfAHostOverASwitch) {
   connect(Layout::kSwitch);
   options_ = {{}, {}, {}};
   const json report = examine_until([&](const json& it) { return has_measured(it); });
@@ -319,35 +424,30 @@ TEST_F(Doctors, MeasureMulticastBothWaysOverASwitch) {
   EXPECT_EQ(report.at("hosts")[0].at("multicast_from_there"), true);
   EXPECT_EQ(report.at("hosts")[0].at("multicast_to_there"), true);
   expect_plausible(report.at("hosts")[0]);
-}
 
-TEST_F(Doctors, MeasureOffsetAndDriftOfAClock) {
-  connect(Layout::kSwitch);
-  options_ = {{}, {}, {}};
   clock_.shift_s = 3;
   clock_.drift_ppm = 1000.0;
-  const json report = examine_until([&](const json& it) {
-    return has_measured(it) && it.at("hosts")[0].at("clock_drift_uncertainty_ppm") < 150.0 &&
-           std::abs(it.at("hosts")[0].at("clock_drift_ppm").get<double>() - 1000.0) < 300.0;
+  time_s_ = "3";  // in 1 s the filter's prior of 200 ppm pulls the drift by more than its uncertainty
+  const json drifts = examine_until([&](const json& it) {
+    if (!has_measured(it)) return false;
+    const json& uncertainty_ppm = it.at("hosts")[0].at("clock_drift_uncertainty_ppm");
+    return uncertainty_ppm.is_number() && uncertainty_ppm < 60.0;
   });
-  const json& host = report.at("hosts")[0];
-  expect_offset(host, 3000.0, 3060.0);  // drifts for up to a minute
-  EXPECT_EQ(host.at("clock_steps"), 0);
-  EXPECT_EQ(report.at("hints").back().get<std::string>().rfind("the clock of ", 0), 0U) << report;
-}
+  EXPECT_NEAR(drifts.at("hosts")[0].at("clock_drift_ppm").get<double>(), 1000.0, 200.0) << drifts;
+  expect_offset(drifts.at("hosts")[0], 3000.0, 3060.0);  // drifts for up to a minute
+  EXPECT_EQ(drifts.at("hosts")[0].at("clock_steps"), 0);
+  EXPECT_EQ(drifts.at("hints").back().get<std::string>().rfind("the clock of ", 0), 0U) << drifts;
 
-TEST_F(Doctors, FindTheStepOfAClock) {
-  connect(Layout::kSwitch);
-  options_ = {{}, {}, {}};
-  clock_.shift_s = 3;
+  time_s_ = "1";
+  clock_.drift_ppm = 0.0;
   clock_.step_s = 1.0;
   clock_.step_after_s = 0.6;
-  const json report = examine_until(
+  const json steps = examine_until(
       [&](const json& it) { return has_measured(it) && it.at("hosts")[0].at("clock_steps") == 1; });
-  expect_offset(report.at("hosts")[0], 4000.0, 4000.0);
-  EXPECT_NE(report.at("hints").back().get<std::string>().find("stepped while it was measured"),
+  expect_offset(steps.at("hosts")[0], 4000.0, 4000.0);
+  EXPECT_NE(steps.at("hints").back().get<std::string>().find("stepped while it was measured"),
             std::string::npos)
-      << report;
+      << steps;
 }
 
 TEST_F(Doctors, FindEachOtherThroughRoutersByPeersOnly) {

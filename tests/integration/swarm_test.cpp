@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -68,8 +69,12 @@ struct Start {
 
 Start start_of(const Table& command, const Table& imu) {
   Start start;
-  start.stamp_ns = command.at("start_ns").back();
-  const double sent_ns = command.at("publish_time_ns").back();
+  const std::vector<double>& starts_ns = command.at("start_ns");  // 0 of other requests
+  const auto last = std::find_if(starts_ns.rbegin(), starts_ns.rend(), [](double ns) { return ns > 0.0; });
+  if (last == starts_ns.rend()) throw std::runtime_error("no mission was started");
+  start.stamp_ns = *last;
+  const double sent_ns =
+      command.at("publish_time_ns").at(static_cast<std::size_t>(starts_ns.rend() - last) - 1);
   const double recorded_ns = imu.at("publish_time_ns").front();
   const double earlier_ns = clock_difference(imu, recorded_ns, recorded_ns + 0.2e9);
   const double later_ns = clock_difference(imu, sent_ns - 0.2e9, sent_ns);
@@ -177,6 +182,7 @@ class SwarmFlight : public testing::Test {
   fs::path record() const { return folder_.path() / "record"; }
 
   static constexpr double kSpoolUp_ns = 0.8e9;
+  static constexpr double kSteady_ns = 0.3e6;  // what is read of steady clocks
   TemporaryFolder folder_;
 };
 
@@ -208,25 +214,6 @@ TEST_F(SwarmFlight, FliesVehiclesOfTwoFilesFromTheirPlaces) {
   }
 }
 
-// A flight is repeated if a vehicle's clock fell behind before its start, as on a computer that stalls. On one that always does,
-// the starts differ by what the clocks have lost at most.
-TEST_F(SwarmFlight, StartsWithinTwoMillisecondsInRealTime) {
-  constexpr double kSteady_ns = 0.3e6;
-  Start a, b;
-  for (int attempt = 0; attempt < 5 && (attempt == 0 || a.lost_ns + b.lost_ns > kSteady_ns); ++attempt) {
-    const ProgramResult result = fly(fleet("crazyflie2"), {"--mcap", "--replace"});
-    ASSERT_EQ(result.exit_code, 0) << result.errors;
-    EXPECT_EQ(result.errors.find("without monitor"), std::string::npos) << result.errors;
-    a = start_of(recorded("/a/command"), recorded("/a/imu"));
-    b = start_of(recorded("/b/command"), recorded("/b/imu"));
-  }
-  const double lost_ns = a.lost_ns + b.lost_ns;
-  const double within_ns = lost_ns > kSteady_ns ? 2e6 + lost_ns : 2e6;
-  EXPECT_NEAR(a.wall_ns, b.wall_ns, within_ns);
-  RecordProperty("difference_us", static_cast<int>(1e-3 * std::abs(a.wall_ns - b.wall_ns)));
-  expect_same_climb(a, b, within_ns);
-}
-
 TEST_F(SwarmFlight, SixVehiclesChangePlaces) {
   const ProgramResult result = fly("swap6", {"--clock", "lockstep"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
@@ -252,9 +239,11 @@ TEST_F(SwarmFlight, RefusesTwoThatLandOnOneSpot) {
   EXPECT_FALSE(fs::exists(record()));
 }
 
-// GIVEN a vehicle that its pilot pauses WHEN another one is to pass the same place after it THEN that waits, the pilot's is not
-// resumed, and both go on when the pilot resumes it.
-TEST_F(SwarmFlight, WaitsForOneThatThePilotHasPausedAndLeavesItPaused) {
+// GIVEN two vehicles in real time WHEN they start THEN their starts differ by 2 ms at most, besides what their clocks lose
+// while they are measured, as on a computer that stalls.
+// WHEN its pilot pauses one, and the other one is to pass the same place after it THEN that waits, the pilot's is not resumed,
+// and both go on when the pilot resumes it.
+TEST_F(SwarmFlight, StartsWithinTwoMillisecondsAndWaitsForOneThatThePilotHasPaused) {
   folder_.write(
       "first.yaml",
       "frame: ned\ntolerance_m: 0.1\nitems:\n  - {kind: takeoff, height_m: 0.6, speed_m_s: 0.5}\n"
@@ -269,9 +258,10 @@ TEST_F(SwarmFlight, WaitsForOneThatThePilotHasPausedAndLeavesItPaused) {
       "frame: ned\nvehicle: crazyflie2\nsafety: {radius_xy_m: 0.2, radius_z_m: 0.3}\nvehicles:\n"
       "  - {name: a, start_m: [-1.5, 0], mission: first.yaml}\n  - {name: b, start_m: [0, -1.5], mission: "
       "second.yaml}\n");
-  Program fly("swiftlet", {"fleet", "fly", file, "--record", record().string(), "--json"}, folder_.path());
+  Program fly("swiftlet", {"fleet", "fly", file, "--mcap", "--record", record().string(), "--json"},
+              folder_.path());
   const auto said = [&](const std::string& text) { return fly.errors().find(text) != std::string::npos; };
-  ASSERT_TRUE(eventually([&] { return said("2/3 waypoint"); }, kStuck)) << fly.errors();
+  ASSERT_TRUE(eventually([&] { return said("2/3 waypoint") || fly.exit_code(); })) << fly.errors();
   const std::size_t at = fly.errors().find(" in domain ");
   ASSERT_NE(at, std::string::npos);
   const std::string domain = std::to_string(std::stoi(fly.errors().substr(at + 11)));
@@ -283,7 +273,7 @@ TEST_F(SwarmFlight, WaitsForOneThatThePilotHasPausedAndLeavesItPaused) {
   };
   const ProgramResult paused = pilot("pause");
   ASSERT_EQ(paused.exit_code, 0) << paused.errors;
-  EXPECT_TRUE(eventually([&] { return said("b: waits for a"); }, kStuck)) << fly.errors();
+  EXPECT_TRUE(eventually([&] { return said("b: waits for a"); })) << fly.errors();
   const ProgramResult status = run_program(
       "swiftlet", {"status", "--json", "--vehicle-name", "a", "--localhost-only", "--domain", domain},
       folder_.path());
@@ -296,9 +286,18 @@ TEST_F(SwarmFlight, WaitsForOneThatThePilotHasPausedAndLeavesItPaused) {
   for (const json& vehicle : json::parse(fly.output()).at("vehicles"))
     EXPECT_EQ(vehicle.at("completed"), true);
   EXPECT_TRUE(said("b: goes on")) << fly.errors();
+  EXPECT_FALSE(said("without monitor")) << fly.errors();
+
+  const Start a = start_of(recorded("/a/command"), recorded("/a/imu"));
+  const Start b = start_of(recorded("/b/command"), recorded("/b/imu"));
+  const double lost_ns = a.lost_ns + b.lost_ns;
+  const double within_ns = lost_ns > kSteady_ns ? 2e6 + lost_ns : 2e6;
+  EXPECT_NEAR(a.wall_ns, b.wall_ns, within_ns);
+  RecordProperty("difference_us", static_cast<int>(1e-3 * std::abs(a.wall_ns - b.wall_ns)));
+  expect_same_climb(a, b, within_ns);
 }
 
-// Vehicles that run, beside each other along east at 1 m.
+// Vehicles that run, beside each other along east at 1 m, in lockstep at four times real time.
 class RunningSwarm : public testing::Test {
  protected:
   static constexpr const char* kNames = "a,b,c";
@@ -314,6 +313,12 @@ class RunningSwarm : public testing::Test {
   ProgramResult swiftlet(const std::vector<std::string>& words) const {
     return run_program("swiftlet", on_this_domain(words), folder_.path(), kStuck);
   }
+  // A command for all that it sees within a second.
+  ProgramResult fleet(std::vector<std::string> words) const {
+    words.insert(words.begin(), "fleet");
+    words.insert(words.end(), {"--time", "1"});
+    return swiftlet(words);
+  }
   json status(const std::string& vehicle) const {
     const ProgramResult result = swiftlet({"status", "--json", "--watch", "0.2", "--vehicle-name", vehicle});
     return result.exit_code == 0 ? json::parse(result.output) : json::object();
@@ -325,12 +330,9 @@ class RunningSwarm : public testing::Test {
   }
   void arm(const std::string& names) const {
     ProgramResult armed;
-    ASSERT_TRUE(eventually(
-        [&] {
-          return (armed = swiftlet({"arm", "--vehicle-name", names})).exit_code == 0;
-        },
-        kStuck))
-        << armed.errors;
+    ASSERT_TRUE(eventually([&] {
+      return (armed = swiftlet({"arm", "--vehicle-name", names})).exit_code == 0;
+    })) << armed.errors;
   }
   void hover(const std::string& names) const {
     arm(names);
@@ -340,15 +342,15 @@ class RunningSwarm : public testing::Test {
 
   comms::DomainLock lock_;
   TemporaryFolder folder_;
-  Program plant_{"swiftlet-plant", of_process({"--speed", "1", "--spacing", "1"}), folder_.path()};
+  Program plant_{"swiftlet-plant", of_process({"--speed", "4", "--spacing", "1"}), folder_.path()};
   Program mocap_{"swiftlet-mocap", of_process(), folder_.path()};
   Program control_{"swiftlet-control", of_process(), folder_.path()};
 };
 
-TEST_F(RunningSwarm, MovesAsOneAndLands) {
+TEST_F(RunningSwarm, MovesLandsAndStopsAsOne) {
   hover(kNames);
   const Eigen::Vector3d a = position("a"), b = position("b"), c = position("c");
-  const ProgramResult moved = swiftlet({"fleet", "goto", "0.5", "1.2", "-1.4"});
+  const ProgramResult moved = fleet({"goto", "0.5", "1.2", "-1.4"});
   ASSERT_EQ(moved.exit_code, 0) << moved.errors;
   const Eigen::Vector3d move = Eigen::Vector3d(0.5, 1.2, -1.4) - (a + b + c) / 3.0;
   EXPECT_LT((position("a") - a - move).norm(), 0.06);
@@ -356,13 +358,13 @@ TEST_F(RunningSwarm, MovesAsOneAndLands) {
   EXPECT_LT((position("c") - c - move).norm(), 0.06);
 
   // The answers take longer than the skew that is allowed: none goes on.
-  const ProgramResult late = swiftlet({"fleet", "goto", "0.3", "1.2", "-1.4", "--skew", "0"});
+  const ProgramResult late = fleet({"goto", "0.3", "1.2", "-1.4", "--skew", "0"});
   EXPECT_EQ(late.exit_code, 1);
   EXPECT_NE(late.errors.find("a: holds, because the last one may have begun "), std::string::npos)
       << late.errors;
 
   // A part of it, towards the rest.
-  const ProgramResult refused = swiftlet({"fleet", "goto", "0.5", "1.3", "-1.4", "--vehicle-name", "a"});
+  const ProgramResult refused = fleet({"goto", "0.5", "1.3", "-1.4", "--vehicle-name", "a"});
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_NE(refused.errors.find("a would come too near to b: "), std::string::npos) << refused.errors;
   EXPECT_NE(refused.errors.find("nothing was sent"), std::string::npos) << refused.errors;
@@ -372,59 +374,71 @@ TEST_F(RunningSwarm, MovesAsOneAndLands) {
                     "frame: ned\nsafety: {radius_xy_m: 0.6, radius_z_m: 0.6}\nvehicles:\n"
                     "  - {name: a, start_m: [0, 0], mission: square}\n"
                     "  - {name: b, start_m: [0, 1], mission: square}\n");
-  const ProgramResult too_near = swiftlet({"fleet", "goto", "0.5", "0.7", "-1.5", "--fleet", wide});
+  const ProgramResult too_near = fleet({"goto", "0.5", "0.7", "-1.5", "--fleet", wide});
   EXPECT_EQ(too_near.exit_code, 2);
   EXPECT_NE(too_near.errors.find("a would come too near to b: "), std::string::npos) << too_near.errors;
-  const ProgramResult both = swiftlet({"fleet", "land", "--fleet", wide, "--radius-xy", "0.2"});
+  const ProgramResult both = fleet({"land", "--fleet", wide, "--radius-xy", "0.2"});
   EXPECT_EQ(both.exit_code, 2) << both.errors;
   // One refuses what lies outside its fence: the others hold.
-  const ProgramResult outside = swiftlet({"fleet", "goto", "0.5", "2.5", "-1.4"});
+  const ProgramResult outside = fleet({"goto", "0.5", "2.5", "-1.4"});
   EXPECT_EQ(outside.exit_code, 1);
   EXPECT_NE(outside.errors.find("a: holds, because c did not accept it"), std::string::npos)
       << outside.errors;
   EXPECT_LT((position("a") - a - move).norm(), 0.3);
 
-  const ProgramResult one = swiftlet({"fleet", "land", "--vehicle-name", "b"});
+  const ProgramResult one = fleet({"land", "--vehicle-name", "b"});
   ASSERT_EQ(one.exit_code, 0) << one.errors;
   EXPECT_EQ(mode("b"), "disarmed");
   EXPECT_EQ(mode("a"), "holding");
-  const ProgramResult all = swiftlet({"fleet", "land"});
+  const ProgramResult all = fleet({"land"});
   ASSERT_EQ(all.exit_code, 0) << all.errors;
   for (const char* const name : {"a", "c"}) EXPECT_EQ(mode(name), "disarmed") << name;
-  const ProgramResult again = swiftlet({"fleet", "land"});
+  const ProgramResult again = fleet({"land"});
   EXPECT_EQ(again.exit_code, 2);
   EXPECT_NE(again.errors.find("no vehicle flies: nothing was sent"), std::string::npos) << again.errors;
+
+  arm("a,b");
+  EXPECT_EQ(fleet({"stop"}).exit_code, 2) << "without --yes";
+  EXPECT_EQ(mode("a"), "armed");
+  const ProgramResult stopped = fleet({"stop", "--yes", "--vehicle-name", "b"});
+  EXPECT_EQ(stopped.exit_code, 0) << stopped.errors;
+  EXPECT_EQ(mode("a"), "armed");
+  EXPECT_EQ(mode("b"), "stopped");
+  const ProgramResult all_stopped = fleet({"stop", "--yes"});
+  EXPECT_EQ(all_stopped.exit_code, 0) << all_stopped.errors;
+  for (const char* const name : {"a", "b", "c"}) EXPECT_EQ(mode(name), "stopped") << name;
 }
 
-TEST_F(RunningSwarm, LandsNobodyOnAnother) {
+// GIVEN a vehicle above one that stands WHEN all are to land THEN it holds, and the others land.
+// GIVEN a vehicle that is powered, but has no control WHEN all are to land THEN the others land at once, and it is
+// named unless it is known in time.
+TEST_F(RunningSwarm, LandsNobodyOnAnotherAndTheOthersBesideAnUnknownOne) {
   hover("a,b");
   ASSERT_EQ(swiftlet({"goto", "0", "2", "-1.9", "--vehicle-name", "a"}).exit_code,
             0);  // above c, which stands
-  const ProgramResult landed = swiftlet({"fleet", "land"});
-  EXPECT_EQ(landed.exit_code, 1);
-  EXPECT_NE(landed.errors.find("a: was not landed: it would come down on c"), std::string::npos)
-      << landed.errors;
+  const ProgramResult below = fleet({"land"});
+  EXPECT_EQ(below.exit_code, 1);
+  EXPECT_NE(below.errors.find("a: was not landed: it would come down on c"), std::string::npos)
+      << below.errors;
   EXPECT_EQ(mode("a"), "holding");
   EXPECT_EQ(mode("b"), "disarmed");
-}
 
-// GIVEN a vehicle that is powered, but has no control WHEN all are to land THEN the others land at once, and it is
-// named unless it is known in time.
-TEST_F(RunningSwarm, LandsTheOthersBesideAnUnknownOne) {
-  hover("a,b");
+  ASSERT_EQ(swiftlet({"goto", "0", "0", "-1", "--vehicle-name", "a"}).exit_code, 0);
   const Program powered("swiftlet-plant", on_this_domain({"--vehicle-name", "d", "--clock", "lockstep"}),
                         folder_.path());
-  ASSERT_TRUE(eventually([&] { return swiftlet({"list"}).output.find("d ") != std::string::npos; }, kStuck));
-  const ProgramResult moved = swiftlet({"fleet", "goto", "0.5", "1.2", "-1.4"});
+  ASSERT_TRUE(eventually([&] {
+    const std::string names = swiftlet({"list", "--names", "--time", "1"}).output;
+    return names.find("d\n") != std::string::npos;
+  }));
+  const ProgramResult moved = fleet({"goto", "0.5", "1.2", "-1.4", "--timeout", "3"});
   EXPECT_EQ(moved.exit_code, 1);
   EXPECT_NE(moved.errors.find("d: mode and position are not known: nothing was sent"), std::string::npos)
       << moved.errors;
   Program patient("swiftlet", on_this_domain({"fleet", "land", "--timeout", "600"}), folder_.path());
-  for (const char* const name : {"a", "b"})
-    EXPECT_TRUE(eventually([&] { return mode(name) == "disarmed"; }, kStuck)) << name;
+  EXPECT_TRUE(eventually([&] { return mode("a") == "disarmed"; }));
   EXPECT_EQ(patient.errors().find("d: was not landed"), std::string::npos)
       << "it has not waited for d, and looks on for it";
-  const ProgramResult landed = swiftlet({"fleet", "land"});
+  const ProgramResult landed = fleet({"land", "--timeout", "3"});
   EXPECT_EQ(landed.exit_code, 1);
   EXPECT_NE(landed.errors.find("d: was not landed: mode and position are not known"), std::string::npos)
       << landed.errors;
@@ -433,19 +447,6 @@ TEST_F(RunningSwarm, LandsTheOthersBesideAnUnknownOne) {
   const Program mocap("swiftlet-mocap", of_d, folder_.path());
   const Program control("swiftlet-control", of_d, folder_.path());
   EXPECT_EQ(patient.wait(kStuck), 0) << patient.errors();
-}
-
-TEST_F(RunningSwarm, IsStoppedAtOnce) {
-  arm("a,b");
-  EXPECT_EQ(swiftlet({"fleet", "stop"}).exit_code, 2) << "without --yes";
-  EXPECT_EQ(mode("a"), "armed");
-  const ProgramResult one = swiftlet({"fleet", "stop", "--yes", "--vehicle-name", "b"});
-  EXPECT_EQ(one.exit_code, 0) << one.errors;
-  EXPECT_EQ(mode("a"), "armed");
-  EXPECT_EQ(mode("b"), "stopped");
-  const ProgramResult all = swiftlet({"fleet", "stop", "--yes"});
-  EXPECT_EQ(all.exit_code, 0) << all.errors;
-  for (const char* const name : {"a", "b", "c"}) EXPECT_EQ(mode(name), "stopped") << name;
 }
 
 }  // namespace

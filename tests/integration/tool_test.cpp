@@ -7,10 +7,13 @@
 #include <utility>
 
 #include "tests/support/online_flight.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/terminal.hpp"
 
 namespace swiftlet::tests {
 namespace {
+
+using control::Mode;
 
 class Tool : public testing::Test {
  protected:
@@ -47,9 +50,9 @@ TEST_F(Tool, BashCompletesCommandsOptionsAndTheirValues) {
   EXPECT_EQ(completed({"swiftlet", "tak"}), Words({"takeoff"}));
   EXPECT_EQ(completed({"swiftlet", "sim", "fl"}), Words({"fly"}));
   EXPECT_EQ(completed({"swiftlet", "stream", "--ra"}), Words({"--rate"}));
-  EXPECT_EQ(completed({"swiftlet", "land", "--transport", ""}), Words({"udp", "shm"}));
-  EXPECT_EQ(completed({"swiftlet", "land", "--transport", "=", "s"}), Words({"shm"}));
-  EXPECT_EQ(completed({"swiftlet", "land", "--transport", "="}), Words({"udp", "shm"}));
+  EXPECT_EQ(completed({"swiftlet", "fly", "--clock", ""}), Words({"realtime", "lockstep"}));
+  EXPECT_EQ(completed({"swiftlet", "fly", "--clock", "=", "l"}), Words({"lockstep"}));
+  EXPECT_EQ(completed({"swiftlet", "fly", "--clock", "="}), Words({"realtime", "lockstep"}));
   EXPECT_EQ(completed({"swiftlet", "completion", "z"}), Words({"zsh"}));
   EXPECT_EQ(completed({"swiftlet", "report", ""}), Words()) << "bash completes files itself";
   EXPECT_EQ(completed({"swiftlet", "fly", "--record", ""}), Words());
@@ -73,9 +76,8 @@ TEST_F(Tool, AllProgramsFailIfTheirOutputCannotBeWritten) {
       {"swiftlet", "config ls"},    {"swiftlet", "config show kaylion"}, {"swiftlet-identify", "--help"},
       {"swiftlet-plant", "--help"}, {"swiftlet-mocap", "--version"},     {"swiftlet-control", "--help"}};
   for (const auto& [program, arguments] : commands) {
-    const ProgramResult result =
-        run_program("/bin/sh", {"-c", "'" SWIFTLET_BIN_DIR "/" + program + "' " + arguments + " > /dev/full"},
-                    folder_.path());
+    const ProgramResult result = run_program(
+        "/bin/sh", {"-c", "'" + program_file(program) + "' " + arguments + " > /dev/full"}, folder_.path());
     EXPECT_EQ(result.exit_code, 1) << program;
     const std::string name = program == "swiftlet-identify" ? "swiftlet" : program;
     EXPECT_EQ(result.errors, name + ": cannot write to standard output: No space left on device\n");
@@ -149,111 +151,108 @@ TEST_F(Tool, ManualPageMatchesTheHelp) {
 
 class AtATerminal : public OnlineFlight {
  protected:
-  std::vector<std::string> with_network(std::vector<std::string> words) const {
-    for (const std::string& word : network()) words.push_back(word);
-    return words;
+  Terminal open(std::vector<std::string> words) const {
+    return {"swiftlet", on_network(std::move(words)), 80, 24};
   }
 };
 
+bool shows(Terminal& terminal, const std::string& text) {
+  const bool shown = eventually([&] { return terminal.text().find(text) != std::string::npos; });
+  EXPECT_TRUE(shown) << text << "\n" << terminal.text();
+  return shown;
+}
+
 TEST_F(AtATerminal, WatchShowsTheFlightAndExecutesKeys) {
   take_off();
-  Terminal terminal("swiftlet", with_network({"watch"}), 80, 24);
-  const auto shows = [&](const std::string& text) {
-    return eventually([&] { return terminal.text().find(text) != std::string::npos; }, kStuck);
-  };
-  ASSERT_TRUE(shows(": holding (take-off completed), airborne")) << terminal.text();
-  ASSERT_TRUE(shows("position ")) << terminal.text();
-  for (const char* part : {"reference ", "battery ", "latency ", "rates ", "h hold   l land   s stop"})
-    EXPECT_TRUE(shows(part)) << part << "\n" << terminal.text();
+  Terminal terminal = open({"watch"});
+  ASSERT_TRUE(shows(terminal, ": holding (take-off completed), airborne"));
+  for (const char* part :
+       {"position ", "reference ", "battery ", "latency ", "rates ", "h hold   l land   s stop"})
+    ASSERT_TRUE(shows(terminal, part));
 
   terminal.resize(50, 8);
-  ASSERT_TRUE(eventually([&] { return terminal.line(7).rfind("terminal too small", 0) == 0; }, kStuck))
+  ASSERT_TRUE(eventually([&] { return terminal.line(7).rfind("terminal too small", 0) == 0; }))
       << terminal.text();
   EXPECT_EQ(terminal.line(6).rfind("h hold", 0), 0U) << terminal.text();
   EXPECT_EQ(terminal.line(0).rfind("kl7 in domain", 0), 0U) << terminal.text();
   terminal.resize(120, 40);
-  ASSERT_TRUE(eventually([&] { return terminal.line(39).rfind("h hold", 0) == 0; }, kStuck))
-      << terminal.text();
+  ASSERT_TRUE(eventually([&] { return terminal.line(39).rfind("h hold", 0) == 0; })) << terminal.text();
 
   terminal.type("l");
-  ASSERT_TRUE(shows("land: descend vertically? y confirms")) << terminal.text();
+  ASSERT_TRUE(shows(terminal, "land: descend vertically? y confirms"));
   terminal.type("x");
-  ASSERT_TRUE(shows("land: not confirmed")) << terminal.text();
-  EXPECT_EQ(status().at("mode"), "holding");
+  ASSERT_TRUE(shows(terminal, "land: not confirmed"));
+  EXPECT_EQ(state().mode, Mode::kHolding);
   terminal.type("l");
-  ASSERT_TRUE(shows("land: descend vertically? y confirms")) << terminal.text();
+  ASSERT_TRUE(shows(terminal, "land: descend vertically? y confirms"));
   terminal.type("y");
-  ASSERT_TRUE(shows("land: accepted")) << terminal.text();
-  ASSERT_TRUE(shows(": disarmed (landed)")) << terminal.text();
+  ASSERT_TRUE(shows(terminal, "land: accepted"));
+  ASSERT_TRUE(shows(terminal, ": disarmed (landed)"));
   terminal.type("q");
   EXPECT_EQ(terminal.wait(kStuck), 0);
   EXPECT_TRUE(terminal.is_restored());
+
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    Terminal interrupted = open({"watch"});
+    ASSERT_TRUE(shows(interrupted, "disarmed"));
+    EXPECT_FALSE(interrupted.is_restored());
+    interrupted.signal(signal);
+    EXPECT_EQ(interrupted.wait(kStuck), 0) << signal;
+    EXPECT_TRUE(interrupted.is_restored()) << signal;
+  }
 }
 
-TEST_F(AtATerminal, WatchKeepsItsQuestionWhileControlIsSilent) {
-  Terminal terminal("swiftlet", with_network({"watch"}), 80, 24);
-  const auto shows = [&](const std::string& text) {
-    return eventually([&] { return terminal.text().find(text) != std::string::npos; }, kStuck);
-  };
+class AtATerminalWithAPatientVehicle : public AtATerminal {
+ protected:
+  void SetUp() override { start("10", {"--patience", "600"}); }
+};
+
+// Waits for the wall clock, by which silence is measured. GIVEN a watch that asks a question, and a command that waits for
+// its result WHEN control falls silent THEN the watch says so and keeps its question, and the command ends.
+TEST_F(AtATerminalWithAPatientVehicle, ToolsNoticeASilentControlService) {
+  take_off();
+  Program going = begin({"goto", "2", "0", "-0.6", "--speed", "0.02"});
+  ASSERT_TRUE(eventually([&] { return going.output() == "goto: accepted by kl7\n"; })) << going.errors();
+  Terminal terminal = open({"watch"});
   const std::string question = "land: descend vertically? y confirms";
-  ASSERT_TRUE(shows("position ")) << terminal.text();
+  ASSERT_TRUE(shows(terminal, "position "));
   terminal.type("l");
-  ASSERT_TRUE(shows(question)) << terminal.text();
-  control_.signal(SIGSTOP);
-  ASSERT_TRUE(shows("CONTROL SERVICE SILENT")) << terminal.text();
+  ASSERT_TRUE(shows(terminal, question));
+  control_->signal(SIGSTOP);
+  ASSERT_TRUE(shows(terminal, "CONTROL SERVICE SILENT"));
   EXPECT_NE(terminal.text().find(question), std::string::npos) << terminal.text();
   terminal.type("x");
-  ASSERT_TRUE(shows("land: not confirmed")) << terminal.text();
-  control_.signal(SIGCONT);
-  ASSERT_TRUE(shows("control process connected again")) << terminal.text();
+  ASSERT_TRUE(shows(terminal, "land: not confirmed"));
+  EXPECT_EQ(going.wait(kStuck), 1);
+  EXPECT_NE(going.errors().find("no control_status for 3 s"), std::string::npos) << going.errors();
+  control_->signal(SIGCONT);
+  ASSERT_TRUE(shows(terminal, "control process connected again"));
 }
 
-TEST_F(AtATerminal, InterruptedWatchRestoresTheTerminal) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    Terminal terminal("swiftlet", with_network({"watch"}), 80, 24);
-    ASSERT_TRUE(eventually([&] { return terminal.text().find("disarmed") != std::string::npos; }, kStuck))
-        << terminal.text();
-    EXPECT_FALSE(terminal.is_restored());
-    terminal.signal(signal);
-    EXPECT_EQ(terminal.wait(kStuck), 0) << signal;
-    EXPECT_TRUE(terminal.is_restored()) << signal;
-  }
-}
-
-TEST_F(AtATerminal, GotoShowsItsProgressAndCtrlCHolds) {
+TEST_F(AtATerminal, GotoShowsItsProgressCtrlCHoldsAndStopAsks) {
   take_off();
-  Terminal terminal("swiftlet", with_network({"goto", "2", "0", "-0.6", "--speed", "0.2"}), 80, 24);
-  const auto shows = [&](const std::string& text) {
-    return eventually([&] { return terminal.text().find(text) != std::string::npos; }, kStuck);
-  };
-  ASSERT_TRUE(shows(" %  holding  (")) << terminal.text();
-  terminal.type("\x03");
-  EXPECT_EQ(terminal.wait(kStuck), 1);
-  EXPECT_TRUE(shows("swiftlet: goto: interrupted; kl7 holds")) << terminal.text();
-  ASSERT_TRUE(reaches("rest", [](const json& status) {
-    return status.at("request").at("kind") == "hold" && status.at("request").at("state") == "succeeded";
+  Terminal going = open({"goto", "2", "0", "-0.6", "--speed", "0.02"});
+  ASSERT_TRUE(shows(going, " %  holding  ("));
+  going.type("\x03");
+  EXPECT_EQ(going.wait(kStuck), 1);
+  EXPECT_TRUE(shows(going, "swiftlet: goto: interrupted; kl7 holds"));
+  ASSERT_TRUE(eventually([&] {
+    const json request = status().at("request");
+    return request.at("kind") == "hold" && request.at("state") == "succeeded";
   }));
-  EXPECT_LT(status().at("position_ned_m")[0].get<double>(), 1.9);
-}
-
-TEST_F(AtATerminal, StopRequiresATypedConfirmation) {
-  expect_accepted({"arm"});
+  EXPECT_LT(state().position_ned_m.x(), 1.9);
   {
-    Terminal terminal("swiftlet", with_network({"stop"}), 80, 24);
-    ASSERT_TRUE(
-        eventually([&] { return terminal.text().find("Type stop to do it:") != std::string::npos; }, kStuck));
-    terminal.type("y\n");
-    EXPECT_EQ(terminal.wait(kStuck), 2);
-    EXPECT_TRUE(eventually([&] {
-      return terminal.text().find("not confirmed, nothing was sent") != std::string::npos;
-    })) << terminal.text();
+    Terminal unsure = open({"stop"});
+    ASSERT_TRUE(shows(unsure, "Type stop to do it:"));
+    unsure.type("y\n");
+    EXPECT_EQ(unsure.wait(kStuck), 2);
+    EXPECT_TRUE(shows(unsure, "not confirmed, nothing was sent"));
   }
-  EXPECT_EQ(status().at("mode"), "armed");
-  Terminal terminal("swiftlet", with_network({"stop"}), 80, 24);
-  ASSERT_TRUE(
-      eventually([&] { return terminal.text().find("Type stop to do it:") != std::string::npos; }, kStuck));
-  terminal.type("stop\n");
-  EXPECT_EQ(terminal.wait(kStuck), 0);
+  EXPECT_EQ(status().at("mode"), "holding");
+  Terminal sure = open({"stop"});
+  ASSERT_TRUE(shows(sure, "Type stop to do it:"));
+  sure.type("stop\n");
+  EXPECT_EQ(sure.wait(kStuck), 0);
   EXPECT_EQ(status().at("mode"), "stopped");
 }
 

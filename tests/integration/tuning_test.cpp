@@ -10,6 +10,7 @@
 
 #include "swiftlet/io/text_file.hpp"
 #include "tests/support/online_flight.hpp"
+#include "tests/support/paths.hpp"
 
 namespace swiftlet::tests {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 using Replacements = std::vector<std::pair<std::string, std::string>>;
 
 std::string replaced(const std::string& file, const Replacements& replacements) {
-  std::string text = runtime::read_text_file(std::string(SWIFTLET_SOURCE_DIR) + "/" + file);
+  std::string text = runtime::read_text_file(in_source(file));
   for (const auto& [from, to] : replacements) {
     const std::size_t at = text.find(from);
     EXPECT_NE(at, std::string::npos) << from;
@@ -27,7 +28,7 @@ std::string replaced(const std::string& file, const Replacements& replacements) 
 }
 
 // That do not learn the weight at lift-off.
-std::string settings(Replacements replacements) {
+std::string settings_file(Replacements replacements) {
   replacements.push_back({"learn_lift: true", "learn_lift: false"});
   return replaced("config/control/motor_lag.yaml", replacements);
 }
@@ -41,47 +42,51 @@ const Replacements kSagging = {{"name: motor_lag", "name: sagging"},
 constexpr double kSaggingP = 5.6;  // omega^2 + 2 zeta omega pole
 
 // A vehicle that is 5 % heavier than in the controller's file.
-class Tuning : public Online {
+class Tuning : public OnlineFlight {
  protected:
   static constexpr double kHeight_m = 0.6;
   static constexpr double kSag_m = 0.05 * 9.81 / kSaggingP;
 
-  std::string logs() const override { return control_.errors(); }
+  void SetUp() override {
+    start("10",
+          {"--vehicle",
+           folder_.write("heavy.yaml", replaced("config/vehicles/kaylion.yaml",
+                                                {{"mass: {value: 0.040", "mass: {value: 0.042"}}))},
+          {"--control", usual_});
+  }
   bool hovers_at(double height_m) const {
-    return reaches("height", [&](const json& now) {
-      return std::abs(-now.at("position_ned_m")[2].get<double>() - height_m) < 0.01 &&
-             std::abs(now.at("velocity_ned_m_s")[2].get<double>()) < 0.01;
+    return reaches("height", [height_m](const VehicleState& now) {
+      return std::abs(-now.position_ned_m.z() - height_m) < 0.01 && std::abs(now.velocity_ned_m_s.z()) < 0.01;
     });
   }
-  void done(const std::vector<std::string>& words) const {
-    const ProgramResult result = swiftlet(words);
-    ASSERT_EQ(result.exit_code, 0) << words.front() << ": " << result.errors;
-  }
-  void expect_refused(const std::string& file, const std::string& reason) const {
+  void expect_change_refused(const std::string& file, const std::string& reason) const {
     const ProgramResult result = swiftlet({"set", "control", file});
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_EQ(result.errors, "swiftlet: set control: " + reason + "\n");
   }
 
-  const std::string heavy_ = folder_.write(
-      "heavy.yaml",
-      replaced("config/vehicles/kaylion.yaml", {{"mass: {value: 0.040", "mass: {value: 0.042"}}));
-  const Program plant_{"swiftlet-plant", lockstep({"--speed", "4", "--vehicle", heavy_}), folder_.path()};
-  const Program mocap_{"swiftlet-mocap", lockstep(), folder_.path()};
-  const std::string usual_ = folder_.write("usual.yaml", settings({}));
-  const Program control_{"swiftlet-control", lockstep({"--control", usual_}), folder_.path()};
+  const std::string usual_ = folder_.write("usual.yaml", settings_file({}));
 };
 
-TEST_F(Tuning, ChangesTheGainsInHover) {
-  ASSERT_TRUE(reaches("has_pose", [](const json& now) { return now.at("has_pose") == true; }));
-  ASSERT_NO_FATAL_FAILURE(done({"arm"}));
-  ASSERT_NO_FATAL_FAILURE(done({"takeoff", "0.6"}));
+TEST_F(Tuning, ChangesTheGainsInHoverOrSaysWhyNot) {
+  take_off();
   ASSERT_TRUE(hovers_at(kHeight_m));
   const json before = status().at("settings");
   EXPECT_EQ(before.at("name"), "motor_lag");
   EXPECT_NEAR(before.at("gains").at("position_p_per_s2")[2].get<double>(), 11.4, 1e-9);
 
-  const std::string sagging = folder_.write("sagging.yaml", settings(kSagging));
+  expect_change_refused(
+      folder_.write("fast.yaml", settings_file({{"max_speed_m_s: 2.0", "max_speed_m_s: 3.0"}})),
+      "limits.max_speed_m_s: cannot change in flight: is 2.0, the file has 3.0");
+  expect_change_refused(
+      folder_.write("shaky.yaml",
+                    settings_file({{"x: {omega_n: 2.0, zeta: 1.0", "x: {omega_n: 6.0, zeta: 0.2"}})),
+      "position.x: with the rotor lag the loop is unstable");
+  const std::string broken = folder_.write("broken.yaml", settings_file({{"zeta: 1.0", "zeta: -1"}}));
+  EXPECT_EQ(swiftlet({"set", "control", broken}).exit_code, 2);
+  EXPECT_EQ(status().at("settings").at("name"), "motor_lag");
+
+  const std::string sagging = folder_.write("sagging.yaml", settings_file(kSagging));
   const ProgramResult changed = swiftlet({"set", "control", sagging, "--ramp", "1", "--wait", "25"});
   EXPECT_EQ(changed.exit_code, 0) << changed.errors;
   EXPECT_EQ(changed.output, "set control: accepted by kl7\nset control: done\n");
@@ -92,33 +97,20 @@ TEST_F(Tuning, ChangesTheGainsInHover) {
   EXPECT_NEAR(after.at("settings").at("gains").at("position_p_per_s2")[2].get<double>(), kSaggingP, 1e-9);
   EXPECT_TRUE(hovers_at(kHeight_m - kSag_m)) << "the vehicle sags by weight over gain";
 
-  ASSERT_NO_FATAL_FAILURE(done({"set", "control", usual_, "--ramp", "1"}));
+  const ProgramResult restored = swiftlet({"set", "control", usual_, "--ramp", "1"});
+  ASSERT_EQ(restored.exit_code, 0) << restored.errors;
   EXPECT_EQ(status().at("settings").at("gains"), before.at("gains"));
   EXPECT_TRUE(hovers_at(kHeight_m));
-}
 
-TEST_F(Tuning, RefusesChangesWithTheirReasons) {
-  ASSERT_TRUE(reaches("has_pose", [](const json& now) { return now.at("has_pose") == true; }));
-  ASSERT_NO_FATAL_FAILURE(done({"arm"}));
-  ASSERT_NO_FATAL_FAILURE(done({"takeoff", "0.6"}));
-  expect_refused(folder_.write("fast.yaml", settings({{"max_speed_m_s: 2.0", "max_speed_m_s: 3.0"}})),
-                 "limits.max_speed_m_s: cannot change in flight: is 2.0, the file has 3.0");
-  expect_refused(
-      folder_.write("shaky.yaml", settings({{"x: {omega_n: 2.0, zeta: 1.0", "x: {omega_n: 6.0, zeta: 0.2"}})),
-      "position.x: with the rotor lag the loop is unstable");
-  EXPECT_EQ(swiftlet({"set", "control", folder_.write("broken.yaml", settings({{"zeta: 1.0", "zeta: -1"}}))})
-                .exit_code,
-            2);
-  EXPECT_EQ(status().at("settings").at("name"), "motor_lag");
-  const ProgramResult landing = swiftlet({"land", "--speed", "0.05", "--no-wait"});
-  ASSERT_EQ(landing.exit_code, 0) << landing.errors;
-  expect_refused(usual_, "cannot change the gains while landing");
+  ASSERT_TRUE(vehicle_.land(0.01).accepted());
+  expect_change_refused(usual_, "cannot change the gains while landing");
 }
 
 TEST(TunePlot, DrawsSettingsOverEachOther) {
   const TemporaryFolder folder;
   const std::string soft = folder.write(
-      "soft.yaml", settings({{"name: motor_lag", "name: soft"}, {"x: {omega_n: 2.0", "x: {omega_n: 1.0"}}));
+      "soft.yaml",
+      settings_file({{"name: motor_lag", "name: soft"}, {"x: {omega_n: 2.0", "x: {omega_n: 1.0"}}));
   const std::string picture = folder.path() / "tuning.png";
   const ProgramResult result = run_program(
       "swiftlet", {"tune", "plot", "motor_lag", soft, "--delay", "0.004", "-o", picture, "--json"},

@@ -1,4 +1,5 @@
-// A vehicle process with its microcontroller at the far end of a serial line or of UDP, as real processes in real time.
+// A vehicle process with its microcontroller at the far end of a serial line or of UDP, as real processes: once in real time,
+// which its clock and the times of the link need, otherwise in scaled time.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -38,9 +39,10 @@ ground::Window at_height(const ground::FlightRecord& record) {
 class VehicleTemplate : public SeparateProcesses {
  protected:
   // A busy machine may stop any process for a while, which must not end a flight: the microcontroller is patient.
-  void start_microcontroller(std::vector<std::string> link, const std::string& patience_s = "0.5") {
+  void start_microcontroller(std::vector<std::string> link, const std::string& speed = "3",
+                             const std::string& patience_s = "0.5") {
     link.insert(link.end(), {"--clock-offset", "1000", "--clock-drift", "50", "--command-timeout", "0.5",
-                             "--patience", patience_s});
+                             "--patience", patience_s, "--speed", speed});
     microcontroller_ = start("swiftlet-microcontroller", std::move(link));
   }
   void start_vehicle(const std::vector<std::string>& link) {
@@ -50,8 +52,8 @@ class VehicleTemplate : public SeparateProcesses {
     control_ = start("swiftlet-control");
     mocap_ = start("swiftlet-mocap");
   }
-  void start_over_cable(const std::string& patience_s = "0.5") {
-    start_microcontroller({"--pty", far_tty_}, patience_s);
+  void start_over_cable(const std::string& speed = "3", const std::string& patience_s = "0.5") {
+    start_microcontroller({"--pty", far_tty_}, speed, patience_s);
     cable_ = std::make_unique<SerialCable>(far_tty_, tty_);
     start_vehicle({"--device", tty_});
     start_others();
@@ -81,9 +83,37 @@ class VehicleTemplate : public SeparateProcesses {
   std::unique_ptr<SerialCable> cable_;
 };
 
-TEST_F(VehicleTemplate, FliesTheSquareThroughAPseudoTerminal) {
-  start_microcontroller({"--pty", tty_});
+class VehicleTemplateInRealTime : public VehicleTemplate {
+ protected:
+  // The clock of the vehicle is the microcontroller's, 1000 s ahead and 50 ppm fast, and the process answers for it.
+  void expect_clock_of_microcontroller() {
+    std::atomic<std::int64_t> received_ns{0};
+    auto requests = watcher_->publish(topics::kClockRequest);
+    const auto replies = watcher_->subscribe<msg::ClockReply>(
+        topics::kClockReply, [&](const msg::ClockReply& reply) { received_ns = reply.received_ns(); });
+    std::int64_t before_ns = 0;
+    ASSERT_TRUE(eventually([&] {
+      if (!client_->view().truth.seen()) return false;
+      before_ns = stamp_ns();
+      msg::ClockRequest request;
+      request.client(1);
+      request.sequence_number(1);
+      requests.publish(request);
+      return eventually([&] { return received_ns != 0; }, std::chrono::milliseconds(50));
+    })) << plant_->errors();
+    const std::int64_t reply_ns = received_ns;
+    EXPECT_GT(reply_ns, 1'000'000'000'000);
+    EXPECT_TRUE(wait_for_truth([&](const auto& truth) { return truth.stamp_ns() >= reply_ns; }))
+        << "not of the future";
+    constexpr std::int64_t kSlackNs = 100'000'000;  // a busy machine delays the truth, and the exchanges
+    EXPECT_GE(reply_ns, before_ns - kSlackNs);
+  }
+};
+
+TEST_F(VehicleTemplateInRealTime, FliesTheSquareThroughAPseudoTerminal) {
+  start_microcontroller({"--pty", tty_}, "1");
   start_vehicle({"--device", tty_});
+  expect_clock_of_microcontroller();
   start_others();
   wait_until_ready();
   ground::Result armed;
@@ -116,34 +146,8 @@ TEST_F(VehicleTemplate, FliesOverUdp) {
   hover();
 }
 
-// The clock of the vehicle is the microcontroller's, 1000 s ahead and 50 ppm fast, and the process answers for it.
-TEST_F(VehicleTemplate, AnswersForTheMicrocontrollersClock) {
-  start_microcontroller({"--pty", tty_});
-  start_vehicle({"--device", tty_});
-  std::atomic<std::int64_t> received_ns{0};
-  auto requests = watcher_->publish(topics::kClockRequest);
-  const auto replies = watcher_->subscribe<msg::ClockReply>(
-      topics::kClockReply, [&](const msg::ClockReply& reply) { received_ns = reply.received_ns(); });
-  std::int64_t before_ns = 0;
-  ASSERT_TRUE(eventually([&] {
-    if (!client_->view().truth.seen()) return false;
-    before_ns = stamp_ns();
-    msg::ClockRequest request;
-    request.client(1);
-    request.sequence_number(1);
-    requests.publish(request);
-    return eventually([&] { return received_ns != 0; }, std::chrono::milliseconds(50));
-  })) << plant_->errors();
-  const std::int64_t reply_ns = received_ns;
-  EXPECT_GT(reply_ns, 1'000'000'000'000);
-  EXPECT_TRUE(wait_for_truth([&](const auto& truth) { return truth.stamp_ns() >= reply_ns; }))
-      << "not of the future";
-  constexpr std::int64_t kSlackNs = 100'000'000;  // a busy machine delays the truth, and the exchanges
-  EXPECT_GE(reply_ns, before_ns - kSlackNs);
-}
-
 TEST_F(VehicleTemplate, FliesWithBytesLostAndChangedBothWays) {
-  start_over_cable("0.2");  // it waits so long for each answer that is lost
+  start_over_cable("1", "0.02");  // it waits so long for each answer that is lost
   hover();
   cable_->loss = 1e-4;
   cable_->errors = 1e-4;  // of the 60 bytes of a frame
@@ -155,17 +159,6 @@ TEST_F(VehicleTemplate, FliesWithBytesLostAndChangedBothWays) {
   const std::string log = end(*plant_);
   EXPECT_NE(log.find("frames from the microcontroller: "), std::string::npos) << log;
   EXPECT_EQ(log.find(" 0 broken", log.find("ended: ")), std::string::npos) << "counted both ways\n" << log;
-}
-
-TEST_F(VehicleTemplate, HealsWhenItIsUnpluggedOnTheGround) {
-  start_over_cable();
-  cable_->unplug();
-  EXPECT_TRUE(has_fault("no link to the microcontroller: " + tty_ + ": "));
-  EXPECT_TRUE(eventually([&] { return client_->view().control.message.imu_age_s() > 0.5; }, kTimeout));
-  cable_->plug();
-  EXPECT_TRUE(has_fault(""));
-  EXPECT_TRUE(logged(*plant_, "session 2 with microcontroller"));
-  hover();
 }
 
 // A microcontroller that gets its power from the cable: its clock starts again.
@@ -183,14 +176,21 @@ TEST_F(VehicleTemplate, HealsWhenTheMicrocontrollerRestartsOnTheGround) {
   hover();
 }
 
-TEST_F(VehicleTemplate, UnpluggedInFlightTheMicrocontrollerStopsTheRotorsAndLeavesThemOff) {
+TEST_F(VehicleTemplate, HealsWhenItIsUnpluggedOnTheGroundAndInFlightTheMicrocontrollerStopsTheRotors) {
   start_over_cable();
+  cable_->unplug();
+  EXPECT_TRUE(has_fault("no link to the microcontroller: " + tty_ + ": "));
+  EXPECT_TRUE(eventually([&] { return client_->view().control.message.imu_age_s() > 0.5; }, kTimeout));
+  cable_->plug();
+  EXPECT_TRUE(has_fault(""));
+  EXPECT_TRUE(logged(*plant_, "session 2 with microcontroller"));
   hover();
+
   cable_->unplug();
   EXPECT_TRUE(logged(*microcontroller_, "rotors stopped: no command within the time-out"));
   EXPECT_TRUE(wait_until_on_ground());
   cable_->plug();
-  EXPECT_TRUE(logged(*plant_, "session 2 with microcontroller"));
+  EXPECT_TRUE(logged(*plant_, "session 3 with microcontroller"));
   clear_history();
   wait_vehicle_time(1.0);
   EXPECT_LT(fastest_rotor(truth().back()), 1.0) << "rad/s";

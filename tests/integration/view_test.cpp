@@ -6,7 +6,6 @@
 
 #include "swiftlet/services/dds/payload.hpp"
 #include "tests/support/foxglove_client.hpp"
-#include "tests/support/hop_mission.hpp"
 #include "tests/support/online_flight.hpp"
 
 namespace swiftlet::tests {
@@ -69,9 +68,12 @@ TEST_F(OnlineFlight, ALiveViewerLandsTheVehicle) {
 // completes and ends the server.
 TEST(View, BesideAFlight) {
   const TemporaryFolder folder;
-  const std::string mission = folder.write("hop.yaml", kHopMission);
+  const std::string mission = folder.write("hover.yaml",
+                                           "frame: ned\ntolerance_m: 0.1\nitems:\n"
+                                           "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.5, hold_s: 15}\n"
+                                           "  - {kind: land, speed_m_s: 0.5}\n");
   Program flight("swiftlet",
-                 {"fly", mission, "--view", "--clock", "lockstep", "--speed", "1", "--json", "--record",
+                 {"fly", mission, "--view", "--clock", "lockstep", "--speed", "5", "--json", "--record",
                   folder.path() / "record"},
                  folder.path());
   ASSERT_TRUE(eventually([&] { return port_in(flight.errors()) != 0; })) << flight.errors();

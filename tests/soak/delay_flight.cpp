@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/eventually.hpp"
-#include "tests/support/network_relay.hpp"
+#include "tests/support/network/network_relay.hpp"
 
 namespace swiftlet::soak {
 namespace {

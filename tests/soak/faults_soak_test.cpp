@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/soak/soak_flight.hpp"
+#include "tests/support/paths.hpp"
 
 namespace swiftlet::soak {
 namespace {
@@ -17,7 +18,7 @@ const SoakSetup& setup() {
 }
 
 std::vector<std::uint64_t> regression_seeds() {
-  std::ifstream file(SWIFTLET_SOURCE_DIR "/tests/soak/seeds.txt");
+  std::ifstream file(tests::in_source("tests/soak/seeds.txt"));
   std::vector<std::uint64_t> seeds;
   for (std::string line; std::getline(file, line);) {
     if (!line.empty() && line.front() != '#') seeds.push_back(std::stoull(line));

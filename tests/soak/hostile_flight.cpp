@@ -8,7 +8,7 @@
 
 #include "swiftlet/io/network_key.hpp"
 #include "tests/support/eventually.hpp"
-#include "tests/support/network_namespace.hpp"
+#include "tests/support/network/network_namespace.hpp"
 #include "tests/support/redundant_flight.hpp"
 
 namespace swiftlet::soak {
@@ -19,8 +19,7 @@ using Clock = std::chrono::steady_clock;
 using tests::eventually;
 namespace msg = comms::msg;
 
-constexpr double kSpeed = 1.0;                        // m/s, of the mission
-constexpr std::int64_t kBaseline_ns = 3'000'000'000;  // before the attack
+constexpr double kSpeed = 1.0;  // m/s, of the mission
 
 double seconds(Clock::duration time) { return std::chrono::duration<double>(time).count(); }
 
@@ -66,8 +65,6 @@ class HostileFlight {
 comms::NodeSettings HostileFlight::network(const HostileSettings& settings,
                                            const std::filesystem::path& folder) {
   comms::NodeSettings network;
-  if (settings.transport == tests::AttackTransport::kSharedMemory)
-    network.transport = comms::Transport::kSharedMemory;
   if (settings.network_key) {
     network.network_key_file = folder / "network.key";
     runtime::write_network_keys(network.network_key_file, {runtime::random_network_key()});
@@ -97,12 +94,18 @@ HostileResult HostileFlight::fly() {
   flight_.fly(tests::square_laps(kSpeed, static_cast<int>(std::ceil((attack_s + 1.0) / lap_s))));
   flight_.wait("the vehicle has taken off", [&] { return flight_.z_ned() < -0.98 && flight_.speed() > 0.1; });
   const Answers start(flight_.client().view().vehicle.message);
-  const std::int64_t attack_ns = flight_.stamp_ns() + kBaseline_ns;
+  const std::int64_t attack_ns = flight_.stamp_ns() + std::llround(1e9 * settings_.baseline_s);
   flight_.wait("the vehicle's time passes", [&] { return flight_.stamp_ns() > attack_ns; });
   result.late_before = Answers(flight_.client().view().vehicle.message).late_since(start);
   attack(result);
-  result.mission_completed = eventually([&] { return mission_is(msg::MissionStatus_Constants::COMPLETED); },
-                                        std::chrono::seconds(60), 50ms);
+  const ground::View attacked = flight_.client().view();
+  flight_.wait("the ground hears vehicle and control after the attack", [&] {
+    const ground::View now = flight_.client().view();
+    return now.vehicle.count > attacked.vehicle.count && now.control.count > attacked.control.count;
+  });
+  if (settings_.network_key)
+    result.mission_completed = eventually([&] { return mission_is(msg::MissionStatus_Constants::COMPLETED); },
+                                          std::chrono::seconds(60), 50ms);
   for (const auto& [name, pid] : processes()) {
     if (!tests::is_running(pid)) result.dead.push_back(name);
   }
@@ -116,8 +119,7 @@ void HostileFlight::attack(HostileResult& result) {
   const auto began = Clock::now();
   {
     const tests::DatagramAttack attack(
-        tests::DatagramMutator(capture_.datagrams(), settings_.seed, settings_.forges), settings_.transport,
-        settings_.per_second);
+        tests::DatagramMutator(capture_.datagrams(), settings_.seed, settings_.forges), settings_.per_second);
     eventually([&] { return attack.sent() >= settings_.datagrams / 2; }, 1h, 20ms);
     for (const auto& [name, pid] : processes()) memory_mib.push_back(resident_mib(pid));
     eventually([&] { return attack.sent() >= settings_.datagrams; }, 1h, 20ms);
@@ -129,7 +131,8 @@ void HostileFlight::attack(HostileResult& result) {
     result.memory_growth_mib =
         std::max(result.memory_growth_mib, resident_mib(all[i].second) - memory_mib[i]);
   result.late_during = Answers(flight_.client().view().vehicle.message).late_since(before);
-  result.largest_deviation_m = flight_.metrics(begin_ns, flight_.stamp_ns()).largest_deviation_m;
+  if (settings_.network_key)
+    result.largest_deviation_m = flight_.metrics(begin_ns, flight_.stamp_ns()).largest_deviation_m;
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 #include <fmt/core.h>
 
-#include "tests/support/network_namespace.hpp"
+#include "tests/support/network/network_namespace.hpp"
 
 namespace swiftlet::soak {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/soak/loss_flight.hpp"
-#include "tests/support/network_namespace.hpp"
+#include "tests/support/network/network_namespace.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::soak {

@@ -1,5 +1,6 @@
 #include "tests/soak/network_flight.hpp"
 
+#include <cstdlib>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -14,7 +15,9 @@ constexpr auto kFlightTimeout = 240s;
 }  // namespace
 
 NetworkFlight::NetworkFlight(std::filesystem::path folder)
-    : folder_(std::move(folder)), network_(tests::HostNetwork::Layout::kSwitch, kHosts) {}
+    : folder_(std::move(folder)), network_(tests::HostNetwork::Layout::kSwitch, kHosts) {
+  ::setenv("SWIFTLET_OPEN_NETWORK", "1", 1);  // of the programs that it starts
+}
 
 tests::Program& NetworkFlight::run(Host host, const char* program, const std::vector<std::string>& options) {
   const tests::HostNetwork::Inside inside(network_, host);

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/network_namespace.hpp"
+#include "tests/support/network/network_namespace.hpp"
 #include "tests/support/program.hpp"
 
 namespace swiftlet::soak {

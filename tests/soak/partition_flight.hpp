@@ -30,12 +30,12 @@ struct Cut {
   double within_m;
 };
 
-// A row of that table: one flight.
+// A row of that table.
 struct Partition {
   NetworkFlight::Host from;
   NetworkFlight::Host to;
   bool standby;     // on the host of the vehicle
-  bool takes_over;  // the standby has to, at each cut
+  bool takes_over;  // the standby has to, at each cut; otherwise it may only where commands were missing
   // Without a newer command, at most, unless it falls. Where the standby takes over: and as long as a core stood still more.
   double longest_gap_ms;
   std::vector<Cut> cuts;
@@ -49,26 +49,21 @@ struct CutResult {
   std::string reasons;             // of the modes entered since the cut, such as "ground link lost, landed"
   tests::FlightMetrics metrics;    // from the cut until the outcome was clear
   bool standby_took_over = false;
-  bool stalled = false;         // the machine: the cable, or the clock of the vehicle, stood still
-  double stood_still_ms = 0.0;  // the longest of these, and of the cores
   // The longest time in which a core served no thread of the vehicle's priority, since before the cut.
   double core_stood_still_ms = 0.0;
-  std::vector<double> repeats_ms;  // of the attempts before that do not count: how long the machine stalled
-  bool healed = false;             // after the cut, all processes hear each other again
-  bool had_priority = false;       // the flight threads of the controller that flies, before the cut
-  bool priority_kept = false;      // they have the same scheduling as before
-  std::string log;                 // of all programs so far
+  bool healed = false;         // after the cut, all processes hear each other again
+  bool had_priority = false;   // the flight threads of the controller that flies, before the cut
+  bool priority_kept = false;  // they have the same scheduling as before
+  std::string log;             // of all programs so far
 };
 
 // What is not as it has to be, a sentence; empty: all is.
 std::string fault_of(const Partition& partition, const Cut& cut, const CutResult& result);
 
-// "2 repeats because the computer stalled: 80 ms, 64 ms"; empty without repeats.
-std::string repeats_of(const CutResult& result);
-
-// Starts all processes on hosts of their own, flies laps, and makes the cuts one after the other; takes off again after a
-// landing. Programs write their output into the folder. Throws std::runtime_error if it cannot be flown.
-void fly_through(const Partition& partition, const std::filesystem::path& folder,
-                 const std::function<void(const Cut&, const CutResult&)>& report);
+// Starts all processes on hosts of their own, flies laps, and makes the cuts of these rows one after the other; takes off
+// again after a landing. The standby starts before the first row that has one, and is there in those after it. Programs write
+// their output into the folder. Throws std::runtime_error if it cannot be flown.
+void fly_through(const std::vector<Partition>& rows, const std::filesystem::path& folder,
+                 const std::function<void(const Partition&, const Cut&, const CutResult&)>& report);
 
 }  // namespace swiftlet::soak

@@ -15,20 +15,20 @@ namespace {
 bool fly_row(const Partition& partition) {
   const tests::TemporaryFolder folder;
   bool good = true;
-  const auto print = [&](const Cut& cut, const CutResult& result) {
+  const auto print = [&](const Partition&, const Cut& cut, const CutResult& result) {
     const std::string fault = fault_of(partition, cut, result);
     good = good && fault.empty();
-    std::printf("%-34s %5d %-9s %9s %9.0f %9.0f %8.1f %9.2f  %-44s %s%s\n", partition.name().c_str(), cut.ms,
+    std::printf("%-34s %5d %-9s %9s %9.0f %9.0f %8.1f %9.2f  %-44s %s\n", partition.name().c_str(), cut.ms,
                 result.outcome ? to_string(*result.outcome) : "-",
                 result.standby_took_over ? "standby" : "same", result.metrics.longest_gap_ms,
                 result.core_stood_still_ms, 100.0 * result.metrics.largest_deviation_m,
-                result.metrics.final_distance_m, result.reasons.c_str(), repeats_of(result).c_str(),
+                result.metrics.final_distance_m, result.reasons.c_str(),
                 fault.empty() ? "" : (" FAILED " + fault).c_str());
     if (!fault.empty()) std::printf("%s", result.log.c_str());
     std::fflush(stdout);
   };
   try {
-    fly_through(partition, folder.path(), print);
+    fly_through({partition}, folder.path(), print);
   } catch (const std::exception& error) {
     std::printf("%-34s FAILED %s\n", partition.name().c_str(), error.what());
     return false;

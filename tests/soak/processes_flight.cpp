@@ -74,19 +74,34 @@ std::string write_laps(const std::filesystem::path& folder) {
 
 class FailingFlight {
  public:
-  FailingFlight(const ProcessCase& one, const std::filesystem::path& folder)
-      : case_(one), folder_(folder), mission_(write_laps(folder)), observer_(node("observer")) {
-    for (const FlightProcess process :
-         {FlightProcess::kPlant, FlightProcess::kMocap, FlightProcess::kControl})
-      start(process);
-    watcher_ = std::make_unique<comms::Node>(node("watcher"));
+  FailingFlight(plant::ControlLevel level, double speed, const std::filesystem::path& folder)
+      : level_(level),
+        speed_(speed),
+        folder_(folder),
+        mission_(write_laps(folder)),
+        observer_(node("observer")),
+        watcher_(std::make_unique<comms::Node>(node("watcher"))) {
     hear_commands();
+  }
+
+  // Starts the processes that do not run, and waits until the vehicle flies the mission.
+  void begin() {
+    program(FlightProcess::kGround).reset();
+    for (const FlightProcess process :
+         {FlightProcess::kPlant, FlightProcess::kMocap, FlightProcess::kControl}) {
+      if (is_dead(process)) start(process);
+    }
     require(
         [this] {
           const ground::View view = observer_.view();
           return view.control.message.has_pose() && view.battery.seen() && view.truth.seen();
         },
         "control is ready");
+    if (mode() == ControlMode::kStopped) {
+      msg::Command disarm;
+      disarm.kind(msg::Command_Constants::DISARM);
+      require([&] { return observer_.command(disarm, 5s).accepted(); }, "it can be disarmed");
+    }
     start(FlightProcess::kGround);
     require(
         [this] {
@@ -96,9 +111,12 @@ class FailingFlight {
         "it flies the mission");
   }
 
-  ProcessResult fly() {
+  ProcessResult fail(const ProcessCase& one) {
+    case_ = one;
+    result_ = {};
+    fastest_fall_m_s_ = 0.0;
     const std::int64_t stamp_ns = truth().stamp_ns();
-    fail();
+    kill_or_stop();
     const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                         std::chrono::duration<double>(kProcessAway_s));
     if (case_.failure != ProcessFailure::kKilled) {
@@ -139,8 +157,9 @@ class FailingFlight {
   void start(FlightProcess process) {
     std::vector<std::string> words;
     std::string name = std::string("swiftlet-") + kProcessNames[static_cast<std::size_t>(process)];
-    const char* const level = plant::to_string(case_.level);
+    const char* const level = plant::to_string(level_);
     if (process == FlightProcess::kPlant || process == FlightProcess::kControl) words = {"--level", level};
+    if (process == FlightProcess::kPlant) words.insert(words.end(), {"--speed", fmt::format("{:g}", speed_)});
     if (process == FlightProcess::kGround) {
       name = "swiftlet";
       const std::string record = (folder_ / fmt::format("record{}", ++records_)).string();
@@ -158,7 +177,7 @@ class FailingFlight {
         commanded_.store(Clock::now().time_since_epoch().count(), std::memory_order_relaxed);
       });
     };
-    switch (case_.level) {
+    switch (level_) {
       case plant::ControlLevel::kActuators:
         return subscribe(comms::topics::kActuatorCommand);
       case plant::ControlLevel::kRates:
@@ -182,7 +201,7 @@ class FailingFlight {
     throw std::runtime_error(std::string(what) + ": no\n" + errors);
   }
 
-  void fail() {
+  void kill_or_stop() {
     Program& failing = *program(case_.process);
     failing.signal(case_.failure == ProcessFailure::kHung ? SIGSTOP : SIGKILL);
     if (case_.failure != ProcessFailure::kHung) failing.wait(5s);
@@ -253,13 +272,15 @@ class FailingFlight {
     return errors.substr(0, errors.find('\n'));
   }
 
-  const ProcessCase case_;
+  const plant::ControlLevel level_;
+  const double speed_;
   const std::filesystem::path folder_;
   const std::string mission_;
   comms::DomainLock lock_;
   std::array<std::unique_ptr<Program>, 4> programs_;
   int records_ = 0;
   ground::Client observer_;
+  ProcessCase case_{};
   ProcessResult result_;
   double fastest_fall_m_s_ = 0.0;
   std::atomic<Clock::rep> commanded_{0};
@@ -295,8 +316,15 @@ const std::vector<ProcessCase>& process_cases() {
   return all;
 }
 
-ProcessResult fly_with_failure(const ProcessCase& one, const std::filesystem::path& folder) {
-  return FailingFlight(one, folder).fly();
+std::vector<ProcessResult> fly_with_failures(const std::vector<ProcessCase>& cases,
+                                             const std::filesystem::path& folder, double speed) {
+  FailingFlight flight(cases.front().level, speed, folder);
+  std::vector<ProcessResult> results;
+  for (const ProcessCase& one : cases) {
+    flight.begin();
+    results.push_back(flight.fail(one));
+  }
+  return results;
 }
 
 }  // namespace swiftlet::soak

@@ -49,8 +49,10 @@ struct ProcessResult {
 // A vehicle that is left alone climbs no higher than this: what the speed of the path and 0.2 s of an old command give.
 constexpr double kMostClimb_m = 0.3;
 
-// Starts all processes in a domain of its own, flies laps of a square, and lets one process fail in flight. Programs
-// write their output into the folder. Throws std::runtime_error if the flight does not begin.
-ProcessResult fly_with_failure(const ProcessCase& one, const std::filesystem::path& folder);
+// Starts all processes in a domain of its own, flies laps of a square, and lets one process fail in flight; likewise for each
+// further case, with the processes that live on and new ones for the dead. All cases have one level. speed: of the simulation.
+// Programs write their output into the folder. Throws std::runtime_error if a flight does not begin.
+std::vector<ProcessResult> fly_with_failures(const std::vector<ProcessCase>& cases,
+                                             const std::filesystem::path& folder, double speed = 1.0);
 
 }  // namespace swiftlet::soak

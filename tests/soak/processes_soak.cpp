@@ -17,7 +17,7 @@ bool fly_row(const ProcessCase& one) {
   ProcessResult result;
   std::string fault;
   try {
-    result = fly_with_failure(one, folder.path());
+    result = fly_with_failures({one}, folder.path()).front();
   } catch (const std::exception& error) {
     fault = error.what();
   }

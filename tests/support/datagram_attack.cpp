@@ -6,9 +6,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <functional>
 #include <linux/if_ether.h>
-#include <memory>
 #include <net/if.h>
 #include <netinet/in.h>
 #include <netpacket/packet.h>
@@ -18,13 +16,9 @@
 #include <unistd.h>
 #include <utility>
 
-#include "swiftlet/services/dds/fast_dds.hpp"
-
 namespace swiftlet::tests {
 namespace {
 
-namespace transport = eprosima::fastdds::rtps;
-namespace rtps = comms::rtps;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kFirstKept = 400;
@@ -260,60 +254,27 @@ Bytes DatagramMutator::forgery(const Bytes& from) {
   return message.bytes();
 }
 
-namespace {
-
-using Send = std::function<void(const CapturedDatagram&)>;
-
-Send udp_sender() {
-  const std::shared_ptr<int> socket(new int(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)),
-                                    [](const int* fd) {
-                                      ::close(*fd);
-                                      delete fd;
-                                    });
-  return [socket](const CapturedDatagram& datagram) {
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_port = htons(datagram.port);
-    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    ::sendto(*socket, datagram.bytes.data(), datagram.bytes.size(), MSG_DONTWAIT,
-             reinterpret_cast<const sockaddr*>(&to), sizeof to);
-  };
-}
-
-// To the port of shared memory with the same number.
-Send shared_memory_sender() {
-  const transport::SharedMemTransportDescriptor descriptor;
-  const std::shared_ptr<transport::TransportInterface> memory(descriptor.create_transport());
-  const auto channels = std::make_shared<transport::SendResourceList>();
-  rtps::Locator_t any;
-  any.kind = LOCATOR_KIND_SHM;
-  if (!memory->init() || !memory->OpenOutputChannel(*channels, any) || channels->empty())
-    throw std::runtime_error("cannot send over shared memory");
-  return [memory, channels](const CapturedDatagram& datagram) {
-    transport::LocatorList to;
-    rtps::Locator_t locator;
-    locator.kind = LOCATOR_KIND_SHM;
-    locator.port = datagram.port;
-    locator.address[0] = 'U';
-    to.push_back(locator);
-    transport::Locators begin(to.begin()), end(to.end());
-    comms::send(*channels->front(), datagram.bytes,
-                {&begin, &end, Clock::now() + std::chrono::milliseconds(1)});
-  };
-}
-
-}  // namespace
-
-DatagramAttack::DatagramAttack(DatagramMutator mutator, AttackTransport transport, int per_second)
-    : mutator_(std::move(mutator)), transport_(transport), thread_([this, per_second] { run(per_second); }) {}
+DatagramAttack::DatagramAttack(DatagramMutator mutator, int per_second)
+    : mutator_(std::move(mutator)),
+      socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)),
+      thread_([this, per_second] { run(per_second); }) {}
 
 DatagramAttack::~DatagramAttack() {
   stop_ = true;
   thread_.join();
+  ::close(socket_);
+}
+
+void DatagramAttack::send(const CapturedDatagram& datagram) const {
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(datagram.port);
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ::sendto(socket_, datagram.bytes.data(), datagram.bytes.size(), MSG_DONTWAIT,
+           reinterpret_cast<const sockaddr*>(&to), sizeof to);
 }
 
 void DatagramAttack::run(int per_second) {
-  const Send send = transport_ == AttackTransport::kUdp ? udp_sender() : shared_memory_sender();
   constexpr std::chrono::milliseconds kPeriod{2};
   auto next = Clock::now();
   const int batch = std::max(1, per_second * static_cast<int>(kPeriod.count()) / 1000);

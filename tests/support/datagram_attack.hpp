@@ -67,13 +67,11 @@ class DatagramMutator {
   const bool forges_;
 };
 
-enum class AttackTransport { kUdp, kSharedMemory };
-
-// Sends changed datagrams at a rate until it is destroyed.
+// Sends changed datagrams over UDP at a rate until it is destroyed.
 class DatagramAttack {
  public:
   // per_second: at most
-  DatagramAttack(DatagramMutator mutator, AttackTransport transport, int per_second);
+  DatagramAttack(DatagramMutator mutator, int per_second);
   ~DatagramAttack();
   DatagramAttack(const DatagramAttack&) = delete;
   DatagramAttack& operator=(const DatagramAttack&) = delete;
@@ -82,9 +80,10 @@ class DatagramAttack {
 
  private:
   void run(int per_second);
+  void send(const CapturedDatagram& datagram) const;
 
   DatagramMutator mutator_;
-  const AttackTransport transport_;
+  const int socket_;
   std::atomic<std::uint64_t> sent_{0};
   std::atomic<bool> stop_{false};
   std::thread thread_;

@@ -12,7 +12,7 @@
 namespace swiftlet::tests {
 
 // What takes longer hangs. It is no bound on how fast something is: a busy machine may stall for half a minute.
-constexpr std::chrono::seconds kStuck{120};
+constexpr std::chrono::seconds kStuck{300};
 
 // Returns true as soon as the predicate holds, false after the timeout. For sources that cannot notify, such
 // as another process: evaluates it every `period`, and once more after the timeout even if this thread was

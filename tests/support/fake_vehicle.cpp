@@ -13,6 +13,7 @@ constexpr double kBraking_s = 0.02;
 constexpr std::uint64_t kImuPerFrame = 5;
 constexpr std::uint64_t kImuPerBattery = 50;
 constexpr std::uint64_t kImuPerInfo = 25;
+constexpr std::chrono::milliseconds kPatience{200};  // for a control that has answered the sample before
 
 }  // namespace
 
@@ -30,12 +31,14 @@ FakeVehicle::FakeVehicle(const plant::Vehicle& parameters, const comms::NodeSett
         comms::topics::kAttitudeSetpoint, [this](const comms::msg::AttitudeSetpoint& setpoint) {
           const std::lock_guard lock(mutex_);
           attitude_ = setpoint;
+          note_answer(setpoint.imu_sequence_number());
         });
   } else {
     subscription_ = node_.subscribe<comms::msg::ActuatorCommand>(
         comms::topics::kActuatorCommand, [this](const comms::msg::ActuatorCommand& command) {
           const std::lock_guard lock(mutex_);
           commands_.push_back(command);
+          note_answer(command.imu_sequence_number());
         });
   }
   thread_ = std::thread([this] { run(); });
@@ -56,14 +59,29 @@ bool FakeVehicle::attitude_commanded() const {
   return attitude_.rotor_state() == comms::msg::ActuatorCommand_Constants::ROTORS_RUNNING;
 }
 
+std::optional<comms::msg::ActuatorCommand> FakeVehicle::last_command() const {
+  const std::lock_guard lock(mutex_);
+  return commands_.empty() ? std::nullopt : std::optional(commands_.back());
+}
+
 void FakeVehicle::run() {
-  auto next = std::chrono::steady_clock::now();
   while (!stop_) {
     move();
     publish();
-    next += std::chrono::nanoseconds(kPeriodNs);
-    std::this_thread::sleep_until(next);
+    wait_for_answer();
   }
+}
+
+void FakeVehicle::wait_for_answer() {
+  std::unique_lock lock(mutex_);
+  const std::chrono::nanoseconds patience =
+      is_answered_ && sends_imu ? std::chrono::nanoseconds(kPatience) : std::chrono::nanoseconds(kPeriodNs);
+  is_answered_ = answer_.wait_for(lock, patience, [this] { return answered_ >= imu_sequence_ || stop_; });
+}
+
+void FakeVehicle::note_answer(std::uint64_t imu_sequence) {
+  answered_ = std::max(answered_, imu_sequence);
+  answer_.notify_one();
 }
 
 // Vertical motion only; the floor is at height 0.

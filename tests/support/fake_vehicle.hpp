@@ -1,10 +1,15 @@
 // A vehicle other than the plant: a mass on a vertical rail with sensors and motion capture that obeys
 // actuator commands, or the thrust of attitude setpoints, over the network. It depends on the topics only.
+//
+// Its time is its own: each sample follows as soon as control has answered the one before, and at the pace of real time while
+// control does not answer.
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -32,6 +37,7 @@ class FakeVehicle {
 
   // Actuator commands received, in order.
   std::vector<comms::msg::ActuatorCommand> commands() const;
+  std::optional<comms::msg::ActuatorCommand> last_command() const;
   double height_m() const { return height_m_; }
   double highest_m() const { return highest_m_; }
   std::uint64_t samples() const { return imu_sequence_; }
@@ -41,6 +47,8 @@ class FakeVehicle {
 
  private:
   void run();
+  void wait_for_answer();
+  void note_answer(std::uint64_t imu_sequence);  // with mutex_ held
   void move();
   void publish();
   void publish_info();
@@ -57,7 +65,10 @@ class FakeVehicle {
   std::uint64_t mocap_sequence_ = 0;
   std::uint64_t battery_sequence_ = 0;
 
-  mutable std::mutex mutex_;  // guards commands_ and attitude_
+  mutable std::mutex mutex_;  // guards commands_, attitude_ and answered_
+  std::condition_variable answer_;
+  std::uint64_t answered_ = 0;  // newest IMU sample that a command answers
+  bool is_answered_ = false;    // the last sample
   std::vector<comms::msg::ActuatorCommand> commands_;
   comms::msg::AttitudeSetpoint attitude_;  // the last one received
 

@@ -6,6 +6,7 @@
 
 #include "swiftlet/control/types/polynomial.hpp"
 #include "swiftlet/control/types/settings.hpp"
+#include "swiftlet/math/time.hpp"
 
 namespace swiftlet::tests {
 namespace {
@@ -20,8 +21,6 @@ std::array<double, 3> difference(const std::array<double, 3>& a, const std::arra
 }
 
 constexpr double kSide_m = 2.0;
-
-double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 }  // namespace
 
@@ -70,7 +69,7 @@ FlightMetrics FlightSamples::metrics(std::int64_t from_ns, std::int64_t to_ns, s
   for (auto imu = imu_.lower_bound(from_ns); imu != imu_.upper_bound(to_ns); ++imu) {
     ++metrics.samples;
     const auto gap_ns = imu->first - imu->second.command_stamp_ns();
-    metrics.longest_gap_ms = std::max(metrics.longest_gap_ms, seconds(gap_ns) * 1e3);
+    metrics.longest_gap_ms = std::max(metrics.longest_gap_ms, math::seconds(gap_ns) * 1e3);
     if (term != 0 && imu->second.command_term() != term) ++metrics.changes_of_controller;
     term = imu->second.command_term();
   }
@@ -84,7 +83,7 @@ FlightMetrics FlightSamples::metrics(std::int64_t from_ns, std::int64_t to_ns, s
     if (deviation && usual)
       metrics.extra_deviation_m = std::max(metrics.extra_deviation_m, *deviation - *usual);
     if (last != nullptr) {
-      const double passed_s = seconds(now.stamp_ns() - last->stamp_ns());
+      const double passed_s = math::seconds(now.stamp_ns() - last->stamp_ns());
       std::array<double, 3> step = difference(now.position_ned(), last->position_ned());
       for (std::size_t i = 0; i < 3; ++i) step[i] -= last->velocity_ned()[i] * passed_s;
       metrics.largest_step_m = std::max(metrics.largest_step_m, norm(step));

@@ -1,10 +1,9 @@
 // A vehicle in a hand that does what it is asked for: sensors and motion capture of the simulation on a path, over the
-// network. Its rotors do not exist.
+// network, faster than the clock. Its rotors do not exist.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
-#include <functional>
 #include <mutex>
 #include <thread>
 
@@ -17,8 +16,7 @@ namespace swiftlet::tests {
 
 class HeldVehicle {
  public:
-  // spoil: changes each IMU sample before it is published; may be empty.
-  explicit HeldVehicle(const comms::NodeSettings& network, std::function<void(plant::ImuSample&)> spoil = {});
+  explicit HeldVehicle(const comms::NodeSettings& network);
   ~HeldVehicle();
   HeldVehicle(const HeldVehicle&) = delete;
   HeldVehicle& operator=(const HeldVehicle&) = delete;
@@ -29,7 +27,6 @@ class HeldVehicle {
   void run();
   void publish(std::int64_t stamp_ns);
 
-  std::function<void(plant::ImuSample&)> spoil_;
   std::mutex mutex_;  // guards path_ and time_s_
   HandPath path_;
   double time_s_ = 0.0;
@@ -41,6 +38,7 @@ class HeldVehicle {
   comms::Publisher<comms::msg::Imu> imu_publisher_;
   comms::Publisher<comms::msg::MocapPose> mocap_publisher_;
   comms::Publisher<comms::msg::Battery> battery_publisher_;
+  comms::Publisher<comms::msg::VehicleInfo> info_publisher_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <fcntl.h>
 #include <fstream>
-#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <sys/prctl.h>
@@ -15,6 +14,7 @@
 #include <unistd.h>
 
 #include "tests/support/eventually.hpp"
+#include "tests/support/paths.hpp"
 
 namespace swiftlet::tests {
 namespace {
@@ -22,21 +22,13 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-// Reads as much as it can: a file of /proc may fail halfway when its process ends. An iterator over the
-// stream buffer would throw then.
-std::string text_of(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
-
 // State and parent of a process, from /proc/PID/stat; state 0 if it is gone.
 struct ProcessStat {
   char state = 0;
   pid_t parent = -1;
 };
 ProcessStat stat_of(pid_t pid) {
-  const std::string text = text_of("/proc/" + std::to_string(pid) + "/stat");
+  const std::string text = contents("/proc/" + std::to_string(pid) + "/stat");
   const std::size_t name_end = text.rfind(')');  // the name before it may contain anything
   ProcessStat stat;
   if (name_end != std::string::npos)
@@ -46,12 +38,23 @@ ProcessStat stat_of(pid_t pid) {
 
 }  // namespace
 
+// A file of /proc may fail halfway when its process ends. An iterator over the stream buffer would throw then.
+std::string contents(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
 Program::Program(const std::string& name, std::vector<std::string> arguments, const fs::path& folder) {
   static std::atomic<int> count{0};
   const std::string stem = name + "-" + std::to_string(++count);
   output_file_ = folder / (stem + ".out");
   error_file_ = folder / (stem + ".err");
-  arguments.insert(arguments.begin(), fs::path(SWIFTLET_BIN_DIR) / name);
+  arguments.insert(arguments.begin(), program_file(name));
   std::vector<char*> words;
   words.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) words.push_back(argument.data());
@@ -60,7 +63,7 @@ Program::Program(const std::string& name, std::vector<std::string> arguments, co
   const int output = open(output_file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   const int errors = open(error_file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   const int input = open("/dev/null", O_RDONLY | O_CLOEXEC);
-  setenv("SWIFTLET_CONFIG_DIR", SWIFTLET_SOURCE_DIR "/config", 1);
+  setenv("SWIFTLET_CONFIG_DIR", in_source("config").c_str(), 1);
   pid_ = fork();
   if (pid_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -101,8 +104,8 @@ int Program::wait(std::chrono::milliseconds timeout) {
   return exit_code().value_or(-1);
 }
 
-std::string Program::output() const { return text_of(output_file_); }
-std::string Program::errors() const { return text_of(error_file_); }
+std::string Program::output() const { return contents(output_file_); }
+std::string Program::errors() const { return contents(error_file_); }
 
 ProgramResult run_program(const std::string& name, std::vector<std::string> arguments, const fs::path& folder,
                           std::chrono::milliseconds timeout) {
@@ -131,22 +134,11 @@ pid_t child_of(pid_t parent, const std::string& program) {
   return -1;
 }
 
-std::string command_line_of(pid_t pid) { return text_of("/proc/" + std::to_string(pid) + "/cmdline"); }
+std::string command_line_of(pid_t pid) { return contents("/proc/" + std::to_string(pid) + "/cmdline"); }
 
 bool is_running(pid_t pid) {
   const char state = stat_of(pid).state;
   return state != 0 && state != 'Z' && state != 'X';
-}
-
-std::vector<std::string> shared_memory_of(pid_t pid) {
-  std::set<std::string> files;
-  std::istringstream maps(text_of("/proc/" + std::to_string(pid) + "/maps"));
-  for (std::string line; std::getline(maps, line);) {
-    const std::size_t at = line.find("/dev/shm/");
-    if (at != std::string::npos && line.find(" (deleted)") == std::string::npos)
-      files.insert(line.substr(at));
-  }
-  return {files.begin(), files.end()};
 }
 
 }  // namespace swiftlet::tests

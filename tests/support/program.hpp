@@ -46,6 +46,9 @@ ProgramResult run_program(const std::string& name, std::vector<std::string> argu
                           const std::filesystem::path& folder,
                           std::chrono::milliseconds timeout = std::chrono::seconds(30));
 
+std::string contents(const std::filesystem::path& file);  // as much as can be read
+bool contains(const std::string& text, const std::string& part);
+
 // Facts about processes from /proc. A process may end at any moment; the result is empty then.
 
 // The child of a process that runs this program; -1 if there is none.
@@ -53,8 +56,5 @@ pid_t child_of(pid_t parent, const std::string& program);
 std::vector<pid_t> children_of(pid_t parent);
 std::string command_line_of(pid_t pid);  // arguments, each terminated by NUL
 bool is_running(pid_t pid);              // false for a zombie
-
-// The files in /dev/shm that a process has open or mapped.
-std::vector<std::string> shared_memory_of(pid_t pid);
 
 }  // namespace swiftlet::tests

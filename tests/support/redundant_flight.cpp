@@ -19,20 +19,15 @@ namespace topics = comms::topics;
 
 }  // namespace
 
-RedundantFlight::RedundantFlight(const std::filesystem::path& folder, std::vector<std::string> plant_options,
-                                 const comms::NodeSettings& network_settings)
+RedundantFlight::RedundantFlight(const std::filesystem::path& folder,
+                                 const std::vector<std::string>& plant_options,
+                                 const comms::NodeSettings& network_settings,
+                                 const std::vector<std::string>& mocap_options)
     : folder_(folder),
-      transport_(network_settings.transport),
       network_key_file_(network_settings.network_key_file),
       security_(network_settings.security),
-      plant_(
-          "swiftlet-plant",
-          [&] {
-            for (const std::string& word : network()) plant_options.push_back(word);
-            return plant_options;
-          }(),
-          folder),
-      mocap_("swiftlet-mocap", network(), folder),
+      plant_("swiftlet-plant", on_network(plant_options), folder),
+      mocap_("swiftlet-mocap", on_network(mocap_options), folder),
       client_(node_settings("ground")),
       node_(node_settings("observer")),
       samples_(node_),
@@ -43,11 +38,14 @@ RedundantFlight::RedundantFlight(const std::filesystem::path& folder, std::vecto
           })) {}
 
 std::vector<std::string> RedundantFlight::network() const {
-  const char* const transport = transport_ == comms::Transport::kSharedMemory ? "shm" : "udp";
-  std::vector<std::string> words = {"--domain", std::to_string(lock_.domain()), "--localhost-only",
-                                    "--transport", transport};
+  std::vector<std::string> words = {"--domain", std::to_string(lock_.domain()), "--localhost-only"};
   if (!network_key_file_.empty()) words.insert(words.end(), {"--network-key", network_key_file_});
   if (!security_.empty()) words.insert(words.end(), {"--security", security_});
+  return words;
+}
+
+std::vector<std::string> RedundantFlight::on_network(std::vector<std::string> words) const {
+  for (const std::string& word : network()) words.push_back(word);
   return words;
 }
 
@@ -55,7 +53,6 @@ comms::NodeSettings RedundantFlight::node_settings(const char* name) const {
   comms::NodeSettings settings;
   settings.name = name;
   settings.domain = lock_.domain();
-  settings.transport = transport_;
   settings.network_key_file = network_key_file_;
   settings.security = security_;
   settings.localhost_only = true;
@@ -63,13 +60,12 @@ comms::NodeSettings RedundantFlight::node_settings(const char* name) const {
 }
 
 std::unique_ptr<Program> RedundantFlight::launch_controller(int failover_priority) const {
-  std::vector<std::string> words = network();
-  words.insert(words.end(), {"--failover-priority", std::to_string(failover_priority)});
-  return std::make_unique<Program>("swiftlet-control", words, folder_);
+  return std::make_unique<Program>(
+      "swiftlet-control", on_network({"--failover-priority", std::to_string(failover_priority)}), folder_);
 }
 
 Controller& RedundantFlight::start_controller(int failover_priority) {
-  const auto before = recent_states();
+  const std::set<std::uint64_t> before = known_ids();
   controllers_.push_back(std::make_unique<Controller>());
   Controller& started = *controllers_.back();
   started.failover_priority = failover_priority;
@@ -119,6 +115,13 @@ std::map<std::uint64_t, msg::ControllerState> RedundantFlight::recent_states() c
     if (now - state.at < 500ms) recent[id] = state.message;
   }
   return recent;
+}
+
+std::set<std::uint64_t> RedundantFlight::known_ids() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::set<std::uint64_t> ids;
+  for (const auto& [id, state] : states_) ids.insert(id);
+  return ids;
 }
 
 int RedundantFlight::count(std::uint8_t role) const {

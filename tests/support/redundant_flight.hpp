@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,12 @@
 
 namespace swiftlet::tests {
 
+constexpr std::int64_t kSecond = 1'000'000'000;  // ns
+
+// What a takeover may cost, with security and without; `./dev soak standby` judges by the same.
+constexpr double kLongestGap_ms = 60.0;
+constexpr double kLargestDeviation_m = 0.05;
+
 // One controller process.
 struct Controller {
   std::unique_ptr<Program> process;
@@ -28,9 +35,12 @@ struct Controller {
 
 class RedundantFlight {
  public:
-  // Starts plant and mocap. Programs write their output into the folder. network: transport, key and security of all.
-  explicit RedundantFlight(const std::filesystem::path& folder, std::vector<std::string> plant_options = {},
-                           const comms::NodeSettings& network = {});
+  // Starts plant and mocap. Programs write their output into the folder. network: key and security of all.
+  // Without options by the wall clock; simulated_time.hpp has those for simulated time.
+  explicit RedundantFlight(const std::filesystem::path& folder,
+                           const std::vector<std::string>& plant_options = {},
+                           const comms::NodeSettings& network = {},
+                           const std::vector<std::string>& mocap_options = {});
 
   // Starts a controller and waits for its state. Throws std::runtime_error if none arrives.
   Controller& start_controller(int failover_priority);
@@ -60,6 +70,7 @@ class RedundantFlight {
   void ask(std::uint8_t kind, double z_ned = 0.0);
   ground::Client& client() { return client_; }
   std::vector<std::string> network() const;  // as command line arguments
+  std::vector<std::string> on_network(std::vector<std::string> words) const;
   comms::NodeSettings node_settings(const char* name) const;
 
   // Of the vehicle's newest sample.
@@ -77,11 +88,11 @@ class RedundantFlight {
     ground::Clock::time_point at;
   };
 
+  std::set<std::uint64_t> known_ids() const;  // of all controllers that were ever heard
   int count(std::uint8_t role) const;
 
   comms::DomainLock lock_;
   std::filesystem::path folder_;
-  const comms::Transport transport_;
   const std::string network_key_file_;
   const std::string security_;
   Program plant_, mocap_;

@@ -38,10 +38,16 @@ std::unique_ptr<Program> SeparateProcesses::start(const std::string& program,
 }
 
 void SeparateProcesses::start_all(const std::vector<std::string>& control_arguments,
-                                  const std::vector<std::string>& plant_arguments) {
+                                  const std::vector<std::string>& plant_arguments, const std::string& speed) {
   control_ = start("swiftlet-control", control_arguments);
-  plant_ = start("swiftlet-plant", plant_arguments);
+  mocap_ = start("swiftlet-mocap", mocap_in_simulated_time());
+  plant_ = start("swiftlet-plant", plant_in_simulated_time(plant_arguments, speed));
+}
+
+void SeparateProcesses::start_all_in_real_time() {
+  control_ = start("swiftlet-control");
   mocap_ = start("swiftlet-mocap");
+  plant_ = start("swiftlet-plant");
 }
 
 void SeparateProcesses::wait_until_ready() {

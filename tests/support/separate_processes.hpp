@@ -1,5 +1,6 @@
 // Plant, motion capture and control service as separate processes on their own DDS domain, with a ground
-// client in the test. Each process can be started, suspended and killed separately.
+// client in the test. Each process can be started, suspended and killed separately. Their time is simulated time
+// (simulated_time.hpp) unless a test says otherwise.
 #pragma once
 
 #include <chrono>
@@ -15,6 +16,7 @@
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/simulated_time.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::tests {
@@ -28,8 +30,11 @@ class SeparateProcesses : public testing::Test {
   comms::NodeSettings node(const std::string& name) const;
   // Starts a program on this domain.
   std::unique_ptr<Program> start(const std::string& program, std::vector<std::string> arguments = {}) const;
+  // In simulated time.
   void start_all(const std::vector<std::string>& control_arguments = {},
-                 const std::vector<std::string>& plant_arguments = {});
+                 const std::vector<std::string>& plant_arguments = {}, const std::string& speed = kSpeed);
+  // By the wall clock.
+  void start_all_in_real_time();
   // Waits until control has a pose and ground truth and battery arrive.
   void wait_until_ready();
   void hover();

@@ -20,6 +20,7 @@
 #include <utmp.h>
 
 #include "tests/support/eventually.hpp"
+#include "tests/support/paths.hpp"
 
 namespace swiftlet::tests {
 namespace {
@@ -245,7 +246,7 @@ struct Terminal::Impl {
 
 Terminal::Terminal(const std::string& name, std::vector<std::string> arguments, int width, int height)
     : impl_(std::make_unique<Impl>(width, height)) {
-  arguments.insert(arguments.begin(), std::filesystem::path(SWIFTLET_BIN_DIR) / name);
+  arguments.insert(arguments.begin(), program_file(name));
   std::vector<char*> words;
   words.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) words.push_back(argument.data());
@@ -257,7 +258,7 @@ Terminal::Terminal(const std::string& name, std::vector<std::string> arguments, 
     throw std::system_error(errno, std::generic_category(), "openpty");
   tcgetattr(impl_->slave, &impl_->before);
   setenv("TERM", "xterm", 1);
-  setenv("SWIFTLET_CONFIG_DIR", SWIFTLET_SOURCE_DIR "/config", 1);
+  setenv("SWIFTLET_CONFIG_DIR", in_source("config").c_str(), 1);
   impl_->pid = fork();
   if (impl_->pid == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);

@@ -1,10 +1,10 @@
 #include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/command_line/programs.hpp"
 
 namespace swiftlet::ground {
 
 Command add_check_command(runtime::CommandLine root) {
-  const runtime::CommandLine check =
-      root.add_subcommand("check", "Test a part of the system against its contract");
+  const runtime::CommandLine check = root.add_subcommand("check", purpose_of("check"));
   check.require_subcommand(1, 1);
   const Command vehicle = add_check_vehicle_command(check);
   return {check, vehicle.run};

@@ -21,15 +21,16 @@
 #include "swiftlet/ground/vehicle_check/commands.hpp"
 #include "swiftlet/ground/vehicle_check/hand_motion.hpp"
 #include "swiftlet/ground/vehicle_check/rotors.hpp"
+#include "swiftlet/ground/vehicle_check/streams.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::chrono::milliseconds kStep{50};
+constexpr std::chrono::milliseconds kRecordedStep{50};
 
-struct Options {
+struct CheckVehicleOptions {
   comms::NodeSettings network;
   std::string vehicle = "kaylion";
   double time_s = 2.0;
@@ -46,7 +47,7 @@ std::chrono::milliseconds milliseconds(double seconds) {
 }
 
 // Throws InputError unless a person confirms what the rotors may do.
-void confirm(const Options& options, const OperatorDialog& dialog) {
+void confirm(const CheckVehicleOptions& options, const OperatorDialog& dialog) {
   if ((!options.props_off && !options.tethered) || options.yes) return;
   const std::string option = options.props_off ? "--props-off" : "--tethered";
   const std::string state =
@@ -58,7 +59,7 @@ void confirm(const Options& options, const OperatorDialog& dialog) {
   if (typed != "yes") throw InputError("check vehicle: not confirmed, nothing was sent");
 }
 
-StandingExamination examine_at_rest(SampleRecorder& recorder, const Options& options,
+StandingExamination examine_at_rest(SampleRecorder& recorder, const CheckVehicleOptions& options,
                                     const plant::Vehicle& vehicle, const OperatorDialog& dialog) {
   dialog.say("the vehicle must stand level and still, with its rotors off");
   StandingRequest request;
@@ -74,7 +75,7 @@ StandingExamination examine_at_rest(SampleRecorder& recorder, const Options& opt
 
 CheckResults check_in_hand(SampleRecorder& recorder, const VehicleRecording& rest,
                            const OperatorDialog& dialog) {
-  recorder.restart();
+  recorder.restart(vehicle_rate(rest));
   const std::vector<HandSegment> segments = guide_hand(recorder, dialog);
   return check_hand_motion(recorder.recording(), segments, rest);
 }
@@ -85,11 +86,12 @@ void require_actuators(const VehicleDescription& vehicle) {
                                        vehicle.levels.names().data()));
 }
 
-CheckResults command_and_check(SampleRecorder& recorder, const Options& options,
-                               const plant::Vehicle& vehicle, const OperatorDialog& dialog) {
+CheckResults command_and_check(SampleRecorder& recorder, const VehicleRecording& rest,
+                               const CheckVehicleOptions& options, const plant::Vehicle& vehicle,
+                               const OperatorDialog& dialog) {
   if (const auto vehicle_info = recorder.recording().description) require_actuators(*vehicle_info);
-  recorder.restart();
-  recorder.record(kStep, [] { return false; });
+  recorder.restart(vehicle_rate(rest));
+  recorder.record(kRecordedStep, [] { return false; });
   if (options.tethered) {
     const CommandPhases phases = command_on_tether(recorder, options.network, vehicle, dialog);
     return check_rotor_thrusts(recorder.recording(), phases, vehicle);
@@ -101,10 +103,11 @@ CheckResults command_and_check(SampleRecorder& recorder, const Options& options,
   return results;
 }
 
-CheckResults check_by_commands(SampleRecorder& recorder, const Options& options,
-                               const plant::Vehicle& vehicle, const OperatorDialog& dialog) {
+CheckResults check_by_commands(SampleRecorder& recorder, const VehicleRecording& rest,
+                               const CheckVehicleOptions& options, const plant::Vehicle& vehicle,
+                               const OperatorDialog& dialog) {
   try {
-    return command_and_check(recorder, options, vehicle, dialog);
+    return command_and_check(recorder, rest, options, vehicle, dialog);
   } catch (const std::runtime_error& refusal) {
     return {missing("commands.steps", refusal.what())};
   }
@@ -125,7 +128,7 @@ std::string fault_of_imu(const CheckResults& results) {
 }
 
 // Why the rotors must not turn; "" if they may.
-std::string fault_of_rotors(const CheckResults& results, const Options& options) {
+std::string fault_of_rotors(const CheckResults& results, const CheckVehicleOptions& options) {
   // The throttle of half the hover thrust of one vehicle may lift another.
   const bool is_another = fails(results, "vehicle_info.rotors") || fails(results, "vehicle_info.mass") ||
                           fails(results, "battery.voltage");
@@ -141,14 +144,15 @@ std::string fault_of_hand(const CheckResults& results) {
   return fault_of_imu(results);
 }
 
-CheckResults examine(const Options& options, const plant::Vehicle& vehicle, const OperatorDialog& dialog) {
+CheckResults examine(const CheckVehicleOptions& options, const plant::Vehicle& vehicle,
+                     const OperatorDialog& dialog) {
   SampleRecorder recorder(options.network);
   StandingExamination standing = examine_at_rest(recorder, options, vehicle, dialog);
   CheckResults results = std::move(standing.results);
   // First the rotors, while the vehicle stands: they must not start in the hand.
   if (options.props_off || options.tethered) {
     const std::string fault = fault_of_rotors(results, options);
-    append(results, fault.empty() ? check_by_commands(recorder, options, vehicle, dialog)
+    append(results, fault.empty() ? check_by_commands(recorder, standing.recording, options, vehicle, dialog)
                                   : CheckResults{skipped("commands.steps", fault)});
   }
   if (options.hand) {
@@ -159,7 +163,7 @@ CheckResults examine(const Options& options, const plant::Vehicle& vehicle, cons
   return results;
 }
 
-int check(const Options& options) {
+int check(const CheckVehicleOptions& options) {
   const plant::Vehicle vehicle =
       runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
   const Interrupts interrupts;
@@ -182,7 +186,7 @@ int check(const Options& options) {
 }  // namespace
 
 Command add_check_vehicle_command(runtime::CommandLine check_line) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CheckVehicleOptions>();
   const runtime::CommandLine app = check_line.add_subcommand(
       "vehicle", "Test a connected vehicle without flying: streams, stamps, axes, units, commands, rotors");
   add_network_options(app, options->network);

@@ -12,15 +12,13 @@
 #include "swiftlet/ground/cli/check/test_commands.hpp"
 #include "swiftlet/ground/vehicle_check/rotors.hpp"
 #include "swiftlet/plant/model/propulsion.hpp"
-#include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
 
-constexpr auto kPoll = 10ms;
+constexpr auto kPoll = 5ms;
 constexpr auto kOffTime = 700ms;
 constexpr auto kIdleTime = 1200ms;
 constexpr auto kSpinTime = 1000ms;
@@ -33,9 +31,10 @@ constexpr double kTetherRaise = 0.15;  // of hover, of one rotor
 constexpr auto kTetherTime = 800ms;
 constexpr auto kRaiseTime = 150ms;
 constexpr std::int64_t kRecentCommand_ns = 100'000'000;  // vehicle's clock
-constexpr std::int64_t kImuSilence_ns = 500'000'000;
+constexpr std::chrono::duration<double> kImuSilence = 500ms;
+constexpr auto kOwnStall = 100ms;  // this process stood still: samples may wait to be read
 
-// Commands, and notes what was commanded when.
+// Commands, and notes what was commanded when. All times are seconds of the vehicle.
 class CommandSequence {
  public:
   CommandSequence(const SampleRecorder& recorder, const comms::NodeSettings& network,
@@ -76,13 +75,19 @@ class CommandSequence {
     dialog_.require_going_on();
     const std::string other = recorder_.other_controller({commands_.term(), commands_.lower_term()});
     if (!other.empty()) throw std::runtime_error("stopped, rotors off: " + other);
-    if (recorder_.imu_silence_ns() > kImuSilence_ns)
+    const auto now = Clock::now();
+    if (now - renewed_ > kOwnStall) awake_since_ = now;
+    renewed_ = now;
+    const std::chrono::nanoseconds silence(recorder_.imu_silence_ns());
+    if (std::min<Clock::duration>(silence, now - awake_since_) > kImuSilence)
       throw std::runtime_error(
-          fmt::format("stopped, rotors off: no imu sample for {:g} s", 1e-9 * kImuSilence_ns));
+          fmt::format("stopped, rotors off: no imu sample for {:g} s", kImuSilence.count()));
   }
   const CommandPhases& phases() const { return phases_; }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   static std::uint32_t obeyed_term(const SampleRecorder& recorder) {
     const auto imu = recorder.newest_imu();
     return imu && imu->obeyed.any ? imu->obeyed.term : 0;
@@ -98,16 +103,18 @@ class CommandSequence {
     CommandPhase phase;
     phase.stage = stage;
     phase.term = stage == CommandStage::kLowerTerm ? commands_.lower_term() : commands_.term();
-    phase.begin_ns = runtime::monotonic_ns();
-    for (const auto end = Clock::now() + time; Clock::now() < end; std::this_thread::sleep_for(kPoll))
-      renew();
-    phase.end_ns = runtime::monotonic_ns();
+    phase.begin_ns = recorder_.now_ns();
+    const std::int64_t end_ns = phase.begin_ns + std::chrono::nanoseconds(time).count();
+    for (; recorder_.now_ns() < end_ns; std::this_thread::sleep_for(kPoll)) renew();
+    phase.end_ns = recorder_.now_ns();
     return phases_.emplace_back(phase);
   }
 
   const SampleRecorder& recorder_;
   const OperatorDialog& dialog_;
   int rotor_count_;
+  Clock::time_point renewed_ = Clock::now();
+  Clock::time_point awake_since_ = renewed_;  // since when renew() is called regularly
   CommandPhases phases_;
   TestCommands commands_;  // last: ends with rotors off first
 };

@@ -14,7 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kPoll = 10ms;
+constexpr auto kReactionPoll = 5ms;
 constexpr auto kStepTime = 60s;
 constexpr auto kPoseTime = 5s;  // without a pose
 
@@ -67,7 +67,7 @@ class HandFollower {
         pose_due = Clock::now() + kPoseTime;
         if (done(watch_.update(pose->sample, pose->received_ns))) return true;
       }
-      std::this_thread::sleep_for(kPoll);
+      std::this_thread::sleep_for(kReactionPoll);
     }
     return false;
   }

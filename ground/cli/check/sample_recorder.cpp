@@ -1,6 +1,7 @@
 #include "swiftlet/ground/cli/check/sample_recorder.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <thread>
 
@@ -63,7 +64,7 @@ SampleRecorder::SampleRecorder(const comms::NodeSettings& settings)
       client_(random_number()),
       node_(listening(settings)),
       clock_(node_.publish(topics::kClockRequest)) {
-  recording_.begin_ns = runtime::monotonic_ns();
+  recording_.begin_ns = now_ns();
   node_.on_peer([this](const comms::PeerEvent& event) { count_peer(event); });
   const auto subscribe = [this](const auto& topic, auto& record) {
     using Message = typename std::decay_t<decltype(topic)>::Message;
@@ -81,14 +82,14 @@ SampleRecorder::SampleRecorder(const comms::NodeSettings& settings)
     recording_.description = {info.name().c_str(), info.simulated(),
                               info.rotor_count(),  info.mass_kg(),
                               info.imu_rate_hz(),  plant::ControlLevels::from_bits(info.control_levels())};
-    recording_.rotors_running.push_back({info.rotors_running(), runtime::monotonic_ns()});
+    recording_.rotors_running.push_back({info.rotors_running(), now_ns()});
   });
   clock_replies_ =
       node_.subscribe<msg::ClockReply>(topics::kClockReply, [this](const msg::ClockReply& reply) {
-        const std::int64_t now_ns = runtime::monotonic_ns();
+        const std::int64_t at_ns = now_ns();
         const std::lock_guard lock(mutex_);
         if (reply.client() == client_)
-          recording_.clock.push_back({reply.sent_ns(), reply.received_ns(), reply.answered_ns(), now_ns});
+          recording_.clock.push_back({reply.sent_ns(), reply.received_ns(), reply.answered_ns(), at_ns});
       });
   controller_states_ = node_.subscribe<msg::ControllerState>(topics::kControllerState, [this](const auto&) {
     const std::lock_guard lock(mutex_);
@@ -100,9 +101,8 @@ SampleRecorder::SampleRecorder(const comms::NodeSettings& settings)
 
 template <class Message, class Sample>
 void SampleRecorder::take(TopicRecord<Sample>& record, const Message& message) {
-  const std::int64_t now_ns = runtime::monotonic_ns();
   Received<Sample> received;
-  received.received_ns = now_ns;
+  received.received_ns = now_ns();
   const comms::Fault fault = convert(message, received.sample);
   const std::lock_guard lock(mutex_);
   if (!fault) {
@@ -129,9 +129,17 @@ void SampleRecorder::count_peer(const comms::PeerEvent& event) {
   controllers_ += event.alive ? 1 : -1;
 }
 
-void SampleRecorder::restart() {
+std::int64_t SampleRecorder::now_ns() const {
+  const std::int64_t since_ns = rated_since_ns_;
+  const auto passed_ns = static_cast<double>(runtime::monotonic_ns() - since_ns);
+  return since_ns + std::llround(vehicle_rate_ * passed_ns);
+}
+
+void SampleRecorder::restart(double vehicle_rate) {
   const std::lock_guard lock(mutex_);
-  recording_.begin_ns = runtime::monotonic_ns();
+  rated_since_ns_ = runtime::monotonic_ns();
+  vehicle_rate_ = vehicle_rate;
+  recording_.begin_ns = now_ns();
   const auto forget = [](auto& record) {
     record.samples.clear();
     record.invalid = 0;
@@ -162,7 +170,7 @@ void SampleRecorder::ask_clock() {
   msg::ClockRequest request;
   request.client(client_);
   request.sequence_number(++clock_requests_);
-  request.sent_ns(runtime::monotonic_ns());
+  request.sent_ns(now_ns());
   clock_.publish(request);
 }
 
@@ -172,7 +180,7 @@ VehicleRecording SampleRecorder::recording() const {
     const std::lock_guard lock(mutex_);
     recording = recording_;
   }
-  recording.end_ns = runtime::monotonic_ns();
+  recording.end_ns = now_ns();
   add_state(recording.imu, imu_);
   add_state(recording.odometry, odometry_);
   add_state(recording.battery, battery_);
@@ -202,7 +210,9 @@ std::optional<ImuReport> SampleRecorder::newest_imu() const {
 std::int64_t SampleRecorder::imu_silence_ns() const {
   const std::lock_guard lock(mutex_);
   const auto& samples = recording_.imu.samples;
-  return runtime::monotonic_ns() - (samples.empty() ? recording_.begin_ns : samples.back().received_ns);
+  const std::int64_t silence_ns =
+      now_ns() - (samples.empty() ? recording_.begin_ns : samples.back().received_ns);
+  return std::llround(static_cast<double>(silence_ns) / vehicle_rate_);
 }
 
 std::string SampleRecorder::other_controller(const std::set<std::uint32_t>& own_terms) const {

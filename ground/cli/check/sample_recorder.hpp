@@ -1,6 +1,7 @@
 // Records what a vehicle publishes, for the checks of ground/vehicle_check.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -23,8 +24,12 @@ class SampleRecorder {
   SampleRecorder(const SampleRecorder&) = delete;
   SampleRecorder& operator=(const SampleRecorder&) = delete;
 
-  // Forgets what was received.
-  void restart();
+  // Forgets what was received. From now on times count seconds of a vehicle that passes so many of them in a second of this
+  // computer: a simulation may be faster or slower.
+  void restart(double vehicle_rate = 1.0);
+  // The clock of the recording.
+  std::int64_t now_ns() const;
+  double vehicle_rate() const { return vehicle_rate_; }
   // Records for this time, and asks for the vehicle's clock meanwhile. Ends early, and returns false, if `cancelled`
   // returns true.
   bool record(std::chrono::milliseconds time, const std::function<bool()>& cancelled);
@@ -34,7 +39,7 @@ class SampleRecorder {
   bool hears_vehicle() const;  // its IMU, or its own estimate
   std::optional<Received<plant::PoseSample>> newest_tracked_pose() const;
   std::optional<ImuReport> newest_imu() const;
-  std::int64_t imu_silence_ns() const;  // since the newest sample, or since restart()
+  std::int64_t imu_silence_ns() const;  // of this computer, since the newest sample, or since restart()
 
   // Who commands the vehicle: a control service that is alive, or another process that sends actuator_command; ""
   // if nobody. Commands of own_terms are those of this program.
@@ -49,7 +54,9 @@ class SampleRecorder {
 
   const std::string vehicle_;
   const std::uint64_t client_;
-  mutable std::mutex mutex_;  // guards all below, up to the node; held briefly
+  std::atomic<double> vehicle_rate_{1.0};
+  std::atomic<std::int64_t> rated_since_ns_{0};  // monotonic
+  mutable std::mutex mutex_;                     // guards all below, up to the node; held briefly
   VehicleRecording recording_;
   int controllers_ = 0;             // announced
   std::int64_t controller_ns_ = 0;  // last controller_state

@@ -8,12 +8,12 @@
 namespace swiftlet::ground {
 namespace {
 
-struct Options {
+struct FleetCheckOptions {
   std::string file;
   bool json = false;
 };
 
-int run(const Options& options) {
+int check_fleet_file(const FleetCheckOptions& options) {
   const FleetCheck check =
       check_fleet(load_fleet_file(runtime::configuration_file(runtime::kinds::kFleet, options.file)));
   for (const FleetVehicle& one : check.vehicles) {
@@ -28,7 +28,7 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_fleet_check_command(runtime::CommandLine fleet) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<FleetCheckOptions>();
   const runtime::CommandLine app = fleet.add_subcommand(
       "check",
       "Check whether each vehicle of a fleet file can fly its mission, and whether all pairs stay apart");
@@ -39,7 +39,7 @@ Command add_fleet_check_command(runtime::CommandLine fleet) {
       .type_name(runtime::kinds::kFleet.value)
       .required();
   app.add_flag("--json", options->json, "print JSON");
-  return {app, [options] { return run(*options); }};
+  return {app, [options] { return check_fleet_file(*options); }};
 }
 
 }  // namespace swiftlet::ground

@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <limits>
-#include <optional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,12 +12,13 @@
 #include "swiftlet/ground/cli/fly_vehicles.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
 #include "swiftlet/ground/fleet/fleet_check.hpp"
+#include "swiftlet/ground/fleet/fleet_watch.hpp"
 #include "swiftlet/io/configuration.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
-struct Options {
+struct FleetFlyOptions {
   std::string file;
   FlyOptions flight;
 };
@@ -46,7 +48,7 @@ FlyOptions options_of(const FleetVehicle& vehicle, const FleetCheck& check, FlyO
   return options;
 }
 
-int run(const Options& options) {
+int fly_fleet(const FleetFlyOptions& options) {
   if (options.flight.trace && options.flight.clock != runtime::Clock::kLockstep)
     throw InputError("--trace: requires --clock lockstep");
   const FleetCheck check =
@@ -65,10 +67,14 @@ int run(const Options& options) {
   if (options.flight.record.empty()) plans.front().folder = default_record_folder(check.fleet.name);
   // In lockstep the vehicles do not share one moment: each advances as its samples are answered. What the monitor sends then
   // would come at another moment in each run.
-  std::optional<FleetMonitor> monitor;
+  StartWatch watch;
   const bool in_real_time = flight.clock == runtime::Clock::kRealtime && flight.speed.value_or(1.0) <= 1.0;
   if (in_real_time) {
-    monitor.emplace(std::move(monitored));
+    watch = [&monitored](const std::vector<WatchedVehicle>& vehicles, const std::function<bool()>& gives_up) {
+      std::vector<FleetWatch::Watched> watched;
+      for (const WatchedVehicle& one : vehicles) watched.push_back({one.client, one.progress});
+      return std::make_shared<FleetWatch>(FleetMonitor(monitored), std::move(watched), gives_up);
+    };
   } else if (names.size() > 1) {
     std::fprintf(
         stderr,
@@ -76,13 +82,13 @@ int run(const Options& options) {
         "leaves its path, is not waited for\n",
         check.fleet.name.c_str());
   }
-  return fly_vehicles(options.flight, names, std::move(plans), std::move(monitor));
+  return fly_vehicles(options.flight, names, std::move(plans), watch);
 }
 
 }  // namespace
 
 Command add_fleet_fly_command(runtime::CommandLine fleet, const std::string& version) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<FleetFlyOptions>();
   options->flight.program = version;
   const runtime::CommandLine app = fleet.add_subcommand(
       "fly", "Check a fleet file, start plant, mocap and control on this computer, fly all and report");
@@ -105,7 +111,7 @@ Command add_fleet_fly_command(runtime::CommandLine fleet, const std::string& ver
       "vehicles apart when one is paused or late, or leaves its path: the others wait or step aside. With "
       "--clock lockstep, or --speed above 1, it does not run: all fly on as planned.\nCtrl-C lands; a second "
       "Ctrl-C ends the flight at once.\nexample: swiftlet fleet fly swap6 --clock lockstep");
-  return {app, [options] { return run(*options); }};
+  return {app, [options] { return fly_fleet(*options); }};
 }
 
 }  // namespace swiftlet::ground

@@ -11,12 +11,12 @@
 namespace swiftlet::ground {
 namespace {
 
-struct Options {
+struct FleetPlotOptions {
   std::string file;
   std::string output = "fleet.png";
 };
 
-int run(const Options& options) {
+int plot_fleet_file(const FleetPlotOptions& options) {
   const FleetCheck check =
       check_fleet(load_fleet_file(runtime::configuration_file(runtime::kinds::kFleet, options.file)));
   if (!check.feasible())
@@ -34,7 +34,7 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_fleet_plot_command(runtime::CommandLine fleet) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<FleetPlotOptions>();
   const runtime::CommandLine app = fleet.add_subcommand(
       "plot", "Draw the paths of a fleet file, and how near the vehicles come to each other");
   app.footer("example: swiftlet fleet plot swap6 -o swap6.png");
@@ -42,7 +42,7 @@ Command add_fleet_plot_command(runtime::CommandLine fleet) {
       .type_name(runtime::kinds::kFleet.value)
       .required();
   app.add_option("-o,--out", options->output, "PNG file").show_default();
-  return {app, [options] { return run(*options); }};
+  return {app, [options] { return plot_fleet_file(*options); }};
 }
 
 }  // namespace swiftlet::ground

@@ -24,7 +24,7 @@
 #include "swiftlet/ground/fleet/formation.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
-#include "swiftlet/services/dds/search_text.hpp"
+#include "swiftlet/services/dds/reach.hpp"
 #include "swiftlet/services/dds/vehicle_list.hpp"
 
 namespace swiftlet::ground {
@@ -35,14 +35,14 @@ using control::Mode;
 // For how long those that are to land wait for those that are not known yet.
 constexpr std::chrono::milliseconds kPatience{1000};
 
-struct Options : RequestOptions {
+struct FleetRequestOptions : RequestOptions {
   std::string names;  // empty: all that are seen
   double look_s = 1.5;
   Ellipsoid safety;
   std::string fleet;  // file whose vehicles and safety these are; empty: none
 };
 
-struct GotoOptions : Options {
+struct FleetGotoOptions : FleetRequestOptions {
   double north_m = 0.0;
   double east_m = 0.0;
   std::optional<double> z_ned_m;
@@ -52,11 +52,11 @@ struct GotoOptions : Options {
   std::string control = "motor_lag";
 };
 
-struct LandOptions : Options {
+struct FleetLandOptions : FleetRequestOptions {
   double speed = 0.4;
 };
 
-struct StopOptions : Options {
+struct FleetStopOptions : FleetRequestOptions {
   bool yes = false;
 };
 
@@ -70,7 +70,7 @@ struct Seen {
 };
 
 // Names of the vehicles in the domain, sorted, then of the wanted ones that were not seen.
-std::vector<std::string> names_in(const Context& context, const Options& options) {
+std::vector<std::string> names_in(const Context& context, const FleetRequestOptions& options) {
   std::this_thread::sleep_for(std::chrono::duration<double>(options.look_s));
   std::vector<std::string> names = context.discovered_vehicles();
   if (!options.names.empty()) {
@@ -85,7 +85,7 @@ std::vector<std::string> names_in(const Context& context, const Options& options
   return names;
 }
 
-bool is_wanted(const std::string& name, const Options& options) {
+bool is_wanted(const std::string& name, const FleetRequestOptions& options) {
   if (options.names.empty()) return true;
   const std::vector<std::string> wanted = comms::vehicles_of_list(options.names);
   return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
@@ -97,7 +97,7 @@ struct Sight {
 };
 
 // Looks until all are known, at most for the time-out, and no longer than `patience` after the first one is known.
-Sight look(const Context& context, const std::vector<std::string>& names, const Options& options,
+Sight look(const Context& context, const std::vector<std::string>& names, const FleetRequestOptions& options,
            std::chrono::milliseconds patience) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::milliseconds kLook{20};
@@ -130,7 +130,7 @@ Sight look(const Context& context, const std::vector<std::string>& names, const 
 }
 
 // Throws std::runtime_error if the place of one is not known: it may be in the way.
-std::vector<Seen> look_at_all(const Context& context, const Options& options) {
+std::vector<Seen> look_at_all(const Context& context, const FleetRequestOptions& options) {
   Sight sight = look(context, names_in(context, options), options, options.timeout());
   if (!sight.unknown.empty())
     throw std::runtime_error(
@@ -145,7 +145,7 @@ FormationVehicle formation_vehicle(const Seen& vehicle) {
 }
 
 // Throws InputError unless all that fly hold their positions, and all that are named fly.
-void require_holding(const std::vector<Seen>& seen, const Options& options) {
+void require_holding(const std::vector<Seen>& seen, const FleetRequestOptions& options) {
   for (const Seen& vehicle : seen) {
     if (vehicle.flies() && vehicle.state.mode != Mode::kHolding)
       throw InputError(fmt::format("{} is {}; hold it first: nothing was sent", vehicle.name,
@@ -156,7 +156,7 @@ void require_holding(const std::vector<Seen>& seen, const Options& options) {
 }
 
 // The options of the request for these vehicles.
-RequestOptions request_to(const std::vector<std::string>& names, const Options& options) {
+RequestOptions request_to(const std::vector<std::string>& names, const FleetRequestOptions& options) {
   RequestOptions request = options;
   request.network.vehicle = fmt::format("{}", fmt::join(names, ","));
   return request;
@@ -174,8 +174,8 @@ T with_fleet(T options) {
   return options;
 }
 
-int go_to(const GotoOptions& given) {
-  const GotoOptions options = with_fleet(given);
+int go_to(const FleetGotoOptions& given) {
+  const FleetGotoOptions options = with_fleet(given);
   if (options.z_ned_m.has_value() == options.height_m.has_value())
     throw InputError("goto: needs either z (down: negative is up) or --height (up, above the ground)");
   const control::Limits limits =
@@ -227,7 +227,7 @@ struct Landing {
 };
 
 // Lands the wanted ones that fly, but none on another one.
-Landing land(const std::vector<Seen>& seen, const LandOptions& options) {
+Landing land(const std::vector<Seen>& seen, const FleetLandOptions& options) {
   std::vector<FormationVehicle> vehicles;
   for (const Seen& vehicle : seen) vehicles.push_back(formation_vehicle(vehicle));
   const auto obstacles = landing_obstacles(vehicles, options.safety);
@@ -254,8 +254,8 @@ Landing land(const std::vector<Seen>& seen, const LandOptions& options) {
 }
 
 // Those that are known do not wait for those that are not: these are looked for again when the others have landed.
-int land(const LandOptions& given) {
-  const LandOptions options = with_fleet(given);
+int land(const FleetLandOptions& given) {
+  const FleetLandOptions options = with_fleet(given);
   const auto look_for = [&](std::vector<std::string> names, std::chrono::milliseconds patience) {
     const Context context(options.network);
     if (names.empty()) names = names_in(context, options);
@@ -286,7 +286,7 @@ int land(const LandOptions& given) {
   return landing.failed || !missing.empty() ? kFailed : kDone;
 }
 
-int stop(const StopOptions& options) {
+int stop(const FleetStopOptions& options) {
   std::vector<std::string> names;
   if (options.names.empty()) {
     const Context context(options.network);
@@ -311,7 +311,7 @@ int stop(const StopOptions& options) {
 // Adds the subcommand with the options that all three have.
 runtime::CommandLine add_subcommand(runtime::CommandLine fleet, const std::string& name,
                                     const std::string& description, const std::string& example,
-                                    const std::shared_ptr<Options>& options) {
+                                    const std::shared_ptr<FleetRequestOptions>& options) {
   const runtime::CommandLine app = add_request_subcommand(fleet, name, description, example, options);
   app.remove_option("--vehicle-name");
   app.add_option("--vehicle-name", options->names,
@@ -323,7 +323,7 @@ runtime::CommandLine add_subcommand(runtime::CommandLine fleet, const std::strin
   return app;
 }
 
-void add_safety_options(runtime::CommandLine app, Options& options) {
+void add_safety_options(runtime::CommandLine app, FleetRequestOptions& options) {
   runtime::Option fleet =
       app.add_option("--fleet", options.fleet,
                      "fleet file, or the name of one in config/fleets: its safety, and its vehicles unless "
@@ -342,7 +342,7 @@ void add_safety_options(runtime::CommandLine app, Options& options) {
 }  // namespace
 
 Command add_fleet_goto_command(runtime::CommandLine fleet) {
-  const auto options = std::make_shared<GotoOptions>();
+  const auto options = std::make_shared<FleetGotoOptions>();
   const runtime::CommandLine app = add_subcommand(
       fleet, "goto",
       "Move the formation of the vehicles that hover: its centre to a position, all keep their offsets",
@@ -371,7 +371,7 @@ Command add_fleet_goto_command(runtime::CommandLine fleet) {
 }
 
 Command add_fleet_land_command(runtime::CommandLine fleet) {
-  const auto options = std::make_shared<LandOptions>();
+  const auto options = std::make_shared<FleetLandOptions>();
   const runtime::CommandLine app =
       add_subcommand(fleet, "land", "Land all vehicles that fly where they are, but none on another one",
                      "swiftlet fleet land --speed 0.3", options);
@@ -384,7 +384,7 @@ Command add_fleet_land_command(runtime::CommandLine fleet) {
 }
 
 Command add_fleet_stop_command(runtime::CommandLine fleet) {
-  const auto options = std::make_shared<StopOptions>();
+  const auto options = std::make_shared<FleetStopOptions>();
   options->look_s = 1.0;
   const runtime::CommandLine app = add_subcommand(
       fleet, "stop", "Emergency stop: turn the rotors of all vehicles off at once, also in the air",

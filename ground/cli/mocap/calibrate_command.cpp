@@ -28,10 +28,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kPoll{20};
+constexpr std::chrono::milliseconds kCalibrationReceiveTime{20};
 constexpr double kLongestWait_s = 10.0;  // for the first pose
 
-struct Options {
+struct CalibrateOptions {
   mocap::SourceOptions source;
   std::string vehicle = "kl1";
   double rest_s = 3.0;
@@ -68,14 +68,14 @@ bool was_entered() {
 }
 
 // Waits for Enter. Receives meanwhile, so that the connection lives and what came before is not recorded.
-void wait_for_enter(const Options& options, const std::string& request, mocap::Source& source,
+void wait_for_enter(const CalibrateOptions& options, const std::string& request, mocap::Source& source,
                     runtime::StopSignal& stop) {
   std::fprintf(stderr, "%s%s\n", request.c_str(), options.no_prompt ? "." : ", then press Enter.");
   if (options.no_prompt) return;
   mocap::SourceFrame unused;
   while (!was_entered()) {
     require_going_on(stop);
-    source.receive(unused, kPoll);
+    source.receive(unused, kCalibrationReceiveTime);
   }
 }
 
@@ -88,7 +88,7 @@ Recording record(mocap::Source& source, const mocap::RoomFrame& frame, const moc
   const auto age_s = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
   while (age_s() < (recording.poses.empty() ? kLongestWait_s : time_s) && !source.has_ended()) {
     require_going_on(stop);
-    if (!source.receive(received, kPoll)) continue;
+    if (!source.receive(received, kCalibrationReceiveTime)) continue;
     const auto body = mocap::find_body(source.bodies(), vehicle);
     for (const mocap::BodyPose& pose : received.poses) {
       if (!body || pose.body != *body || !pose.tracked) continue;
@@ -115,7 +115,7 @@ void print_components(const char* what, const char* unit, const Eigen::Vector3d&
                                                   : "(as before)");
 }
 
-void print(const Options& options, const Misalignment& misalignment, const LeverArm& arm) {
+void print(const CalibrateOptions& options, const Misalignment& misalignment, const LeverArm& arm) {
   if (options.json) {
     const nlohmann::ordered_json json = {{"vehicle", options.vehicle},
                                          {"misalignment_rad", list(misalignment.vector)},
@@ -141,7 +141,7 @@ nlohmann::ordered_json told_only(const Eigen::Vector3d& deviation, const std::ar
   return out;
 }
 
-void print(const Options& options, const FlightCalibration& calibration,
+void print(const CalibrateOptions& options, const FlightCalibration& calibration,
            const identification::BodyAlignment& found) {
   const Misalignment& misalignment = calibration.misalignment;
   const LeverArm& arm = calibration.lever_arm;
@@ -178,7 +178,7 @@ void print(const Options& options, const FlightCalibration& calibration,
 }
 
 // The poses of a flight come from swiftlet-mocap, which uses the room file.
-int calibrate_by_flight(const Options& options, const std::string& file, const std::string& text) {
+int calibrate_by_flight(const CalibrateOptions& options, const std::string& file, const std::string& text) {
   const mocap::SourceOptions& source = options.source;
   for (const auto& [name, given] :
        {std::pair{"--source", source.source}, std::pair{"--server", source.server},
@@ -211,7 +211,7 @@ int calibrate_by_flight(const Options& options, const std::string& file, const s
   return kDone;
 }
 
-int calibrate(const Options& options) {
+int calibrate(const CalibrateOptions& options) {
   if (options.source.room.empty()) throw InputError("--room is required: it says which body the vehicle is");
   const std::string file = runtime::configuration_file(runtime::kinds::kRoom, options.source.room);
   const std::string text = runtime::read_text_file(file);
@@ -246,7 +246,7 @@ int calibrate(const Options& options) {
 }  // namespace
 
 Command add_mocap_calibrate_command(runtime::CommandLine mocap) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CalibrateOptions>();
   const runtime::CommandLine app =
       mocap.add_subcommand("calibrate", "Align a body with its vehicle, and write that into the room file");
   app.footer(

@@ -14,6 +14,7 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/mocap/body_statistics.hpp"
 #include "swiftlet/ground/cli/mocap/mocap_commands.hpp"
+#include "swiftlet/ground/command_line/programs.hpp"
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/mocap/sources/source.hpp"
 #include "swiftlet/services/mocap/sources/source_options.hpp"
@@ -23,9 +24,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kPoll{20};
+constexpr std::chrono::milliseconds kReceiveTime{20};
 
-struct Options {
+struct MocapOptions {
   mocap::SourceOptions source;
   double time_s = 0.0;  // 0: until interrupted
   double period_s = 1.0;
@@ -43,7 +44,7 @@ double receive(mocap::Source& source, BodyStatisticsList& statistics, double tim
   const auto end = begin + duration_of(time_s);
   mocap::SourceFrame frame;
   while (Clock::now() < end && !is_interrupted(stop) && !source.has_ended()) {
-    if (source.receive(frame, kPoll)) statistics.take(frame, source);
+    if (source.receive(frame, kReceiveTime)) statistics.take(frame, source);
   }
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
@@ -122,7 +123,7 @@ void print(const mocap::Source& source, const BodyStatisticsList& statistics, do
   std::fflush(stdout);
 }
 
-int list(const Options& options) {
+int list_bodies(const MocapOptions& options) {
   runtime::StopSignal stop;
   const std::unique_ptr<mocap::Source> source = open_mocap_source(options.source, {});
   BodyStatisticsList statistics;
@@ -134,7 +135,7 @@ int list(const Options& options) {
   return kFailed;
 }
 
-int watch(const Options& options) {
+int watch_bodies(const MocapOptions& options) {
   runtime::StopSignal stop;
   const std::unique_ptr<mocap::Source> source = open_mocap_source(options.source, {});
   BodyStatisticsList statistics;
@@ -154,7 +155,7 @@ int watch(const Options& options) {
 }
 
 Command add_list(const runtime::CommandLine& mocap) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MocapOptions>();
   options->time_s = 2.0;
   const runtime::CommandLine app =
       mocap.add_subcommand("list", "List the bodies that a motion capture sends");
@@ -162,11 +163,11 @@ Command add_list(const runtime::CommandLine& mocap) {
   mocap::add_source_options(app, options->source);
   app.add_option("--time", options->time_s, "How long to listen, s").range(0.1, 600.0).show_default();
   app.add_flag("--json", options->json, "Print JSON");
-  return {app, [options] { return list(*options); }};
+  return {app, [options] { return list_bodies(*options); }};
 }
 
 Command add_watch(const runtime::CommandLine& mocap) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MocapOptions>();
   const runtime::CommandLine app =
       mocap.add_subcommand("watch", "Show the rate, latency and losses of each body, until interrupted");
   app.footer("example: swiftlet mocap watch --source vrpn --server 192.168.10.1");
@@ -178,7 +179,7 @@ Command add_watch(const runtime::CommandLine& mocap) {
       .range(0.1, 600.0)
       .show_default();
   app.add_flag("--json", options->json, "Print one line of JSON for each table");
-  return {app, [options] { return watch(*options); }};
+  return {app, [options] { return watch_bodies(*options); }};
 }
 
 }  // namespace
@@ -195,19 +196,14 @@ std::unique_ptr<mocap::Source> open_mocap_source(const mocap::SourceOptions& opt
 }
 
 Command add_mocap_command(runtime::CommandLine root) {
-  const runtime::CommandLine mocap =
-      root.add_subcommand("mocap", "Show what a motion capture sends, and calibrate its bodies");
+  const runtime::CommandLine mocap = root.add_subcommand("mocap", purpose_of("mocap"));
   mocap.require_subcommand(1, 1);
   mocap.footer(
       "Talks to the motion capture directly; neither vehicle nor DDS is needed (docs/swap-mocap.md).\n\n"
       "example: swiftlet mocap list --source natnet");
-  const std::array<Command, 3> commands = {add_list(mocap), add_watch(mocap),
-                                           add_mocap_calibrate_command(mocap)};
-  return {mocap, [commands] {
-            return std::find_if(commands.begin(), commands.end(),
-                                [](const Command& one) { return one.app.parsed(); })
-                ->run();
-          }};
+  const std::vector<Command> commands = {add_list(mocap), add_watch(mocap),
+                                         add_mocap_calibrate_command(mocap)};
+  return {mocap, [commands] { return run_given(commands); }};
 }
 
 }  // namespace swiftlet::ground

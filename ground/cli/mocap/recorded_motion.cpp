@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 using identification::FlightLog;
 using namespace std::chrono_literals;
 
-constexpr double kLongestWait_s = 10.0;
+constexpr double kLongestSilence_s = 10.0;
 constexpr double kSlowest = 10.0;  // real time in that of the vehicle
 
 void add_imu(FlightLog& log, double time_s, const Eigen::Vector3d& force, const Eigen::Vector3d& rates) {
@@ -147,12 +147,12 @@ FlightLog receive_motion(const comms::NodeSettings& settings, double time_s, run
   };
   const auto missing = [&](const char* topic) {
     return std::runtime_error(
-        fmt::format("no {} of {} arrived in {:g} s", topic, settings.vehicle, kLongestWait_s));
+        fmt::format("no {} of {} arrived in {:g} s", topic, settings.vehicle, kLongestSilence_s));
   };
   const auto begin = std::chrono::steady_clock::now();
   while (!recorder.newest_imu() || !recorder.newest_tracked_pose()) {
     record(50ms);
-    if (std::chrono::steady_clock::now() - begin > std::chrono::duration<double>(kLongestWait_s))
+    if (std::chrono::steady_clock::now() - begin > std::chrono::duration<double>(kLongestSilence_s))
       throw missing(recorder.newest_imu() ? "tracked mocap_pose" : "imu");
   }
   recorder.restart();
@@ -161,7 +161,7 @@ FlightLog receive_motion(const comms::NodeSettings& settings, double time_s, run
   const auto end = std::chrono::steady_clock::now() + kSlowest * std::chrono::duration<double>(time_s);
   while (recorded_s < time_s && std::chrono::steady_clock::now() < end) {
     record(50ms);
-    if (1e-9 * static_cast<double>(recorder.imu_silence_ns()) > kLongestWait_s) throw missing("imu");
+    if (1e-9 * static_cast<double>(recorder.imu_silence_ns()) > kLongestSilence_s) throw missing("imu");
     if (const auto imu = recorder.newest_imu()) {
       first_ns = first_ns.value_or(imu->imu.stamp_ns);
       recorded_s = 1e-9 * static_cast<double>(imu->imu.stamp_ns - *first_ns);

@@ -14,6 +14,7 @@
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
+#include "swiftlet/ground/command_line/programs.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/teleop/input_device.hpp"
 #include "swiftlet/ground/teleop/key_sticks.hpp"
@@ -31,9 +32,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kTick = 40ms;
 constexpr auto kRefusalShown = 1500ms;
-constexpr auto kRestTimeout = 1s;
+constexpr auto kModeTimeout = 1s;
 
-struct Options : CommandOptions {
+struct TeleopOptions : CommandOptions {
   TeleopLimits limits;
   KeyTimeouts timeouts;
   std::string joystick;
@@ -84,7 +85,7 @@ std::string position_text(const VehicleState& state) {
 // Flies until the pilot quits or the flight ends otherwise.
 class Session {
  public:
-  Session(Vehicle& vehicle, const Options& options, std::unique_ptr<InputDevice> joystick,
+  Session(Vehicle& vehicle, const TeleopOptions& options, std::unique_ptr<InputDevice> joystick,
           const Interrupts& interrupts)
       : vehicle_(vehicle),
         options_(options),
@@ -207,7 +208,7 @@ class Session {
   }
 
   Vehicle& vehicle_;
-  const Options& options_;
+  const TeleopOptions& options_;
   std::unique_ptr<InputDevice> joystick_;
   const Interrupts& interrupts_;
   KeySticks keys_;
@@ -236,7 +237,7 @@ void print(const Session& session, const VehicleState& end, const std::string& f
   if (!fault.empty()) std::fprintf(stderr, "swiftlet: teleop: %s\n", fault.c_str());
 }
 
-int teleop(const Options& options) {
+int teleop(const TeleopOptions& options) {
   const bool at_terminal = isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0;
   if (!at_terminal && options.joystick.empty())
     throw InputError("teleop: requires a terminal, or --joystick DEVICE");
@@ -261,7 +262,7 @@ int teleop(const Options& options) {
   const Interrupts interrupts;
   Session session(vehicle, options, std::move(joystick), interrupts);
   const std::string fault = session.fly(at_terminal);
-  vehicle.wait_until([](const VehicleState& state) { return state.mode != Mode::kSetpoint; }, kRestTimeout);
+  vehicle.wait_until([](const VehicleState& state) { return state.mode != Mode::kSetpoint; }, kModeTimeout);
   print(session, vehicle.state(), fault, options.json);
   return fault.empty() ? kDone : kFailed;
 }
@@ -269,9 +270,9 @@ int teleop(const Options& options) {
 }  // namespace
 
 Command add_teleop_command(runtime::CommandLine root) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TeleopOptions>();
   const runtime::CommandLine app = add_vehicle_subcommand(
-      root, "teleop", "Fly by the keys of the terminal, or with a gamepad",
+      root, "teleop", purpose_of("teleop"),
       "swiftlet teleop --speed 0.3    (after swiftlet arm && swiftlet takeoff 1)", options);
   app.footer(
       "Arrows: forward, back, left and right, as seen from the vehicle. w, s: up, down. q, e: turn. Space: "

@@ -7,11 +7,10 @@
 
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/pages/recorded/flight_topics.hpp"
+#include "swiftlet/math/time.hpp"
 
 namespace swiftlet::pages {
 namespace {
-
-constexpr double kNsPerS = 1e9;
 
 // By the values of Command.kind.
 constexpr std::array<const char*, 12> kRequests = {
@@ -97,7 +96,9 @@ class Events {
 
  private:
   double time_of(const TopicTable& table, std::size_t row) const { return time_at(table.stamp_ns[row]); }
-  double time_at(std::int64_t stamp_ns) const { return static_cast<double>(stamp_ns - zero_ns_) / kNsPerS; }
+  double time_at(std::int64_t stamp_ns) const {
+    return static_cast<double>(stamp_ns - zero_ns_) / math::kNsPerS;
+  }
   void add(const TopicTable& table, std::size_t row, const char* kind, std::string text,
            bool warning = false) {
     add_at(table.stamp_ns[row], kind, std::move(text), warning);

@@ -12,8 +12,10 @@
 
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/pages/recorded/flight_topics.hpp"
+#include "swiftlet/math/angles.hpp"
 #include "swiftlet/math/euler.hpp"
 #include "swiftlet/math/rotation_vector.hpp"
+#include "swiftlet/math/time.hpp"
 
 namespace swiftlet::pages {
 namespace {
@@ -21,11 +23,9 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kNsPerS = 1e9;
 constexpr double kMmPerM = 1e3;
 constexpr double kMsPerS = 1e3;
-constexpr double kDegPerRad = 180.0 / M_PI;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 constexpr double kBoundSigmas = 3.0;
 constexpr std::int64_t kLongestInterpolationNs = 30'000'000;
 constexpr std::size_t kMaxRotors = 8;
@@ -48,11 +48,11 @@ class Rows {
       : table_(flight.tables[table]), zero_ns_(zero_ns) {}
 
   void begin(std::int64_t stamp_ns) {
-    table_.time_s.push_back(static_cast<double>(stamp_ns - zero_ns_) / kNsPerS);
+    table_.time_s.push_back(static_cast<double>(stamp_ns - zero_ns_) / math::kNsPerS);
   }
   void add(const std::string& name, double value) {
     std::vector<double>& column = table_.signals[name];
-    column.resize(table_.time_s.size() - 1, kNone);
+    column.resize(table_.time_s.size() - 1, kNoValue);
     column.push_back(value);
   }
   void add(const std::array<const char*, 3>& names, const Vector3d& value) {
@@ -148,7 +148,7 @@ void add_path(const FlightTopics& topics, std::int64_t zero_ns, FlightLog& fligh
     rows.add(kAxes, motion.position);
     rows.add(kVelocityAxes, motion.velocity);
     rows.add("speed", motion.velocity.norm());
-    rows.add(kEuler, kDegPerRad * control::euler_angles(motion.attitude).vector());
+    rows.add(kEuler, math::kDegPerRad * control::euler_angles(motion.attitude).vector());
     rows.add(kRates, vector_of(table, "body_rates_frd", i));
     const std::array<double, 4> q = {motion.attitude.w(), motion.attitude.x(), motion.attitude.y(),
                                      motion.attitude.z()};
@@ -169,7 +169,7 @@ void add_reference(const FlightTopics& topics, std::int64_t zero_ns, FlightLog& 
     rows.add(kAxes, position);
     rows.add(kVelocityAxes, velocity);
     rows.add(kEuler,
-             kDegPerRad * control::euler_angles(quaternion_of(table, "attitude_setpoint", i)).vector());
+             math::kDegPerRad * control::euler_angles(quaternion_of(table, "attitude_setpoint", i)).vector());
     rows.add("thrust", table.number("thrust_setpoint", i));
     if (!is_tracked(table.number("mode", i), table.stamp_ns[i], landings)) continue;
     const std::optional<Motion> motion = flown(table.stamp_ns[i]);
@@ -198,7 +198,7 @@ void add_estimate(const FlightTopics& topics, std::int64_t zero_ns, FlightLog& f
     for (std::size_t k = 0; k < 3; ++k) {
       rows.add(std::string("bound_") + kAxes[k], kMmPerM * bound(k));
       rows.add(std::string("bound_") + kVelocityAxes[k], kMmPerM * bound(3 + k));
-      rows.add(std::string("bound_") + kRotation[k], kDegPerRad * bound(6 + k));
+      rows.add(std::string("bound_") + kRotation[k], math::kDegPerRad * bound(6 + k));
     }
     const std::optional<Motion> motion = truth(table.stamp_ns[i]);
     if (!motion) continue;
@@ -208,7 +208,7 @@ void add_estimate(const FlightTopics& topics, std::int64_t zero_ns, FlightLog& f
     rows.add({"deviation_v_north", "deviation_v_east", "deviation_v_down"},
              kMmPerM * (estimate.velocity - motion->velocity));
     rows.add({"deviation_rotation_north", "deviation_rotation_east", "deviation_rotation_down"},
-             kDegPerRad * rotation_between(estimate.attitude, motion->attitude));
+             math::kDegPerRad * rotation_between(estimate.attitude, motion->attitude));
   }
 }
 
@@ -241,12 +241,12 @@ void add_innovations(const FlightTopics& topics, std::int64_t zero_ns, FlightLog
     const Motion pose = motion_at_row(table, i);
     rows.begin(table.stamp_ns[i]);
     rows.add(kAxes, kMmPerM * (pose.position - motion->position));
-    rows.add(kRotation, kDegPerRad * rotation_between(pose.attitude, motion->attitude));
+    rows.add(kRotation, math::kDegPerRad * rotation_between(pose.attitude, motion->attitude));
     for (std::size_t k = 0; k < 3; ++k) {
       rows.add(std::string("bound_") + kAxes[k],
                kBoundSigmas * kMmPerM * std::hypot(deviation(k), topics.pose_deviation_m));
       rows.add(std::string("bound_") + kRotation[k],
-               kBoundSigmas * kDegPerRad * std::hypot(deviation(6 + k), topics.pose_deviation_rad));
+               kBoundSigmas * math::kDegPerRad * std::hypot(deviation(6 + k), topics.pose_deviation_rad));
     }
   }
 }
@@ -283,7 +283,7 @@ void add_supply(const FlightTopics& topics, std::int64_t zero_ns, FlightLog& fli
   }
 }
 
-double not_negative(double value) { return value < 0.0 ? kNone : value; }
+double not_negative(double value) { return value < 0.0 ? kNoValue : value; }
 
 void add_status(const FlightTopics& topics, std::int64_t zero_ns, FlightLog& flight) {
   Rows status(flight, "status", zero_ns);
@@ -337,7 +337,7 @@ void add_signals(const FlightTopics& topics, std::int64_t zero_ns, FlightLog& fl
   add_status(topics, zero_ns, flight);
   add_latency(topics, zero_ns, flight);
   for (auto& [name, table] : flight.tables) {
-    for (auto& [signal, values] : table.signals) values.resize(table.time_s.size(), kNone);
+    for (auto& [signal, values] : table.signals) values.resize(table.time_s.size(), kNoValue);
   }
 }
 

@@ -10,11 +10,10 @@
 #include "swiftlet/ground/recording/log_table.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/natural_order.hpp"
+#include "swiftlet/math/time.hpp"
 
 namespace swiftlet::pages {
 namespace {
-
-constexpr double kNsPerS = 1e9;
 
 // Those whose topics /<vehicle>/estimate or /<vehicle>/ground_truth have messages.
 std::vector<std::string> vehicles_of(const mcap::Reader& file) {
@@ -50,7 +49,7 @@ FlightLog flight_of(const mcap::Reader& file, const std::string& vehicle) {
   flight.vehicle = vehicle;
   flight.has_truth = topics.truth.rows() > 0;
   if (!topics.simulated_time)
-    flight.wall_start_s = static_cast<double>(zero_ns + topics.log_minus_stamp_ns) / kNsPerS;
+    flight.wall_start_s = static_cast<double>(zero_ns + topics.log_minus_stamp_ns) / math::kNsPerS;
   add_signals(topics, zero_ns, flight);
   add_events(topics, zero_ns, flight);
   set_range(flight);

@@ -10,7 +10,7 @@ namespace swiftlet::pages {
 namespace {
 
 constexpr const char* kStamp = "stamp_ns";
-constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kNoColumn = std::numeric_limits<std::size_t>::max();
 
 using Kind = mcap::Column::Kind;
 
@@ -56,7 +56,7 @@ TopicTable read_topic(const mcap::Reader& file, const std::string& topic,
   const std::vector<std::string> topics = ground::decodable_topics(file);
   if (!std::binary_search(topics.begin(), topics.end(), topic)) return table;
   const std::vector<mcap::Column> columns = ground::columns_of(file, topic);
-  std::size_t stamp = kNone;
+  std::size_t stamp = kNoColumn;
   std::vector<std::pair<std::size_t, std::vector<double>*>> numbers;
   std::vector<std::pair<std::size_t, std::vector<std::string>*>> texts;
   const auto require = [&](bool fits, const mcap::Column& column, const char* what) {
@@ -82,7 +82,7 @@ TopicTable read_topic(const mcap::Reader& file, const std::string& topic,
   }
   ground::for_each_row(
       file, {}, topic, [&](const mcap::Message& message, const std::vector<mcap::Value>& values) {
-        const std::int64_t time_ns = stamp == kNone ? message.log_time_ns : integer_of(values[stamp]);
+        const std::int64_t time_ns = stamp == kNoColumn ? message.log_time_ns : integer_of(values[stamp]);
         if (!table.stamp_ns.empty() && time_ns < table.stamp_ns.back()) return;
         table.stamp_ns.push_back(time_ns);
         table.publish_ns.push_back(message.publish_time_ns);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/plant/model/battery.hpp"
 
 namespace swiftlet::plant {
@@ -23,8 +24,8 @@ Firmware::Firmware(const Vehicle& vehicle, const SimulationSettings& settings)
       needs_poses_(settings.odometry.source == OdometrySource::kMocap ||
                    settings.control_levels.has(ControlLevel::kAttitude) ||
                    settings.control_levels.has(ControlLevel::kTrajectory)),
-      watchdog_(vehicle.rotor_count(), std::llround(settings.command_timeout_s * 1e9),
-                settings.control_levels, std::llround(settings.command_hold_s * 1e9)),
+      watchdog_(vehicle.rotor_count(), math::nanoseconds(settings.command_timeout_s), settings.control_levels,
+                math::nanoseconds(settings.command_hold_s)),
       position_loop_(firmware_gains(vehicle).position, vehicle.mass_kg),
       attitude_loop_(firmware_gains(vehicle).attitude),
       rate_loop_(firmware_gains(vehicle).rates, vehicle.inertia),
@@ -37,7 +38,7 @@ void Firmware::on_imu(const ImuSample& sample) {
                                           kLongestStep_s);
   last_stamp_ns_ = sample.stamp_ns;
   new_imu_ = sample;
-  if (is_finite(sample) && needs_poses_) estimator_.predict(sample, dt_s_);
+  if (needs_poses_ && is_finite(sample)) estimator_.predict(sample, dt_s_);
 }
 
 bool Firmware::is_finite(const ImuSample& sample) const {
@@ -68,8 +69,8 @@ void Firmware::run_loops(std::int64_t now_ns) {
   new_pose_.reset();
   const VehicleCommand& command = watchdog_.command();
   const ControlLevel level = level_of(command);
-  if (is_finite(imu) && header_of(command).rotor_state == RotorState::kRunning &&
-      level != ControlLevel::kActuators) {
+  if (level != ControlLevel::kActuators && header_of(command).rotor_state == RotorState::kRunning &&
+      is_finite(imu)) {
     const VehicleCommand obeyed = watchdog_.outdated(now_ns) ? without_command(level) : command;
     const RatesAndThrust wanted = std::visit([this](const auto& one) { return rates_for(one); }, obeyed);
     carries_ = wanted.thrust_n >= kFlyingThrust * weight_n_;

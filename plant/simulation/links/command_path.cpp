@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/plant/simulation/streams.hpp"
 
 namespace swiftlet::plant {
@@ -27,7 +28,7 @@ bool CommandPath::send_late(const VehicleCommand& command, std::int64_t now_ns) 
   const std::optional<std::int64_t> takes_ns = radio_.send(now_ns);
   if (!takes_ns || faults_.active(FaultKind::kCommandsStop, now_ns) != nullptr) return false;
   const Fault* delay = faults_.active(FaultKind::kCommandsDelay, now_ns);
-  const std::int64_t late_ns = *takes_ns + (delay != nullptr ? std::llround(delay->delay_s * 1.0e9) : 0);
+  const std::int64_t late_ns = *takes_ns + (delay != nullptr ? math::nanoseconds(delay->delay_s) : 0);
   if (late_ns > 0) {
     delayed_.put(command, now_ns + late_ns);
     return false;

@@ -18,7 +18,9 @@ class DelayLine {
   // Adds an item that arrives at due_ns, or together with the one before it if that is later: take() keeps the order.
   void put(const Item& item, std::int64_t due_ns) {
     if (count_ == items_.size()) drop_oldest();
-    at(count_++) = {item, due_ns};
+    Held& held = at(count_++);
+    held.item = item;
+    held.due_ns = due_ns;
   }
 
   // Returns the newest item that is due at now_ns, if any. Older items are dropped.
@@ -31,12 +33,12 @@ class DelayLine {
     return newest;
   }
 
-  // Returns the oldest item, if it is due at now_ns.
-  std::optional<Item> take_oldest(std::int64_t now_ns) {
-    if (count_ == 0 || at(0).due_ns > now_ns) return std::nullopt;
-    const Item oldest = at(0).item;
+  // Returns the oldest item, if it is due at now_ns; else null. It stays valid until the next put().
+  const Item* take_oldest(std::int64_t now_ns) {
+    if (count_ == 0 || at(0).due_ns > now_ns) return nullptr;
+    const Item& oldest = at(0).item;
     drop_oldest();
-    return oldest;
+    return &oldest;
   }
 
   void clear() { count_ = 0; }
@@ -48,9 +50,10 @@ class DelayLine {
     std::int64_t due_ns;
   };
 
-  Held& at(std::size_t i) { return items_[(oldest_ + i) % items_.size()]; }
+  std::size_t wrapped(std::size_t i) const { return i < items_.size() ? i : i - items_.size(); }
+  Held& at(std::size_t i) { return items_[wrapped(oldest_ + i)]; }
   void drop_oldest() {
-    oldest_ = (oldest_ + 1) % items_.size();
+    oldest_ = wrapped(oldest_ + 1);
     --count_;
   }
 

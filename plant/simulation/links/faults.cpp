@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "swiftlet/math/time.hpp"
+
 namespace swiftlet::plant {
 
 namespace {
 
 constexpr double kLongest_s = 86'400.0;  // one day
 constexpr double kLongestDelay_s = 1.0;
-
-std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1.0e9); }
 
 std::string key_of(std::size_t index) { return "faults[" + std::to_string(index) + "]"; }
 
@@ -154,7 +154,7 @@ std::vector<Violation> validate_faults(const std::vector<Fault>& faults, const V
 
 FaultSchedule::FaultSchedule(const std::vector<Fault>& faults) {
   for (const Fault& fault : faults) {
-    const Entry entry{nanoseconds(fault.at_s), nanoseconds(fault.at_s + fault.for_s), fault};
+    const Entry entry{math::nanoseconds(fault.at_s), math::nanoseconds(fault.at_s + fault.for_s), fault};
     by_kind_[static_cast<std::size_t>(fault.kind)].push_back(entry);
     changes_ns_.insert(changes_ns_.end(), {entry.from_ns, entry.to_ns});
   }

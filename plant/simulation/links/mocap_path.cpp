@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "swiftlet/math/rotation_vector.hpp"
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/plant/simulation/streams.hpp"
 
 namespace swiftlet::plant {
@@ -13,8 +14,6 @@ namespace {
 constexpr FaultKind kMocapFaults[] = {FaultKind::kMocapStop,      FaultKind::kMocapFreeze,
                                       FaultKind::kMocapUntracked, FaultKind::kMocapJump,
                                       FaultKind::kMocapSwap,      FaultKind::kMocapLatency};
-
-std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1.0e9); }
 
 std::size_t delay_capacity(const FaultSchedule& faults, const MocapSettings& mocap) {
   const double longest_s = faults.longest_delay_s(FaultKind::kMocapLatency);
@@ -43,7 +42,7 @@ std::optional<PoseSample> MocapPath::pass(const std::optional<PoseSample>& frame
   PoseSample seen = *frame;
   disturb(seen, now_ns);
   if (const Fault* late = faults_.active(FaultKind::kMocapLatency, now_ns)) {
-    delayed_.put(seen, now_ns + nanoseconds(late->delay_s));
+    delayed_.put(seen, now_ns + math::nanoseconds(late->delay_s));
     return out;
   }
   delayed_.clear();  // older frames are superseded

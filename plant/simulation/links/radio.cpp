@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "swiftlet/math/time.hpp"
+
 namespace swiftlet::plant {
 
 std::optional<std::int64_t> RadioLink::send(std::int64_t now_ns) {
@@ -10,7 +12,7 @@ std::optional<std::int64_t> RadioLink::send(std::int64_t now_ns) {
   const double takes_s = settings_.delay_s + settings_.jitter_s * random_.uniform();
   if (now_ns == 0) return 0;
   if (lost) return std::nullopt;
-  return std::llround(1e9 * takes_s);
+  return math::nanoseconds(takes_s);
 }
 
 }  // namespace swiftlet::plant

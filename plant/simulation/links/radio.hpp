@@ -42,8 +42,8 @@ class RadioLine {
     const std::optional<std::int64_t> takes_ns = link_.send(now_ns);
     if (takes_ns) packets_.put(packet, now_ns + *takes_ns);
   }
-  // The next packet that has arrived by now_ns and was not taken, if any.
-  std::optional<Packet> take(std::int64_t now_ns) { return packets_.take_oldest(now_ns); }
+  // The next packet that has arrived by now_ns and was not taken; null if there is none. Valid until the next send().
+  const Packet* take(std::int64_t now_ns) { return packets_.take_oldest(now_ns); }
 
  private:
   // At most one packet for each IMU sample, and those of one sample that wait for each other.

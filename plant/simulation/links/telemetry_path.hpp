@@ -39,11 +39,12 @@ class TelemetryPath {
     next_.odometry = odometry;
     next_.obeyed = obeyed;
     packets_.send(next_, plant.stamp_ns());
-    next_ = {};
+    next_.battery.reset();
+    next_.rotor_speeds.reset();
   }
 
-  // The next packet that has arrived and was not taken, if any.
-  std::optional<TelemetryPacket> take(std::int64_t now_ns) { return packets_.take(now_ns); }
+  // The next packet that has arrived and was not taken; null if there is none. Valid until the next collect().
+  const TelemetryPacket* take(std::int64_t now_ns) { return packets_.take(now_ns); }
 
  private:
   TelemetryPacket next_;

@@ -3,7 +3,7 @@
 #include <random>
 #include <utility>
 
-#include <spdlog/spdlog.h>
+#include "swiftlet/services/runtime/log.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -64,12 +64,12 @@ void ClockClient::log_changes(bool is_known, const ClockEstimate& clock, std::in
   const double offset_s = -1e-9 * static_cast<double>(clock.offset_at(now_ns));
   const double uncertainty_ms = 1e-6 * clock.uncertainty_ns(now_ns);
   if (filter_.steps() > steps_logged_) {
-    spdlog::warn(
+    runtime::log_warning(
         "a clock was set: that of the frames minus the vehicle's is now {:+.6f} s (within {:.3f} ms)",
         offset_s, uncertainty_ms);
   } else if (is_known && !was_known_) {
-    spdlog::info("clock of the frames minus the vehicle's: {:+.6f} s (within {:.3f} ms)", offset_s,
-                 uncertainty_ms);
+    runtime::log_info("clock of the frames minus the vehicle's: {:+.6f} s (within {:.3f} ms)", offset_s,
+                      uncertainty_ms);
   }
   steps_logged_ = filter_.steps();
   was_known_ = was_known_ || is_known;

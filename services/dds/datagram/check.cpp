@@ -11,8 +11,8 @@
 namespace swiftlet::comms {
 namespace {
 
-constexpr std::uint8_t kMagic[] = {'R', 'T', 'P', 'S', 2};  // 9.4.4: protocol, major version
-constexpr std::size_t kStatisticsBytes = 4 + 56;            // with its header
+constexpr std::uint8_t kRtpsMagic[] = {'R', 'T', 'P', 'S', 2};  // 9.4.4: protocol, major version
+constexpr std::size_t kStatisticsBytes = 4 + 56;                // with its header
 
 // Bits of the flags of a submessage.
 constexpr std::uint8_t kInlineQosFlag = 2;
@@ -47,13 +47,6 @@ SequenceNumber sequence_number(ByteReader& in) {
   const std::uint32_t high = in.u32();
   const std::uint32_t low = in.u32();
   return {high == 0 && low != 0xffffffff, low};
-}
-
-EntityId entity_id(ByteReader& in) {
-  EntityId entity{};
-  if (const std::uint8_t* const bytes = in.take(entity.size()))
-    std::copy_n(bytes, entity.size(), entity.begin());
-  return entity;
 }
 
 // Returns how many numbers the part of a set that follows its first number is about.
@@ -111,7 +104,8 @@ class DatagramCheck {
 const char* DatagramCheck::check_header() {
   const std::uint8_t* const header = rest_.take(kHeaderBytes);
   if (header == nullptr) return "shorter than the header of a message (8.3.6)";
-  if (!std::equal(std::begin(kMagic), std::end(kMagic), header)) return "not RTPS, version 2 (8.3.6.3)";
+  if (!std::equal(std::begin(kRtpsMagic), std::end(kRtpsMagic), header))
+    return "not RTPS, version 2 (8.3.6.3)";
   std::copy_n(header + 8, result_.source.size(), result_.source.begin());
   if (result_.source == GuidPrefix{}) return "message of an unknown participant (8.3.6.3)";
   return nullptr;

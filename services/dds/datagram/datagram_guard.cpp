@@ -10,7 +10,7 @@
 namespace swiftlet::comms {
 namespace {
 
-constexpr std::int64_t kLately_ns = 1'000'000'000;  // half the lease of a process
+constexpr std::int64_t kHeardLately_ns = 1'000'000'000;  // half the lease of a process
 constexpr std::int64_t kExpected_ns = 20'000'000'000;
 
 }  // namespace
@@ -42,7 +42,11 @@ CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size,
   }
   if (checked.fault == nullptr) checked = check_datagram(data, opener_ ? size - kSealBytes : size, limits_);
   if (checked.fault == nullptr) checked.fault = fault_of(checked, sender, now);
-  if (checked.fault != nullptr) refuse(sender, checked.fault);
+  if (checked.fault != nullptr) {
+    refuse(sender, checked.fault);
+  } else if (limits_.security && checked.about_participant && !checked.is_ignored) {
+    note_announcement(checked, now);
+  }
   return checked;
 }
 
@@ -62,7 +66,6 @@ const char* DatagramGuard::fault_of(CheckedDatagram& checked, const SenderAddres
   const Admission admission = participants_.admit(checked.source, news, sender, now.steady_ns);
   if (admission.fault != nullptr) return admission.fault;
   checked.is_ignored = digest != 0 && !admission.has_joined;
-  if (limits_.security && !checked.is_ignored) note_announcement(checked, now);
   return nullptr;
 }
 
@@ -77,6 +80,7 @@ void DatagramGuard::ignore_apart_from(const std::vector<std::uint8_t>& own_user_
 }
 
 void DatagramGuard::note_announcement(const CheckedDatagram& checked, const Now& now) {
+  const std::lock_guard<std::mutex> lock(announcements_mutex_);
   if (checked.announcement_digest == 0) {
     announcements_.erase(checked.source);
     return;
@@ -87,7 +91,7 @@ void DatagramGuard::note_announcement(const CheckedDatagram& checked, const Now&
                          [](const auto& a, const auto& b) { return a.second.heard_ns < b.second.heard_ns; }));
   const Announced& said = checked.announced;
   Announcement& known = announcements_[checked.source];
-  if (known.heard_ns == 0 || now.steady_ns - known.heard_ns > kLately_ns) known.since_ns = now.steady_ns;
+  if (known.heard_ns == 0 || now.steady_ns - known.heard_ns > kHeardLately_ns) known.since_ns = now.steady_ns;
   known.heard_ns = now.steady_ns;
   known.name.clear();
   if (said.name_size > 0)
@@ -97,10 +101,10 @@ void DatagramGuard::note_announcement(const CheckedDatagram& checked, const Now&
 }
 
 std::map<GuidPrefix, DatagramGuard::Announcement> DatagramGuard::announcements(const Now& now) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::lock_guard<std::mutex> lock(announcements_mutex_);
   std::map<GuidPrefix, Announcement> lately;
   for (const auto& [participant, said] : announcements_) {
-    if (now.steady_ns - said.heard_ns < kLately_ns) lately.emplace(participant, said);
+    if (now.steady_ns - said.heard_ns < kHeardLately_ns) lately.emplace(participant, said);
   }
   return lately;
 }

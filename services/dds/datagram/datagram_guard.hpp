@@ -25,7 +25,7 @@ struct Now {
   static Now read();
 };
 
-// Thread-safe: shared by the transports of a participant and their receiving threads. Allocates only when constructed, for
+// Thread-safe: shared by the transport of a participant and its receiving threads. Allocates only when constructed, for
 // fragments that are sent, and with security for announcements.
 class DatagramGuard {
  public:
@@ -87,7 +87,7 @@ class DatagramGuard {
   std::optional<DatagramSealer> sealer_;
   RefusalLog refusals_;
   std::mutex changes_mutex_;
-  std::mutex mutex_;  // guards the rest; all threads that receive take it, for each datagram
+  std::mutex mutex_;  // guards what follows; all threads that receive take it, for each datagram
   std::optional<DatagramOpener> opener_;
   SequenceWindow sequences_;
   ReplyCheck replies_;
@@ -95,6 +95,9 @@ class DatagramGuard {
   std::string own_user_data_;  // empty: nobody is ignored
   std::size_t expected_ = 0;
   std::int64_t expected_until_ns_ = 0;
+
+  // Apart, since it is changed with memory allocated: only threads that receive announcements take it.
+  std::mutex announcements_mutex_;
   std::map<GuidPrefix, Announcement> announcements_;  // the longest silent one is replaced
 };
 

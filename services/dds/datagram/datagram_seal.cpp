@@ -114,13 +114,14 @@ DatagramOpener::Sender& DatagramOpener::sender(const std::uint8_t* participant, 
 }
 
 const char* DatagramOpener::Sender::take(std::uint64_t count, std::int64_t sealed_ns) {
-  constexpr std::uint64_t kWindow = 256;
   const auto bit = [](std::uint64_t of) { return std::uint64_t{1} << of % 64; };
-  const auto word = [this](std::uint64_t of) -> std::uint64_t& { return received[of / 64 % 4]; };
-  if (count + kWindow <= newest) return "older than 256 others of its sender";
+  const auto word = [this](std::uint64_t of) -> std::uint64_t& {
+    return received[of / 64 % received.size()];
+  };
+  if (count + kSealWindow <= newest) return "older than 2048 others of its sender";
   if (count > newest) {
     // Counts between the newest and this one were not received.
-    const std::uint64_t skipped = std::min(count - newest, kWindow);
+    const std::uint64_t skipped = std::min(count - newest, kSealWindow);
     for (std::uint64_t i = 0; i < skipped; ++i) word(count - i) &= ~bit(count - i);
     newest = count;
     sent_ns = sealed_ns;

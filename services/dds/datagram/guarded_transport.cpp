@@ -4,10 +4,12 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "swiftlet/services/dds/datagram/output_channels.hpp"
+#include "swiftlet/services/dds/discovery/interfaces.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -17,18 +19,20 @@ namespace transport = eprosima::fastdds::rtps;
 // Fast DDS takes the last fragment of a sample for as long as the first one said, however much there is: zeros follow it.
 constexpr std::size_t kLongestFragment = 1 << 16;
 
-// All zeros for shared memory: its locators have no address of a host.
 SenderAddress address_of(const rtps::Locator_t& locator) {
   SenderAddress address{};
-  if (locator.kind != LOCATOR_KIND_SHM) std::copy_n(locator.address, address.size(), address.begin());
+  std::copy_n(locator.address, address.size(), address.begin());
   return address;
 }
 
 class GuardedTransport final : public ChainedTransport {
  public:
   GuardedTransport(const transport::ChainingTransportDescriptor& descriptor,
-                   std::shared_ptr<DatagramGuard> guard)
-      : ChainedTransport(descriptor), guard_(std::move(guard)) {}
+                   std::shared_ptr<DatagramGuard> guard, bool on_loopback)
+      : ChainedTransport(descriptor), guard_(std::move(guard)), on_loopback_(on_loopback) {}
+
+  // Fast DDS would drop the addresses of a process of this host that uses other interfaces, as ROS 2 does by default.
+  bool leads_here(const rtps::Locator_t& announced, rtps::Locator_t& used) const override;
 
   // ChainingTransport takes a port for open after an attempt to open it has failed, and after it was closed.
   bool OpenInputChannel(const rtps::Locator_t& locator, transport::TransportReceiverInterface* next,
@@ -40,14 +44,11 @@ class GuardedTransport final : public ChainedTransport {
   bool send_through(rtps::SenderResource& below, const OutgoingDatagram& datagram, const Destination& to) {
     const OutgoingDatagram::Piece first = datagram.first_piece();
     guard_->note_sent(first.bytes, first.size);
-    // Shared memory gets one piece: of several, Fast DDS 3.1.2 leaves out the last, the statistics, and sends as many
-    // bytes of an earlier message in its place.
-    const bool as_it_is = first.size == datagram.size || below.kind() != LOCATOR_KIND_SHM;
-    if (!guard_->seals() && as_it_is) return comms::send(below, datagram, to);
+    if (!guard_->seals()) return comms::send(below, datagram, to);
     // Allocates when a thread sends for the first time.
     thread_local std::vector<rtps::octet> sent(1 << 16);
     datagram.copy_to(sent);
-    if (guard_->seals()) guard_->seal(sent, Now::read());
+    guard_->seal(sent, Now::read());
     return comms::send(below, sent, to);
   }
 
@@ -70,6 +71,7 @@ class GuardedTransport final : public ChainedTransport {
   };
 
   const std::shared_ptr<DatagramGuard> guard_;
+  const bool on_loopback_;
   std::mutex receivers_mutex_;
   std::multimap<rtps::Locator_t, std::unique_ptr<Receiver>> receivers_;
 };
@@ -78,24 +80,32 @@ class GuardedTransport final : public ChainedTransport {
 class GuardedChannel final : public OutputChannel {
  public:
   GuardedChannel(GuardedTransport& owner, std::unique_ptr<rtps::SenderResource> below)
-      : OutputChannel(std::move(below)), owner_(&owner) {}
-
-  bool is_of(const GuardedTransport& owner) const { return owner_ == &owner; }
+      : OutputChannel(std::move(below)), owner_(owner) {}
 
  private:
   bool send_datagram(const OutgoingDatagram& datagram, const Destination& to) override {
-    return owner_->send_through(below(), datagram, to);
+    return owner_.send_through(below(), datagram, to);
   }
 
-  GuardedTransport* const owner_;
+  GuardedTransport& owner_;
 };
+
+bool GuardedTransport::leads_here(const rtps::Locator_t& announced, rtps::Locator_t& used) const {
+  if (!on_loopback_ || announced.kind != LOCATOR_KIND_UDPv4) return false;
+  const std::string address = rtps::IPLocator::ip_to_string(announced);
+  const std::vector<Interface> own = interfaces_up();
+  if (std::none_of(own.begin(), own.end(), [&](const Interface& it) { return it.address == address; }))
+    return false;
+  used = announced;
+  rtps::IPLocator::setIPv4(used, kLoopback);
+  return true;
+}
 
 bool GuardedTransport::OpenOutputChannel(transport::SendResourceList& channels,
                                          const rtps::Locator_t& locator) {
-  return open_below<GuardedChannel>(
-      *low_level_transport_, channels, locator,
-      [this](const GuardedChannel& channel) { return channel.is_of(*this); },
-      [this](auto channel) { return std::make_unique<GuardedChannel>(*this, std::move(channel)); });
+  return open_below(*low_level_transport_, channels, locator, [this](auto channel) {
+    return std::make_unique<GuardedChannel>(*this, std::move(channel));
+  });
 }
 
 bool GuardedTransport::OpenInputChannel(const rtps::Locator_t& locator,
@@ -137,44 +147,21 @@ void GuardedTransport::receive(transport::TransportReceiverInterface* next, cons
   }
 }
 
-// Leaves room for the seal, if the middleware does not.
-std::uint32_t message_size(std::uint32_t below, const DatagramGuard& guard) {
-  return below - (guard.seals() ? static_cast<std::uint32_t>(kSealBytes) : 0U);
-}
-
 struct GuardedUdp final : transport::ChainingTransportDescriptor {
+  // Leaves room for the seal, if the middleware does not.
   std::uint32_t max_message_size() const override {
-    return message_size(low_level_descriptor->max_message_size(), *guard);
+    return low_level_descriptor->max_message_size() -
+           (guard->seals() ? static_cast<std::uint32_t>(kSealBytes) : 0U);
   }
   GuardedUdp(const transport::UDPv4TransportDescriptor& udp, std::shared_ptr<DatagramGuard> shared)
       : ChainingTransportDescriptor(std::make_shared<transport::UDPv4TransportDescriptor>(udp)),
+        on_loopback(udp.interfaceWhiteList == std::vector<std::string>{kLoopback}),
         guard(std::move(shared)) {}
   transport::TransportInterface* create_transport() const override {
-    return new GuardedTransport(*this, guard);
+    return new GuardedTransport(*this, guard, on_loopback);
   }
 
-  std::shared_ptr<DatagramGuard> guard;
-};
-
-// Not a ChainingTransportDescriptor: Fast DDS ignores locators of shared memory unless it finds a descriptor of this
-// type.
-struct GuardedSharedMemory final : transport::SharedMemTransportDescriptor {
-  std::uint32_t max_message_size() const override {
-    return message_size(SharedMemTransportDescriptor::max_message_size(), *guard);
-  }
-  struct Chain final : transport::ChainingTransportDescriptor {
-    using ChainingTransportDescriptor::ChainingTransportDescriptor;
-    transport::TransportInterface* create_transport() const override { return nullptr; }
-  };
-
-  GuardedSharedMemory(const transport::SharedMemTransportDescriptor& shared_memory,
-                      std::shared_ptr<DatagramGuard> shared)
-      : SharedMemTransportDescriptor(shared_memory), guard(std::move(shared)) {}
-  transport::TransportInterface* create_transport() const override {
-    return new GuardedTransport(Chain(std::make_shared<transport::SharedMemTransportDescriptor>(*this)),
-                                guard);
-  }
-
+  const bool on_loopback;
   std::shared_ptr<DatagramGuard> guard;
 };
 
@@ -183,11 +170,6 @@ struct GuardedSharedMemory final : transport::SharedMemTransportDescriptor {
 TransportDescriptor guarded(const transport::UDPv4TransportDescriptor& udp,
                             std::shared_ptr<DatagramGuard> guard) {
   return std::make_shared<GuardedUdp>(udp, std::move(guard));
-}
-
-TransportDescriptor guarded(const transport::SharedMemTransportDescriptor& shared_memory,
-                            std::shared_ptr<DatagramGuard> guard) {
-  return std::make_shared<GuardedSharedMemory>(shared_memory, std::move(guard));
 }
 
 }  // namespace swiftlet::comms

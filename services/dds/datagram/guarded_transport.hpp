@@ -10,10 +10,8 @@ namespace swiftlet::comms {
 
 using TransportDescriptor = std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface>;
 
-// Descriptors of the transports with such a check in front. All transports of a participant share a guard.
+// A descriptor of the transport with such a check in front.
 TransportDescriptor guarded(const eprosima::fastdds::rtps::UDPv4TransportDescriptor& udp,
-                            std::shared_ptr<DatagramGuard> guard);
-TransportDescriptor guarded(const eprosima::fastdds::rtps::SharedMemTransportDescriptor& shared_memory,
                             std::shared_ptr<DatagramGuard> guard);
 
 }  // namespace swiftlet::comms

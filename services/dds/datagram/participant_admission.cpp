@@ -10,7 +10,7 @@ constexpr double kRateOfHost = 4.0;  // 1/s
 constexpr double kBurstOfAll = 512.0;
 constexpr double kRateOfAll = 16.0;  // 1/s
 constexpr std::size_t kHosts = 64;
-constexpr std::int64_t kLately_ns = 4'000'000'000;  // twice the lease of a process
+constexpr std::int64_t kAdmittedLately_ns = 4'000'000'000;  // twice the lease of a process
 // Those that are ignored announce themselves seldom in a large domain (announcement_budget.hpp).
 constexpr std::int64_t kIgnoredLately_ns = 20'000'000'000;
 
@@ -41,7 +41,7 @@ bool ParticipantAdmission::Known::agrees(std::uint64_t announced) {
 }
 
 bool ParticipantAdmission::Known::is_heard(std::int64_t now_ns) const {
-  return heard_ns > 0 && now_ns - heard_ns < (joined_ns != 0 ? kLately_ns : kIgnoredLately_ns);
+  return heard_ns > 0 && now_ns - heard_ns < (joined_ns != 0 ? kAdmittedLately_ns : kIgnoredLately_ns);
 }
 
 Admission ParticipantAdmission::admit(const GuidPrefix& participant, const ParticipantNews& news,

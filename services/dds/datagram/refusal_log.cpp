@@ -4,16 +4,15 @@
 #include <arpa/inet.h>
 #include <string>
 
-#include <spdlog/spdlog.h>
+#include "swiftlet/services/runtime/log.hpp"
 
 namespace swiftlet::comms {
 namespace {
 
-// Of a locator: an IPv4 address is in the last four bytes. All zeros: shared memory, which has no address.
+// Of a locator: an IPv4 address is in the last four bytes.
 std::string text_of(const SenderAddress& address) {
   const bool is_ipv4 =
       std::all_of(address.begin(), address.begin() + 12, [](std::uint8_t byte) { return byte == 0; });
-  if (address == SenderAddress{}) return "this host";
   char text[INET6_ADDRSTRLEN] = {};
   ::inet_ntop(is_ipv4 ? AF_INET : AF_INET6, is_ipv4 ? address.data() + 12 : address.data(), text,
               sizeof text);
@@ -56,9 +55,9 @@ void RefusalLog::write_due(std::chrono::steady_clock::time_point now) {
   for (std::size_t i = 0; i < kSenders; ++i) {
     const Sender& sender = due[i];
     if (sender.refused == 0) continue;
-    spdlog::warn("refused {} datagram{} from {}; the last: {}", sender.refused,
-                 sender.refused == 1 ? "" : "s", i + 1 < kSenders ? text_of(sender.address) : "other senders",
-                 sender.last_rule);
+    runtime::log_warning("refused {} datagram{} from {}; the last: {}", sender.refused,
+                         sender.refused == 1 ? "" : "s",
+                         i + 1 < kSenders ? text_of(sender.address) : "other senders", sender.last_rule);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "swiftlet/io/byte_reader.hpp"
+#include "swiftlet/services/dds/datagram/rtps_ids.hpp"
 
 namespace swiftlet::comms {
 
@@ -35,6 +36,15 @@ enum SubmessageKind : std::uint8_t {
 
 constexpr std::uint8_t kLittleEndianFlag = 1;  // of every submessage (9.4.5.1.2)
 constexpr std::size_t kSubmessageHeaderBytes = 4;
+constexpr std::size_t kBytesBeforeIds = 4;  // of DATA: flags, and the distance to its inline QoS
+
+// The next identifier of an endpoint; zeros behind the end.
+inline EntityId entity_id(runtime::ByteReader& in) {
+  EntityId entity{};
+  if (const std::uint8_t* const bytes = in.take(entity.size()))
+    std::copy_n(bytes, entity.size(), entity.begin());
+  return entity;
+}
 
 // Calls found(kind, body) for each submessage up to the first that reaches to the end of the message; body is a
 // runtime::ByteReader in its byte order. A length of 0 means to the end, but for those that may be empty (9.4.5.1.3). Returns

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "swiftlet/io/config_error.hpp"
 #include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 #include "swiftlet/services/dds/datagram/guarded_transport.hpp"
 #include "swiftlet/services/dds/discovery/announcement.hpp"
@@ -64,12 +65,13 @@ dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings,
   // Fast DDS 3.1 takes the port for taken if it listens on all addresses of a host that is in no network.
   const std::vector<Interface> interfaces = interfaces_up();
   const bool in_a_network =
+      !settings.on_loopback() &&
       std::any_of(interfaces.begin(), interfaces.end(), [](const Interface& it) { return !it.is_loopback; });
   protocol.builtin.metatrafficUnicastLocatorList.push_back(
       udp_locator(in_a_network ? kAnyAddress : kLoopback, static_cast<std::uint32_t>(settings.port)));
   UDPv4TransportDescriptor udp;
   udp.interfaceWhiteList = addresses_of_interfaces(settings.interfaces);
-  if (!settings.interfaces.empty())
+  if (!settings.interfaces.empty() || !in_a_network)
     udp.interfaceWhiteList.emplace_back(kLoopback);  // for clients of this host
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(space_changes(send_to_opened(guarded(udp, guard)), open));
@@ -122,6 +124,10 @@ struct DiscoveryServer::Impl final : public DiscoveryListener {
 DiscoveryServer::DiscoveryServer(const DiscoveryServerSettings& settings,
                                  std::function<void(const DiscoveryServerEvent&)> on_event)
     : impl_(std::make_unique<Impl>(settings, std::move(on_event))) {
+  if (settings.on_loopback() && !settings.interfaces.empty())
+    throw runtime::ConfigError(
+        "an interface (--interface) is given, but the server stays on the loopback interface without "
+        "--network-key FILE or --open-network");
   set_up_fast_dds();
   require_free(settings.port);
   impl_->participant = dds::DomainParticipantFactory::get_instance()->create_participant(

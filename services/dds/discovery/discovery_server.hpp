@@ -17,6 +17,9 @@ struct DiscoveryServerSettings {
   int port = 0;
   std::vector<std::string> interfaces{};  // as in NetworkSettings
   std::string network_key_file{};         // as in NodeSettings
+  bool open_network = false;              // as in NodeSettings
+
+  bool on_loopback() const { return !open_network && network_key_file.empty(); }  // for this host only
 };
 
 // A process registered at the server, or is gone.
@@ -34,7 +37,7 @@ class DiscoveryServer {
   static constexpr auto kStartTime = 2 * kLivelinessLease;
 
   // Hears nothing before serve(). on_event runs in a middleware thread. Throws std::runtime_error if the port cannot be opened,
-  // or the key file is not valid.
+  // or the key file is not valid; runtime::ConfigError for interfaces on_loopback().
   DiscoveryServer(const DiscoveryServerSettings& settings,
                   std::function<void(const DiscoveryServerEvent&)> on_event);
   ~DiscoveryServer();

@@ -15,7 +15,7 @@ NodeSettings announced(NodeSettings network) {
 }  // namespace
 
 FlightReservation::FlightReservation(const NodeSettings& network, const std::vector<std::string>& vehicles)
-    : participant_(announced(network)) {
+    : participant_(announced(network), vehicles) {
   for (const std::string& vehicle : vehicles) nodes_.emplace_back(participant_, vehicle);
   const auto other = participant_.become_source({kFlight, topics::kImu.name, topics::kMocapPose.name});
   if (other) {

@@ -6,6 +6,8 @@
 
 namespace swiftlet::comms {
 
+constexpr const char* kLoopback = "127.0.0.1";
+
 // An IPv4 address of an interface that is up and plugged in: Fast DDS ignores others.
 struct Interface {
   std::string name;     // "eth0"

@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr const char* kGroup = "239.255.0.1";
-constexpr const char* kMagic = "swiftlet-probe-2";
+constexpr const char* kProbeMagic = "swiftlet-probe-2";
 constexpr auto kPeriod = 50ms;
 constexpr auto kLastAnswers = 300ms;
 constexpr std::size_t kMaxDatagram = 512;
@@ -49,8 +49,8 @@ struct Message {
 
 std::string to_text(const Message& message) {
   std::ostringstream text;
-  text << kMagic << ' ' << static_cast<char>(message.kind) << ' ' << message.sender << ' ' << message.host
-       << ' ' << message.number;
+  text << kProbeMagic << ' ' << static_cast<char>(message.kind) << ' ' << message.sender << ' '
+       << message.host << ' ' << message.number;
   if (message.kind == Kind::kMulticast) text << ' ' << message.via;
   if (message.kind == Kind::kAnswer)
     text << ' ' << message.asker << ' ' << static_cast<char>(message.of) << ' ' << message.received_ns << ' '
@@ -68,7 +68,7 @@ bool from_text(const std::string& datagram, Message& message) {
   std::istringstream text(datagram);
   std::string magic;
   char kind = 0;
-  if (!(text >> magic >> kind >> message.sender >> message.host >> message.number) || magic != kMagic)
+  if (!(text >> magic >> kind >> message.sender >> message.host >> message.number) || magic != kProbeMagic)
     return false;
   if (!is_printable_name(message.host)) return false;
   message.kind = static_cast<Kind>(kind);

@@ -58,9 +58,9 @@ class OpenedTransport final : public ChainedTransport {
   }
 
   bool OpenOutputChannel(transport::SendResourceList& channels, const rtps::Locator_t& locator) override {
-    const bool opened = open_below<OpenedChannel>(
-        *low_level_transport_, channels, locator, [](const OpenedChannel&) { return true; },
-        [this](auto channel) { return std::make_unique<OpenedChannel>(destinations_, std::move(channel)); });
+    const bool opened = open_below(*low_level_transport_, channels, locator, [this](auto channel) {
+      return std::make_unique<OpenedChannel>(destinations_, std::move(channel));
+    });
     if (opened) destinations_->add(locator);
     return opened;
   }

@@ -2,8 +2,7 @@
 
 #include <string>
 
-#include <spdlog/spdlog.h>
-
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/log_label.hpp"
 
 namespace swiftlet::comms {
@@ -12,11 +11,11 @@ void log_peers(Node& node) {
   node.on_peer([own = runtime::LogLabel::current()](const PeerEvent& event) {
     const runtime::LogLabel label(own);
     if (event.alive) {
-      spdlog::info("{} joined", event.name);
+      runtime::log_info("{} joined", event.name);
     } else if (event.said_goodbye) {
-      spdlog::info("{} left", event.name);
+      runtime::log_info("{} left", event.name);
     } else {
-      spdlog::warn("{} died or was cut off", event.name);
+      runtime::log_warning("{} died or was cut off", event.name);
     }
   });
 }

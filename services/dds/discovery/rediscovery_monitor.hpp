@@ -2,6 +2,8 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
+#include <deque>
 #include <map>
 
 namespace swiftlet::comms {
@@ -14,6 +16,7 @@ template <class Id>
 class RediscoveryMonitor {
  public:
   using Time = std::chrono::steady_clock::time_point;
+  static constexpr std::size_t kMostLost = 256;
   enum Kind : unsigned { kWriter = 1, kReader = 2 };
 
   void came(const Id& peer, Time now) {
@@ -26,9 +29,23 @@ class RediscoveryMonitor {
     it.present |= endpoint;
     it.known |= endpoint;
   }
-  void lost(const Id& peer) { peers_[peer].since = Time::max(); }  // its lease expired
-  void gone(const Id& peer) { peers_.erase(peer); }                // it left the domain
-  void clear() { peers_.clear(); }
+  // Its lease expired. Of many that never return, those that were lost first are forgotten.
+  void lost(const Id& peer) {
+    Peer& it = peers_[peer];
+    if (it.since != Time::max()) lost_.push_back(peer);
+    it.since = Time::max();
+    for (; lost_.size() > kMostLost; lost_.pop_front()) {
+      const auto first = peers_.find(lost_.front());
+      if (first != peers_.end() && first->second.since == Time::max()) peers_.erase(first);
+    }
+  }
+  void gone(const Id& peer) { peers_.erase(peer); }  // it left the domain
+  void clear() {
+    peers_.clear();
+    lost_.clear();
+  }
+
+  std::size_t size() const { return peers_.size(); }
 
   // True if a peer was rediscovered longer than patience ago and still lacks a kind of endpoint.
   bool failed(Time now, std::chrono::milliseconds patience) const {
@@ -45,6 +62,7 @@ class RediscoveryMonitor {
     unsigned known = 0;    // kinds of endpoints ever seen
   };
   std::map<Id, Peer> peers_;
+  std::deque<Id> lost_;  // in their order, some of which have returned
 };
 
 }  // namespace swiftlet::comms

@@ -26,7 +26,6 @@ bool is_discovery_port(int domain, std::uint32_t port) {
 
 namespace {
 
-constexpr std::size_t kBytesBeforeIds = 4;  // of DATA: flags, and the distance to its inline QoS
 // More than a domain has: forged announcements name others.
 constexpr std::size_t kMostDestinations = 4 * kMostParticipants;
 
@@ -41,12 +40,8 @@ std::uint64_t fnv(std::uint64_t digest, const std::uint8_t* bytes, std::size_t s
 
 bool is_of_participant(ByteReader data) {
   data.skip(kBytesBeforeIds);
-  EntityId reader{};
-  EntityId writer{};
-  for (EntityId* const id : {&reader, &writer}) {
-    const std::uint8_t* const bytes = data.take(id->size());
-    if (bytes != nullptr) std::copy_n(bytes, id->size(), id->begin());
-  }
+  const EntityId reader = entity_id(data);
+  const EntityId writer = entity_id(data);
   const auto topic = topic_of(reader, writer);
   return topic == BuiltinTopic::kParticipant || topic == BuiltinTopic::kLiveliness;
 }
@@ -149,9 +144,9 @@ class RepeatingTransport final : public ChainedTransport {
   }
 
   bool OpenOutputChannel(transport::SendResourceList& channels, const rtps::Locator_t& locator) override {
-    return open_below<RepeatingChannel>(
-        *low_level_transport_, channels, locator, [](const RepeatingChannel&) { return true; },
-        [this](auto channel) { return std::make_unique<RepeatingChannel>(repetition_, std::move(channel)); });
+    return open_below(*low_level_transport_, channels, locator, [this](auto channel) {
+      return std::make_unique<RepeatingChannel>(repetition_, std::move(channel));
+    });
   }
 
   // The input channels pass this by.

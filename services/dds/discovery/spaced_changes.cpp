@@ -15,14 +15,6 @@ using runtime::ByteReader;
 namespace {
 
 constexpr std::size_t kBytesBeforePrefix = 8;  // of a message
-constexpr std::size_t kBytesBeforeIds = 4;     // of DATA: flags, and the distance to its inline QoS
-
-EntityId entity_id(ByteReader& data) {
-  EntityId id{};
-  const std::uint8_t* const bytes = data.take(id.size());
-  if (bytes != nullptr) std::copy_n(bytes, id.size(), id.begin());
-  return id;
-}
 
 // The sequence number of a submessage that announces a participant or says goodbye; nullopt for others.
 std::optional<std::int64_t> changed(std::uint8_t kind, ByteReader body) {

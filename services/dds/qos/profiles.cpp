@@ -26,7 +26,6 @@ constexpr milliseconds kHeartbeatPeriod{10};
 constexpr milliseconds kResponseDelay{1};
 constexpr milliseconds kFirstRequestPeriod{20};
 
-bool is_stream(Qos profile) { return profile == Qos::kStream || profile == Qos::kOwnedStream; }
 bool is_reliable(Qos profile) {
   return is_latched(profile) || profile == Qos::kRequest || profile == Qos::kReply;
 }
@@ -50,7 +49,7 @@ void set_fragments(dds::DataWriterQos& qos) {
 
 // The policies that are the same for writer and reader, so that they match.
 template <class EndpointQos>
-void set_common(EndpointQos& qos, Qos profile, int deadline_ms, Transport transport) {
+void set_common(EndpointQos& qos, Qos profile, int deadline_ms) {
   qos.reliability().kind =
       is_reliable(profile) ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
   qos.reliability().max_blocking_time = duration(kReliableWriteTimeout);
@@ -64,16 +63,12 @@ void set_common(EndpointQos& qos, Qos profile, int deadline_ms, Transport transp
   // A mission can be 3000 times as long as a command: memory is allocated as needed, and kept.
   qos.endpoint().history_memory_policy =
       is_long(profile) ? rtps::DYNAMIC_REUSABLE_MEMORY_MODE : rtps::PREALLOCATED_MEMORY_MODE;
-  if (profile == Qos::kRequest) {
-    qos.history().kind = dds::KEEP_ALL_HISTORY_QOS;
-    limits.max_samples = kMaxUnacknowledgedRequests;
-    limits.max_samples_per_instance = kMaxUnacknowledgedRequests;
-    limits.allocated_samples = 1;
-  } else if (profile == Qos::kReply) {
+  if (profile == Qos::kRequest || profile == Qos::kReply) {
+    const int kept = profile == Qos::kRequest ? kKeptRequests : kKeptReplies;
     qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
-    qos.history().depth = kKeptReplies;
-    limits.max_samples = kKeptReplies;
-    limits.max_samples_per_instance = kKeptReplies;
+    qos.history().depth = kept;
+    limits.max_samples = kept;
+    limits.max_samples_per_instance = kept;
     limits.allocated_samples = 1;
     limits.extra_samples = 2;
   } else {
@@ -85,12 +80,7 @@ void set_common(EndpointQos& qos, Qos profile, int deadline_ms, Transport transp
     limits.allocated_samples = 2;
     limits.extra_samples = 2;
   }
-
-  if (transport == Transport::kDataSharing && is_stream(profile)) {
-    qos.data_sharing().automatic();
-  } else {
-    qos.data_sharing().off();
-  }
+  qos.data_sharing().off();
 }
 
 }  // namespace
@@ -103,9 +93,9 @@ std::shared_ptr<eprosima::fastdds::rtps::FlowControllerDescriptor> long_message_
   return flow;
 }
 
-dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, std::uint32_t strength, Transport transport) {
+dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, std::uint32_t strength) {
   dds::DataWriterQos qos;
-  set_common(qos, profile, deadline_ms, transport);
+  set_common(qos, profile, deadline_ms);
   if (profile == Qos::kOwnedStream) qos.ownership_strength().value = strength;
   // A middleware thread sends long messages in fragments. The calling thread sends all others.
   qos.publish_mode().kind = is_long(profile) ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
@@ -114,14 +104,12 @@ dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, std::uint32_t streng
   return qos;
 }
 
-dds::DataReaderQos reader_qos(Qos profile, int deadline_ms, Transport transport, Delivery delivery) {
+dds::DataReaderQos reader_qos(Qos profile, int deadline_ms, Delivery delivery) {
   dds::DataReaderQos qos;
-  set_common(qos, profile, deadline_ms, transport);
+  set_common(qos, profile, deadline_ms);
   if (is_reliable(profile)) set_repair_times(qos, duration(kResponseDelay), duration(kFirstRequestPeriod));
-  // Not over shared memory: Fast DDS can give two processes the same port there, and one receives nothing.
-  if (delivery == Delivery::kOwnThread && transport != Transport::kSharedMemory) {
+  if (delivery == Delivery::kOwnThread)
     qos.properties().properties().emplace_back("fastdds.unique_network_flows", "");
-  }
   return qos;
 }
 

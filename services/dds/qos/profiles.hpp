@@ -19,10 +19,8 @@ bool is_latched(Qos profile);
 // the fragments is limited.
 std::shared_ptr<eprosima::fastdds::rtps::FlowControllerDescriptor> long_message_flow();
 
-eprosima::fastdds::dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, std::uint32_t strength,
-                                                 Transport transport);
-eprosima::fastdds::dds::DataReaderQos reader_qos(Qos profile, int deadline_ms, Transport transport,
-                                                 Delivery delivery);
+eprosima::fastdds::dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, std::uint32_t strength);
+eprosima::fastdds::dds::DataReaderQos reader_qos(Qos profile, int deadline_ms, Delivery delivery);
 
 // States the type hash of an endpoint in its user data, where ROS 2 looks for it. hash: may be null.
 void state_type_hash(eprosima::fastdds::dds::DataWriterQos& qos, const char* hash);

@@ -2,7 +2,7 @@
 
 #include <iterator>
 
-#include <spdlog/spdlog.h>
+#include "swiftlet/services/runtime/log.hpp"
 
 namespace swiftlet::comms {
 
@@ -12,11 +12,11 @@ void QosConflictLog::note(const Guid& own, const Guid& other, const std::string&
   noted_.emplace(own, other);
   const auto line = lines_.offer(
       topic + ": " + process + " " + consequence + ", their QoS is incompatible: " + policies, now);
-  if (line) spdlog::warn(*line);
+  if (line) runtime::log_warning("{}", *line);
 }
 
 void QosConflictLog::write_due(Time now) {
-  if (const auto line = lines_.due(now)) spdlog::warn(*line);
+  if (const auto line = lines_.due(now)) runtime::log_warning("{}", *line);
 }
 
 void QosConflictLog::forget(const GuidPrefix& participant) {

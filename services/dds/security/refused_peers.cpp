@@ -5,9 +5,9 @@
 #include <utility>
 
 #include <fastdds/dds/log/Log.hpp>
-#include <spdlog/spdlog.h>
 
 #include "swiftlet/services/dds/fast_dds_library.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -85,7 +85,7 @@ void RefusedPeers::write_due(Time now) {
       continue;
     }
     const std::string logged = logged_reason(guid);
-    spdlog::warn("refused {}{}", refusal.peer, logged.empty() ? refusal.reason : logged);
+    runtime::log_warning("refused {}{}", refusal.peer, logged.empty() ? refusal.reason : logged);
     written_[guid] = now;
     it = due_.erase(it);
   }

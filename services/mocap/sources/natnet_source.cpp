@@ -4,8 +4,7 @@
 #include <array>
 #include <stdexcept>
 
-#include <spdlog/spdlog.h>
-
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::mocap {
@@ -14,12 +13,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr auto kConnectPeriod = 500ms;   // while nothing comes
+constexpr auto kAskPeriod = 500ms;       // while nothing comes
 constexpr auto kModelsPeriod = 500ms;    // until the definitions are those of the frames
 constexpr auto kEchoPeriod = 50ms;       // as the requests of the vehicle's clock
 constexpr auto kFirstEchoPeriod = 10ms;  // while the clock is unknown
 constexpr auto kKeepAlivePeriod = 1s;    // of unicast; servers give up after 5 s
-constexpr auto kSilence = 1s;            // then the server is asked to connect again
+constexpr auto kNatNetSilence = 1s;      // then the server is asked to connect again
 constexpr auto kSearchTime = 500ms;
 // So many questions without an answer: the server does not answer them at all.
 constexpr int kUnansweredEchoes = 100;
@@ -113,13 +112,13 @@ bool NatNetSource::receive(SourceFrame& frame, std::chrono::milliseconds timeout
 }
 
 void NatNetSource::ask(Time now) {
-  if (!is_met_ || now - silent_since_ > kSilence) {
-    if (is_due(now, connect_due_, kConnectPeriod)) {
+  if (!is_met_ || now - silent_since_ > kNatNetSilence) {
+    if (is_due(now, connect_due_, kAskPeriod)) {
       commands_.send(natnet::connect_request(kWanted), server_);
       session_.forget_order();
     }
   } else {
-    connect_due_ = now + kConnectPeriod;
+    connect_due_ = now + kAskPeriod;
   }
   if (!is_met_) {
     echo_due_ = connect_due_;
@@ -132,7 +131,8 @@ void NatNetSource::ask(Time now) {
   if (is_due(now, echo_due_, session_.clock().is_known() ? kEchoPeriod : kFirstEchoPeriod)) {
     commands_.send(natnet::echo_request(static_cast<std::uint64_t>(runtime::monotonic_ns())), server_);
     if (++unanswered_echoes_ == kUnansweredEchoes)
-      spdlog::warn("{} does not answer echo requests: frames are stamped by their arrival", description());
+      runtime::log_warning("{} does not answer echo requests: frames are stamped by their arrival",
+                           description());
   }
 }
 
@@ -142,8 +142,8 @@ bool NatNetSource::read(const UdpSocket& socket, SourceFrame& frame) {
     if (from->address != server_.address) {
       ++statistics_.strangers;
       if (statistics_.strangers == 1)
-        spdlog::warn("frames of another server, {}, are left out; {} is used", from->address_text(),
-                     server_.to_string());
+        runtime::log_warning("frames of another server, {}, are left out; {} is used", from->address_text(),
+                             server_.to_string());
       continue;
     }
     if (take(arrived_ns, frame)) return true;
@@ -186,7 +186,7 @@ void NatNetSource::meet_server() {
   if (!info.version.is_supported())
     throw std::runtime_error(description() + ": NatNet " + info.version.to_string() +
                              " is not supported, 3.0 to 4.x are");
-  spdlog::info("motion capture: {}", description());
+  runtime::log_info("motion capture: {}", description());
   data_.reset();
   if (info.multicast) {
     data_.emplace("", info.data_port, true);
@@ -200,7 +200,7 @@ void NatNetSource::meet_server() {
 
 void NatNetSource::fill(SourceFrame& frame, std::int64_t arrived_ns) {
   const Time now = Clock::now();
-  if (statistics_.frames > 0 && now - silent_since_ > kSilence) ++statistics_.restarts;
+  if (statistics_.frames > 0 && now - silent_since_ > kNatNetSilence) ++statistics_.restarts;
   silent_since_ = now;
   ++statistics_.frames;
   statistics_.lost = session_.lost();

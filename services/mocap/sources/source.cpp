@@ -13,12 +13,12 @@ namespace {
 
 constexpr std::size_t kMostBodies = 1000;
 
-bool are_same(const Body& a, const Body& b) { return a.name == b.name && a.id == b.id; }
+bool are_same_body(const Body& a, const Body& b) { return a.name == b.name && a.id == b.id; }
 
 }  // namespace
 
 void Source::set_bodies(std::vector<Body> bodies) {
-  if (std::equal(bodies.begin(), bodies.end(), bodies_.begin(), bodies_.end(), are_same)) return;
+  if (std::equal(bodies.begin(), bodies.end(), bodies_.begin(), bodies_.end(), are_same_body)) return;
   bodies_ = std::move(bodies);
   ++revision_;
 }

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include <spdlog/spdlog.h>
-
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::mocap {
@@ -12,9 +11,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr auto kSilence = 1s;
+constexpr auto kViconSilence = 1s;
 // A frame whose number is lower by at most this much was overtaken; one that is lower by more begins a new count.
-constexpr std::int64_t kMostLate = 100;
+constexpr std::int64_t kMostLateFrames = 100;
 
 std::optional<Endpoint> chosen_server(const Room& room) {
   if (room.server.empty()) return std::nullopt;
@@ -48,15 +47,15 @@ bool ViconSource::receive(SourceFrame& frame, std::chrono::milliseconds timeout)
 }
 
 bool ViconSource::is_from_server(const Endpoint& from, Time now) {
-  const bool is_silent = now - heard_ > kSilence;
+  const bool is_silent = now - heard_ > kViconSilence;
   const bool is_server = chosen_   ? chosen_->address == from.address
                          : server_ ? server_->address == from.address || is_silent
                                    : true;
   if (!is_server) {
     ++statistics_.strangers;
     if (statistics_.strangers == 1)
-      spdlog::warn("frames of another server, {}, are left out; {} is used", from.address_text(),
-                   description());
+      runtime::log_warning("frames of another server, {}, are left out; {} is used", from.address_text(),
+                           description());
     return false;
   }
   if (server_ && is_silent) {
@@ -71,7 +70,7 @@ bool ViconSource::is_from_server(const Endpoint& from, Time now) {
 bool ViconSource::follows(std::uint32_t number) {
   if (last_number_) {
     const std::int64_t step = std::int64_t{number} - std::int64_t{*last_number_};
-    if (step <= 0 && step > -kMostLate) return false;
+    if (step <= 0 && step > -kMostLateFrames) return false;
     if (step > 1) statistics_.lost += static_cast<std::uint64_t>(step - 1);
   }
   last_number_ = number;

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include <spdlog/spdlog.h>
-
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::mocap {
@@ -14,7 +13,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kConnectPeriod = 500ms;
 constexpr auto kConnectPoll = 5ms;  // whether the server has accepted
-constexpr auto kSilence = 3s;       // without any message, although pings are sent: the connection is dead
+constexpr auto kVrpnSilence = 3s;   // without any message, although pings are sent: the connection is dead
 constexpr auto kPingPeriod = 50ms;
 constexpr auto kFirstPingPeriod = 10ms;  // while the clock is unknown
 constexpr auto kLongestPing = 1s;
@@ -99,7 +98,7 @@ void VrpnSource::advance(Time now) {
     if (!tcp_.receive(stream_)) return lose("closed the connection");
     if (stream_.size() >= vrpn::kCookieBytes && take_cookie()) begin();
   }
-  if (stage_ != Stage::kClosed && now - heard_ > kSilence) lose("has been silent for 3 s");
+  if (stage_ != Stage::kClosed && now - heard_ > kVrpnSilence) lose("has been silent for 3 s");
 }
 
 bool VrpnSource::take_cookie() {
@@ -122,11 +121,11 @@ void VrpnSource::begin() {
   fault_.clear();
   if (was_connected_) ++statistics_.restarts;
   was_connected_ = true;
-  spdlog::info("motion capture: {}", description());
+  runtime::log_info("motion capture: {}", description());
 }
 
 void VrpnSource::lose(const std::string& why) {
-  if (why != fault_) spdlog::warn("motion capture: VRPN at {}: {}", server_.to_string(), why);
+  if (why != fault_) runtime::log_warning("motion capture: VRPN at {}: {}", server_.to_string(), why);
   fault_ = why;
   tcp_.close();
   stage_ = Stage::kClosed;
@@ -149,7 +148,7 @@ void VrpnSource::ping_if_due(Time now) {
   const std::int64_t now_ns = runtime::monotonic_ns();
   if (pinged_ns_ && now_ns - *pinged_ns_ < std::chrono::nanoseconds(kLongestPing).count()) return;
   if (pinged_ns_ && ++unanswered_pings_ == kUnansweredPings)
-    spdlog::warn("{} does not answer pings: poses are stamped by their arrival", description());
+    runtime::log_warning("{} does not answer pings: poses are stamped by their arrival", description());
   ping_due_ = now + (clock_.is_known() ? kPingPeriod : kFirstPingPeriod);
   pinged_ns_ = now_ns;
   if (!tcp_.send(vrpn::message(runtime::system_ns(), *tracker_, kOwnPing, {}))) lose("closed the connection");

@@ -14,8 +14,7 @@
 #include "swiftlet/plant/simulation/plant_simulation.hpp"
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::attitude_recovery_test {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -104,5 +103,4 @@ TEST(AttitudeRecovery, RecoversFasterThanWithEulerAngles) {
   EXPECT_LT(rotation_s, euler_s);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::attitude_recovery_test

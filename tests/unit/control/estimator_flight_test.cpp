@@ -10,14 +10,14 @@
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/simulation/closed_loop.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::estimator_flight_test {
 
 using Eigen::Vector3d;
 using ground::ClosedLoop;
 
-const std::string kConfig = SWIFTLET_SOURCE_DIR "/config/";
+const std::string kConfig = tests::in_source("config/");
 
 plant::SimulationSettings world(const std::string& name) {
   return runtime::load_simulation_settings(kConfig + "simulation/" + name + ".yaml");
@@ -151,5 +151,4 @@ TEST_P(Latency, OfPosesKeepsTheLoopStable) {
 }
 INSTANTIATE_TEST_SUITE_P(Seconds, Latency, testing::Values(0.0, 0.01, 0.03, 0.1));
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::estimator_flight_test

@@ -14,18 +14,16 @@
 #include "swiftlet/recording/tracking.hpp"
 #include "swiftlet/simulation/simulated_flight.hpp"
 #include "tests/support/malloc_guard.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::flight_controller_test {
 
 using Eigen::Vector3d;
 using ground::ClosedLoop;
 
-plant::Vehicle kaylion() {
-  return runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
-}
+plant::Vehicle kaylion() { return runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
 ControlSettings settings(const std::string& name) {
-  return runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/" + name + ".yaml");
+  return runtime::load_control_settings(tests::in_source("config/control/") + name + ".yaml");
 }
 
 MissionItem waypoint(double x, double y, double z, double speed = 0.5) {
@@ -404,5 +402,4 @@ TEST(FlightController, RestartsWithTheVehicle) {
   EXPECT_TRUE(result.completed) << result.reason;
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::flight_controller_test

@@ -9,9 +9,9 @@
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/simulation/closed_loop.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::flown_loops_flight_test {
 
 using ground::ClosedLoop;
 
@@ -21,13 +21,11 @@ constexpr double kForce_n = 0.16;
 constexpr double kSeconds = 2.5;     // compared
 constexpr double kSample_s = 0.002;  // of the IMU
 
-plant::Vehicle kaylion() {
-  return runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
-}
+plant::Vehicle kaylion() { return runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
 // Without the disturbance observer, which would compensate the push itself.
 ControlSettings settings() {
   ControlSettings settings =
-      runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
+      runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml"));
   settings.disturbance.bandwidth = 0.0;
   return settings;
 }
@@ -119,5 +117,4 @@ TEST(FlownLoops, PredictTheMotionWithLateCommands) {
   EXPECT_LT(with_delay, 0.5 * largest_difference(motion, modelled(0.0))) << "the delay shows in the motion";
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::flown_loops_flight_test

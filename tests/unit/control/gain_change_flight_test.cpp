@@ -11,18 +11,16 @@
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/simulation/closed_loop.hpp"
 #include "tests/support/malloc_guard.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::gain_change_flight_test {
 
 using Eigen::Vector3d;
 using ground::ClosedLoop;
 
-plant::Vehicle kaylion() {
-  return runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
-}
+plant::Vehicle kaylion() { return runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
 ControlSettings motor_lag() {
-  return runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
+  return runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml"));
 }
 // Half the bandwidth of the position loop, and a softer attitude.
 ControlSettings soft() {
@@ -189,5 +187,4 @@ TEST_F(GainChangeInFlight, DoesNotAllocate) {
   EXPECT_EQ(guard.calls(), 0U);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::gain_change_flight_test

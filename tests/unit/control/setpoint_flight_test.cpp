@@ -10,9 +10,9 @@
 #include "swiftlet/math/euler.hpp"
 #include "swiftlet/simulation/closed_loop.hpp"
 #include "tests/support/malloc_guard.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::setpoint_flight_test {
 
 using Eigen::Vector3d;
 
@@ -21,7 +21,7 @@ constexpr double kPeriod_s = 0.02;
 class SetpointFlight : public testing::TestWithParam<const char*> {
  protected:
   static ControlSettings settings() {
-    return runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/" + std::string(GetParam()) +
+    return runtime::load_control_settings(tests::in_source("config/control/") + std::string(GetParam()) +
                                           ".yaml");
   }
 
@@ -73,7 +73,7 @@ class SetpointFlight : public testing::TestWithParam<const char*> {
     return setpoint;
   }
 
-  ground::ClosedLoop loop_{runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml"),
+  ground::ClosedLoop loop_{runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")),
                            plant::SimulationSettings(), settings(), 11};
 };
 
@@ -230,5 +230,4 @@ TEST_P(SetpointFlight, AllocatesNoMemoryForAnyKind) {
 INSTANTIATE_TEST_SUITE_P(WithSettings, SetpointFlight, testing::Values("motor_lag", "paper"),
                          [](const auto& settings) { return std::string(settings.param); });
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::setpoint_flight_test

@@ -9,8 +9,7 @@
 #include "swiftlet/control/planning/spline.hpp"
 #include "tests/unit/control/supervision/supervised_flight.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::trajectory_flight_test {
 
 using Eigen::Vector3d;
 using tests::SupervisedFlight;
@@ -271,5 +270,4 @@ TEST(TrajectoryChecks, RefuseMissionTrajectoriesBeyondTheSegments) {
             std::string::npos);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::trajectory_flight_test

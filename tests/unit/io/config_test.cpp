@@ -10,8 +10,7 @@
 #include "swiftlet/io/text_file.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::config_test {
 
 using tests::refusal;
 
@@ -280,5 +279,4 @@ TEST(TextFile, ReadsTheWholeFile) {
   std::filesystem::remove(path);
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::config_test

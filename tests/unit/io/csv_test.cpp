@@ -7,8 +7,7 @@
 
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::csv_test {
 
 using tests::refusal;
 
@@ -110,5 +109,4 @@ TEST(Csv, WritesNumbersThatReadBack) {
   EXPECT_EQ(std::stod(exact(1.0 / 3.0)), 1.0 / 3.0);
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::csv_test

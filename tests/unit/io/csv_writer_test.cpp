@@ -10,8 +10,7 @@
 #include "swiftlet/io/text_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::csv_writer_test {
 
 class CsvWriterTest : public testing::Test {
  protected:
@@ -69,5 +68,4 @@ TEST_F(CsvWriterTest, ReportsAFileThatCannotBeWritten) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::csv_writer_test

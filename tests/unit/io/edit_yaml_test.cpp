@@ -4,8 +4,7 @@
 
 #include "swiftlet/io/config_error.hpp"
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::edit_yaml_test {
 
 constexpr const char* kText =
     "# gains\n"
@@ -45,5 +44,4 @@ TEST(EditYaml, RefusesWhatItDoesNotFind) {
   EXPECT_THROW(with_scalars("a: &v 1\nb: *v\n", "f", {{"a", "2"}, {"b", "2"}}), ConfigError);
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::edit_yaml_test

@@ -1,13 +1,13 @@
 #include "swiftlet/io/measurements.hpp"
 
+#include <cmath>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::measurements_test {
 
 using tests::refusal;
 
@@ -26,12 +26,11 @@ std::string refused(const std::string& header, const std::vector<Quantity>& allo
 }
 
 TEST(Measurements, AcceptsCommonNamesAndUnits) {
-  constexpr double kPi = 3.14159265358979323846;
   EXPECT_DOUBLE_EQ(read("speed [rad/s]", Quantity::kSpeed), 2.0);
-  EXPECT_DOUBLE_EQ(read("omega [rpm]", Quantity::kSpeed), 2.0 * kPi / 30.0);
-  EXPECT_DOUBLE_EQ(read("Omega [RPM]", Quantity::kSpeed), 2.0 * kPi / 30.0);
-  EXPECT_DOUBLE_EQ(read("rpm", Quantity::kSpeed), 2.0 * kPi / 30.0);
-  EXPECT_DOUBLE_EQ(read("speed[Hz]", Quantity::kSpeed), 4.0 * kPi);
+  EXPECT_DOUBLE_EQ(read("omega [rpm]", Quantity::kSpeed), 2.0 * M_PI / 30.0);
+  EXPECT_DOUBLE_EQ(read("Omega [RPM]", Quantity::kSpeed), 2.0 * M_PI / 30.0);
+  EXPECT_DOUBLE_EQ(read("rpm", Quantity::kSpeed), 2.0 * M_PI / 30.0);
+  EXPECT_DOUBLE_EQ(read("speed[Hz]", Quantity::kSpeed), 4.0 * M_PI);
   EXPECT_DOUBLE_EQ(read("thrust [g]", Quantity::kThrust), 2e-3 * 9.80665);
   EXPECT_DOUBLE_EQ(read("force [mN]", Quantity::kThrust), 2e-3);
   EXPECT_DOUBLE_EQ(read("torque [mNm]", Quantity::kTorque), 2e-3);
@@ -99,16 +98,15 @@ double read_flight(const std::string& header, Quantity quantity) {
 }
 
 TEST(Measurements, AcceptsCommonNamesAndUnitsOfFlightLogs) {
-  constexpr double kPi = 3.14159265358979323846;
   EXPECT_DOUBLE_EQ(read_flight("acc_z [g]", Quantity::kSpecificForceZ), 2.0 * 9.80665);
   EXPECT_DOUBLE_EQ(read_flight("specific_force_x_frd [m/s^2]", Quantity::kSpecificForceX), 2.0);
   EXPECT_DOUBLE_EQ(read_flight("ax [mg]", Quantity::kSpecificForceX), 2e-3 * 9.80665);
-  EXPECT_DOUBLE_EQ(read_flight("gyro_x [deg/s]", Quantity::kBodyRateX), kPi / 90.0);
+  EXPECT_DOUBLE_EQ(read_flight("gyro_x [deg/s]", Quantity::kBodyRateX), M_PI / 90.0);
   EXPECT_DOUBLE_EQ(read_flight("q [rad/s]", Quantity::kBodyRateX + 1), 2.0);
   EXPECT_DOUBLE_EQ(read_flight("motor4 [0..65535]", Quantity::kMotorCommand + 3), 2.0 / 65535.0);
   EXPECT_DOUBLE_EQ(read_flight("m1 [%]", Quantity::kMotorCommand), 0.02);
   EXPECT_DOUBLE_EQ(read_flight("motor_4 [us]", Quantity::kMotorPulse + 3), 2.0);
-  EXPECT_DOUBLE_EQ(read_flight("rpm8 [rpm]", Quantity::kMotorSpeed + 7), kPi / 15.0);
+  EXPECT_DOUBLE_EQ(read_flight("rpm8 [rpm]", Quantity::kMotorSpeed + 7), M_PI / 15.0);
   EXPECT_DOUBLE_EQ(read_flight("py_enu [mm]", Quantity::kPositionX + 1), 2e-3);
   EXPECT_DOUBLE_EQ(read_flight("qw_ned_from_frd [1]", Quantity::kOrientationW), 2.0);
 }
@@ -143,5 +141,4 @@ TEST(Measurements, RefusesNumbersThatAreNotFinite) {
             "f.csv:2: rpm: is nan, must be a finite number");
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::measurements_test

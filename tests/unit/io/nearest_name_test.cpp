@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::nearest_name_test {
 
 TEST(NearestName, IsTheOneThatWasProbablyMeant) {
   const std::vector<std::string> names = {"fly", "arm", "goto", "takeoff", "trajectory"};
@@ -14,5 +13,4 @@ TEST(NearestName, IsTheOneThatWasProbablyMeant) {
   EXPECT_EQ(nearest_name({}, "fly"), "");
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::nearest_name_test

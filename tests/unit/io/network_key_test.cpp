@@ -9,8 +9,7 @@
 #include "swiftlet/io/config_error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::network_key_test {
 
 namespace fs = std::filesystem;
 
@@ -60,5 +59,4 @@ TEST_F(NetworkKeyFile, ThatIsMissingIsNamed) {
   EXPECT_THROW(read_network_keys(folder_.path() / "none.key"), ConfigError);
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::network_key_test

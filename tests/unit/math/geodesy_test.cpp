@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::math {
-namespace {
+namespace swiftlet::math::geodesy_test {
 
 TEST(Geodesy, MatchesTheWgs84Ellipsoid) {
   // A degree of latitude and of longitude at 45 deg north, WGS 84: 111,132 m and 78,847 m.
@@ -27,5 +26,4 @@ TEST(Geodesy, PositionAtIsTheInverse) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::math
+}  // namespace swiftlet::math::geodesy_test

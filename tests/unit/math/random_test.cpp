@@ -10,8 +10,7 @@
 
 #include "swiftlet/plant/simulation/streams.hpp"
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::random_test {
 
 using plant::kZiggurat;
 using plant::RandomStream;
@@ -173,5 +172,4 @@ TEST(RandomStream, DistributionsDrawTheSameBitsOnEveryMachine) {
   EXPECT_EQ(random.truncated_normal(1.0, 0.1, 0.8, 1.2), 0x1.0d6ab6c47fc08p+0);
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::random_test

@@ -1,20 +1,19 @@
 #include "swiftlet/math/riccati.hpp"
 
 #include <cmath>
+#include <complex>
 #include <random>
 #include <stdexcept>
 #include <string>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <gtest/gtest.h>
 
 #include "swiftlet/math/linear_algebra.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::riccati_test {
 
+using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
 class Random {
@@ -41,26 +40,31 @@ struct Problem {
 
 // |A'X + XA - XBR^-1B'X + Q| relative to the size of its terms.
 double residual(const Problem& p, const MatrixXd& x) {
-  const MatrixXd g = p.b * p.r.ldlt().solve(p.b.transpose());
+  const MatrixXd g = p.b * math::solve_positive_definite(p.r, p.b.transpose());
   const MatrixXd left = p.a.transpose() * x + x * p.a - x * g * x + p.q;
   return left.norm() / (2.0 * p.a.norm() * x.norm() + x.norm() * x.norm() * g.norm() + p.q.norm());
 }
 
 // X = V2 V1^-1, where [V1; V2] are the eigenvectors of the Hamiltonian [A, -BR^-1B'; -Q, -A'] left of the
-// imaginary axis (MacFarlane 1963, Potter 1966): an independent method, less exact than the code's.
+// imaginary axis (MacFarlane 1963, Potter 1966), here by inverse iteration: an independent method, less exact than the
+// code's.
 MatrixXd by_eigenvectors(const Problem& p) {
   const Eigen::Index n = p.a.rows();
   MatrixXd hamiltonian(2 * n, 2 * n);
-  hamiltonian << p.a, -p.b * p.r.ldlt().solve(p.b.transpose()), -p.q, -p.a.transpose();
-  const Eigen::EigenSolver<MatrixXd> eigen(hamiltonian);
-  Eigen::MatrixXcd stable(2 * n, n);
+  hamiltonian << p.a, -p.b * math::solve_positive_definite(p.r, p.b.transpose()), -p.q, -p.a.transpose();
+  MatrixXcd stable(2 * n, n);
   Eigen::Index found = 0;
-  for (Eigen::Index i = 0; i < 2 * n && found < n; ++i) {
-    if (eigen.eigenvalues()[i].real() < 0.0) stable.col(found++) = eigen.eigenvectors().col(i);
+  for (const std::complex<double>& value : math::eigenvalues(hamiltonian)) {
+    if (value.real() >= 0.0 || found == n) continue;
+    MatrixXcd shifted = hamiltonian;
+    shifted.diagonal().array() -= value * (1.0 + 1e-12);
+    MatrixXcd vector = MatrixXcd::Ones(2 * n, 1);
+    for (int iteration = 0; iteration < 3; ++iteration) vector = math::solve(shifted, vector).normalized();
+    stable.col(found++) = vector;
   }
-  const Eigen::MatrixXcd upper = stable.topRows(n);
-  const Eigen::MatrixXcd lower = stable.bottomRows(n);
-  return upper.transpose().fullPivLu().solve(lower.transpose()).transpose().real();
+  const MatrixXcd upper = stable.topRows(n).transpose();
+  const MatrixXcd lower = stable.bottomRows(n).transpose();
+  return math::solve(upper, lower).transpose().real();
 }
 
 Eigen::Matrix2d two_by_two(double a, double b, double c, double d) {
@@ -257,5 +261,4 @@ TEST(Riccati, RefusesProblemsWithoutASolution) {
   EXPECT_NE(refusal({integrators, force, i2 * std::nan(""), i1}).find("finite"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::riccati_test

@@ -6,15 +6,12 @@
 
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::plant {
-namespace {
+namespace swiftlet::plant::rotation_vector_test {
 
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using tests::UniformRandom;
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Rodrigues: R = 1 + sin a [n] + (1 - cos a) [n]^2.
 Matrix3d rodrigues(const Vector3d& vector) {
@@ -59,9 +56,9 @@ TEST(RotationVector, IsRecoveredFromTheQuaternion) {
 
 TEST(RotationVector, TakesTheShorterRotation) {
   const Vector3d n(0.6, 0.0, -0.8);
-  EXPECT_LT((rotation_vector(rotation(4.0 * n)) - (4.0 - 2.0 * kPi) * n).norm(), 1e-12);
-  EXPECT_LT((rotation_vector(rotation(2.0 * kPi * n))).norm(), 1e-12);
-  EXPECT_NEAR(rotation_vector(Quaterniond(0.0, 0.6, 0.0, -0.8)).norm(), kPi, 1e-12) << "half a turn";
+  EXPECT_LT((rotation_vector(rotation(4.0 * n)) - (4.0 - 2.0 * M_PI) * n).norm(), 1e-12);
+  EXPECT_LT((rotation_vector(rotation(2.0 * M_PI * n))).norm(), 1e-12);
+  EXPECT_NEAR(rotation_vector(Quaterniond(0.0, 0.6, 0.0, -0.8)).norm(), M_PI, 1e-12) << "half a turn";
 }
 
 TEST(RotationVector, RenormalisesProductsToUnitLength) {
@@ -72,5 +69,4 @@ TEST(RotationVector, RenormalisesProductsToUnitLength) {
   EXPECT_LT((renormalised(q).coeffs() - exact.coeffs()).norm(), 1e-15);
 }
 
-}  // namespace
-}  // namespace swiftlet::plant
+}  // namespace swiftlet::plant::rotation_vector_test

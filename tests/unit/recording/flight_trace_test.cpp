@@ -10,8 +10,7 @@
 
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::flight_trace_test {
 
 plant::TruthSample truth(std::int64_t stamp_ns) {
   plant::TruthSample sample;
@@ -85,5 +84,4 @@ TEST(FlightTrace, ReportsAFileThatCannotBeWritten) {
   EXPECT_THROW(full.close(), std::runtime_error);
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::flight_trace_test

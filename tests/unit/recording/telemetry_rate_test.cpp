@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::telemetry_rate_test {
 
 // Telemetry samples in the second that begins at a sequence number.
 int telemetry_samples(std::uint64_t rate_hz, std::uint64_t from) {
@@ -52,5 +51,4 @@ TEST(TelemetryRate, SelectsAllSamplesOfAnUnknownPeriod) {
   EXPECT_TRUE(is_telemetry_sample(7, 0));
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::telemetry_rate_test

@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::track_test {
 
 TEST(Track, KeepsRowsInOrderAndCountsDroppedRows) {
   Track<int> track(3);
@@ -49,5 +48,4 @@ TEST(Track, CanBeReadWhileItIsWritten) {
   EXPECT_TRUE(whole);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::track_test

@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::tracking_test {
 
 constexpr std::int64_t kStep = 2'000'000;  // ns
 
@@ -212,5 +211,4 @@ TEST(Track, KeepsRowsThatFitAndCountsTheRest) {
   EXPECT_EQ(track.dropped(), 2U);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::tracking_test

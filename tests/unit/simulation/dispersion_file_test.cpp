@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/paths.hpp"
 #include "tests/unit/ground/fault.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 #include "tests/unit/simulation/nominal_world.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::dispersion_file_test {
 
 Dispersion parse(const std::string& text) { return parse_dispersion_file(text, "v.yaml", nominal()); }
 
@@ -47,7 +47,7 @@ TEST(DispersionFile, UsesTheFileNameWithoutANameKey) { EXPECT_EQ(parse("paramete
 
 TEST(DispersionFile, LoadsTheKayLionConfiguration) {
   const Dispersion dispersion =
-      load_dispersion_file(SWIFTLET_SOURCE_DIR "/config/dispersion/kaylion.yaml", nominal());
+      load_dispersion_file(tests::in_source("config/dispersion/kaylion.yaml"), nominal());
   EXPECT_EQ(dispersion.name, "kaylion");
   EXPECT_GE(dispersion.distributions.size(), 15U);
   for (std::uint64_t seed = 0; seed < 200; ++seed) EXPECT_EQ(draw(dispersion, nominal(), seed).rejected, 0);
@@ -162,5 +162,4 @@ INSTANTIATE_TEST_SUITE_P(
               "v.yaml:3: seed: is unknown, must be one of name or parameters"}),
     name_of);
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::dispersion_file_test

@@ -12,8 +12,7 @@
 #include "tests/support/campaign.hpp"
 #include "tests/support/flight_setup.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::disturbed_flight_test {
 
 control::Mission square(const std::string& speed, const control::Limits& limits) {
   const std::string waypoint = ", speed_m_s: " + speed + "}\n";
@@ -190,5 +189,4 @@ TEST(DisturbedFlight, KnowsTheGroundEffect) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::disturbed_flight_test

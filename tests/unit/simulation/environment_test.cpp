@@ -13,10 +13,10 @@
 #include "swiftlet/plant/model/propulsion.hpp"
 #include "swiftlet/simulation/dispersion_file.hpp"
 #include "swiftlet/simulation/vector_environment.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/unit/simulation/nominal_world.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::environment_test {
 
 using plant::ControlLevel;
 
@@ -167,7 +167,7 @@ TEST(HoverEnvironment, RefusesAVehicleThatBreaksARule) {
 
 TEST(HoverEnvironment, DrawsAnotherVehicleForEachEpisode) {
   const Dispersion dispersion =
-      load_dispersion_file(SWIFTLET_SOURCE_DIR "/config/dispersion/kaylion.yaml", nominal());
+      load_dispersion_file(tests::in_source("config/dispersion/kaylion.yaml"), nominal());
   HoverTask task = task_at(ControlLevel::kRates);
   task.start_distance_m = task.start_speed_m_s = task.start_tilt_rad = task.start_rate_rad_s = 0.0;
   HoverEnvironment drawn(nominal(), task, dispersion);
@@ -271,5 +271,4 @@ TEST(VectorEnvironment, BeginsTheNextEpisodeInTheStepThatEndsOne) {
   EXPECT_EQ(seen, observed(alone));
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::environment_test

@@ -9,8 +9,7 @@
 #include "tests/support/malloc_guard.hpp"
 #include "tests/unit/simulation/default_flight.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::levels_flight_test {
 
 using plant::ControlLevel;
 
@@ -304,5 +303,4 @@ INSTANTIATE_TEST_SUITE_P(All, LevelsOverARadio,
                                          ControlLevel::kTrajectory),
                          [](const auto& level) { return std::string(plant::to_string(level.param)); });
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::levels_flight_test

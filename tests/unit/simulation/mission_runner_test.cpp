@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::mission_runner_test {
 
 using control::MissionState;
 
@@ -123,5 +122,4 @@ TEST(MissionRunner, EndsAFlightThatTakesTooLong) {
   EXPECT_EQ(vehicle.steps_, 46);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::mission_runner_test

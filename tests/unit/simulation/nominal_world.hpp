@@ -4,13 +4,14 @@
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/simulation/dispersion.hpp"
+#include "tests/support/paths.hpp"
 
 namespace swiftlet::ground {
 
 inline const World& nominal() {
   static const World world{
-      runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml"),
-      runtime::load_simulation_settings(SWIFTLET_SOURCE_DIR "/config/simulation/default.yaml")};
+      runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")),
+      runtime::load_simulation_settings(tests::in_source("config/simulation/default.yaml"))};
   return world;
 }
 

@@ -9,8 +9,7 @@
 #include "tests/support/malloc_guard.hpp"
 #include "tests/unit/simulation/default_flight.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::odometry_flight_test {
 
 using control::Mode;
 using control::OdometryUse;
@@ -231,5 +230,4 @@ INSTANTIATE_TEST_SUITE_P(Settings, OdometryFaults,
                                                                         : "both";
                          });
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::odometry_flight_test

@@ -14,8 +14,7 @@
 #include "tests/unit/plant/model/vehicles.hpp"
 #include "tests/unit/plant/simulation/paper_equations.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::open_loop_test {
 
 using tests::kaylion;
 
@@ -175,5 +174,4 @@ TEST(OpenLoop, RefusesBadInputWithFileLineColumnValueAndLimit) {
       "second row");
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::open_loop_test

@@ -18,8 +18,7 @@
 #include "swiftlet/simulation/simulated_flight.hpp"
 #include "tests/support/campaign.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::sampled_flight_test {
 
 using control::PolynomialSegment;
 using control::PositionYaw;
@@ -161,5 +160,4 @@ TEST(SampledFlight, AddsAtMostAMillimetreToTheError) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::sampled_flight_test

@@ -10,8 +10,7 @@
 #include "swiftlet/plant/model/propulsion.hpp"
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::allocator_test {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -253,5 +252,4 @@ TEST(Allocator, RefusesRotorsThatCannotGiveAllMoments) {
   EXPECT_THROW(Allocator{vehicle}, std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::allocator_test

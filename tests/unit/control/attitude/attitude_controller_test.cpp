@@ -11,8 +11,7 @@
 #include "swiftlet/math/euler.hpp"
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::attitude_controller_test {
 
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
@@ -109,8 +108,8 @@ struct Law {
     const Vector3d gyroscopic = rates.cross(inertia * rates);
     Vector3d wanted = command;
     if (model == AttitudeModel::kMotorLag)
-      wanted += k_acceleration.asDiagonal() *
-                (accelerations_r - inertia.fullPivLu().solve(present_moment - gyroscopic)).eval();
+      wanted +=
+          k_acceleration.asDiagonal() * (accelerations_r - inertia.inverse() * (present_moment - gyroscopic));
     return inertia * wanted + gyroscopic;
   }
   static Matrix3d matrix_of(const Vector3d& euler) {
@@ -349,5 +348,4 @@ TEST_P(AttitudeControllerTest, RatesAreThoseAtWhichTheLawAsksForNoMoment) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::attitude_controller_test

@@ -7,8 +7,7 @@
 
 #include "swiftlet/math/euler.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::attitude_error_test {
 
 using Eigen::AngleAxisd;
 using Eigen::Matrix3d;
@@ -118,5 +117,4 @@ TEST_F(AttitudeErrorTest, IsLargeAndFiniteUpsideDown) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::attitude_error_test

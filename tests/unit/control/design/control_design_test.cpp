@@ -7,15 +7,14 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/math/angles.hpp"
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::control_design_test {
 
 using Eigen::Vector3d;
 
 constexpr double kLag = 0.0821;
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 LqrWeights weights(double q1, double q2 = 0.0, double q3 = 0.0, double r = 1.0) {
   return {Vector3d(q1, q2, q3), r};
@@ -37,7 +36,7 @@ double scanned_margin_deg(const Loop& loop) {
     const double omega = 1e-3 * std::exp(1e-3 * i);  // to 9e3 rad/s
     const std::complex<double> response = frequency_response(loop, omega);
     const double gain = std::log(std::abs(response));
-    const double here = std::arg(-response) * kDegrees;
+    const double here = std::arg(-response) * math::kDegPerRad;
     if ((gain > 0.0) != (before > 0.0) && std::abs(here) < std::abs(margin)) margin = here;
     before = gain;
   }
@@ -203,5 +202,4 @@ TEST(ControlDesign, RefusesInvalidSettings) {
   EXPECT_THROW(design(without_lag, settings(AttitudeModel::kMotorLag)), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::control_design_test

@@ -6,15 +6,15 @@
 #include "swiftlet/control/design/margins.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::control_gains_test {
 
 ControlGains gains_of(const std::string& name) {
   const ControlSettings settings =
-      runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/" + name + ".yaml");
+      runtime::load_control_settings(tests::in_source("config/control/") + name + ".yaml");
   return control_gains(
-      design(runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml"), settings), settings);
+      design(runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")), settings), settings);
 }
 
 constexpr double kLag_s = 0.0821;
@@ -70,5 +70,4 @@ TEST(GainChange, BetweenTwoStableSetsIsCheckedToo) {
   EXPECT_NE(fault->message.find(" of the change"), std::string::npos) << fault->message;
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::control_gains_test

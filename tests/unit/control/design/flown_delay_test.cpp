@@ -7,15 +7,13 @@
 #include "swiftlet/control/design/margins.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::flown_delay_test {
 
-plant::Vehicle kaylion() {
-  return runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
-}
+plant::Vehicle kaylion() { return runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
 ControlSettings settings(const std::string& name) {
-  return runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/" + name + ".yaml");
+  return runtime::load_control_settings(tests::in_source("config/control/") + name + ".yaml");
 }
 
 double slowest_pole(const Loop& loop) {
@@ -53,5 +51,4 @@ TEST(FlownDelay, IsZeroForALoopThatIsUnstableWithoutDelay) {
   EXPECT_EQ(flown_delay_margins(broken, of)[2], 0.0);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::flown_delay_test

@@ -11,17 +11,13 @@
 #include "swiftlet/control/design/margins.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::flown_loops_test {
 
-constexpr double kPi = 3.14159265358979323846;
-
-plant::Vehicle kaylion() {
-  return runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
-}
+plant::Vehicle kaylion() { return runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
 ControlSettings settings(const std::string& name) {
-  return runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/" + name + ".yaml");
+  return runtime::load_control_settings(tests::in_source("config/control/") + name + ".yaml");
 }
 std::array<FlownLoop, 6> loops(const std::string& name, double delay_s) {
   const ControlSettings of = settings(name);
@@ -51,7 +47,7 @@ TEST(StepResponse, OfASecondOrderLoopIsTheClosedForm) {
                                    (std::cos(damped * t) + kZeta * kOmega / damped * std::sin(damped * t));
     ASSERT_NEAR(response[i], exact, 1e-9) << "at " << t << " s";
   }
-  const double overshoot = std::exp(-kPi * kZeta / std::sqrt(1.0 - kZeta * kZeta));
+  const double overshoot = std::exp(-M_PI * kZeta / std::sqrt(1.0 - kZeta * kZeta));
   EXPECT_NEAR(*std::max_element(response.begin(), response.end()), 1.0 + overshoot, 1e-3);
 }
 
@@ -84,7 +80,7 @@ TEST(FlownLoops, LoseThePhaseOfTheDelay) {
     const double omega = crossovers(without[axis].loop).front();
     EXPECT_NEAR(crossovers(with[axis].loop).front(), omega, 1e-6);
     EXPECT_NEAR(phase_margin_deg(with[axis].loop),
-                phase_margin_deg(without[axis].loop) - omega * kDelay_s * 180.0 / kPi, 1e-3);
+                phase_margin_deg(without[axis].loop) - omega * kDelay_s * 180.0 / M_PI, 1e-3);
     EXPECT_NEAR(margins(with[axis].loop).delay_s, margins(without[axis].loop).delay_s - kDelay_s, 1e-4);
   }
 }
@@ -141,5 +137,4 @@ TEST(FlownLoops, OfTheAttitudeIncludeTheMomentObserverOfTheIncrementalLaw) {
   EXPECT_GT(std::abs(margin(DisturbanceLaw::kIncremental, 0.02) - margin(DisturbanceLaw::kLead, 0.02)), 0.1);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::flown_loops_test

@@ -10,9 +10,9 @@
 #include "swiftlet/control/design/margins.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::level_loops_test {
 
 using plant::ControlLevel;
 
@@ -31,10 +31,9 @@ VehicleLoops plain_loops() {
 }
 
 ControlGains gains() {
-  const plant::Vehicle vehicle =
-      runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/crazyflie2.yaml");
+  const plant::Vehicle vehicle = runtime::load_vehicle(tests::in_source("config/vehicles/crazyflie2.yaml"));
   const ControlSettings settings =
-      runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
+      runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml"));
   return control_gains(design(vehicle, settings), settings);
 }
 
@@ -104,5 +103,4 @@ TEST(LevelLoops, OfTheVehicleFollowItsPosition) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::level_loops_test

@@ -8,10 +8,7 @@
 
 #include "swiftlet/control/design/control_design.hpp"
 
-namespace swiftlet::control {
-namespace {
-
-constexpr double kPi = 3.14159265358979323846;
+namespace swiftlet::control::margins_test {
 
 // k / (s (s + 1) (s + 2)): crosses -180 degrees at sqrt(2) rad/s, where its gain is k / 6.
 Loop third_order(double k) {
@@ -41,8 +38,8 @@ TEST(Margins, MatchTheClosedForm) {
   EXPECT_NEAR(m.gain_increase, 3.0, 1e-9);
   EXPECT_EQ(m.gain_decrease, 0.0);
   const double omega = crossovers(third_order(2.0)).front();
-  EXPECT_NEAR(m.delay_s, m.phase_deg * kPi / 180.0 / omega, 1e-12);
-  EXPECT_NEAR(m.phase_deg, 180.0 - 90.0 - (std::atan(omega) + std::atan(omega / 2.0)) * 180.0 / kPi, 1e-9);
+  EXPECT_NEAR(m.delay_s, m.phase_deg * M_PI / 180.0 / omega, 1e-12);
+  EXPECT_NEAR(m.phase_deg, 180.0 - 90.0 - (std::atan(omega) + std::atan(omega / 2.0)) * 180.0 / M_PI, 1e-9);
 }
 
 TEST(Margins, OfAnUnstableLoopAreZero) {
@@ -103,5 +100,4 @@ TEST(Margins, OfAnLqrOnItsModelSatisfyKalmansInequality) {
   EXPECT_TRUE(std::isinf(m.gain_increase));
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::margins_test

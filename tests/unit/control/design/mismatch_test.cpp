@@ -10,10 +10,10 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/io/settings/control_settings_file.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::mismatch_test {
 
 using tests::kaylion;
 
@@ -21,7 +21,7 @@ constexpr double kSupply = 4.0;
 
 const ControlDesign& motor_lag() {
   static const ControlDesign made =
-      design(kaylion(), runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml"));
+      design(kaylion(), runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml")));
   return made;
 }
 
@@ -181,5 +181,4 @@ TEST(Mismatch, UnstableLoopsHaveNoMargin) {
   EXPECT_LE(*std::min_element(found.begin(), found.end()), 0.0);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::mismatch_test

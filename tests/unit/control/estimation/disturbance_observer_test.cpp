@@ -9,8 +9,7 @@
 #include "swiftlet/math/euler.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::disturbance_observer_test {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -107,5 +106,4 @@ TEST(DisturbanceObserver, IsStableAtLongSteps) {
   EXPECT_LT((observer.acceleration_ned() - kWind).norm(), 1e-9);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::disturbance_observer_test

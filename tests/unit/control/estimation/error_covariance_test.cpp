@@ -8,8 +8,7 @@
 
 #include "tests/unit/control/estimation/inverse.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::error_covariance_test {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -98,6 +97,7 @@ TEST_F(Covariance, PropagatesAndGrowsByTheNoise) {
     }
     covariance.advance(interval_of(f, r, t), noise);
     EXPECT_LT((covariance.matrix() - expected).norm(), 1e-13 * expected.norm()) << t;
+    EXPECT_EQ(covariance.matrix(), covariance.matrix().transpose()) << t;
   }
 }
 
@@ -166,5 +166,4 @@ TEST_F(Covariance, IsUncorrelatedAfterReset) {
   EXPECT_LT((covariance.standard_deviation() - sigma).norm(), 1e-15);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::error_covariance_test

@@ -12,8 +12,7 @@
 #include "tests/unit/control/estimation/estimator_motion.hpp"
 #include "tests/unit/control/estimation/inverse.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::estimator_consistency_test {
 
 using Eigen::Vector3d;
 using Matrix15 = Eigen::Matrix<double, kErrorStates, kErrorStates>;
@@ -246,5 +245,4 @@ TEST(EstimatorConsistency, AllocatesNoMemory) {
   EXPECT_TRUE(std::isfinite(sum));
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::estimator_consistency_test

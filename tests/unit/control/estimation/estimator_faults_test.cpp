@@ -9,8 +9,7 @@
 #include "swiftlet/control/estimation/estimator.hpp"
 #include "tests/unit/control/estimation/estimator_motion.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::estimator_faults_test {
 
 using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
@@ -487,5 +486,4 @@ TEST_F(EstimatorFaults, ImuGapGrowsTheCovariance) {
   EXPECT_LT(position_error(), 2e-3);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::estimator_faults_test

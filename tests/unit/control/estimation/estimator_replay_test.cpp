@@ -10,14 +10,14 @@
 
 #include "swiftlet/control/estimation/estimator.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::estimator_replay_test {
 
 constexpr std::size_t kAtRest = 200;  // rows
 
 std::vector<plant::PoseSample> session() {
-  std::ifstream file(SWIFTLET_SOURCE_DIR "/tests/data/optitrack_poses.csv");
+  std::ifstream file(tests::in_source("tests/data/optitrack_poses.csv"));
   std::string names;
   std::getline(file, names);
   std::vector<plant::PoseSample> poses;
@@ -61,5 +61,4 @@ TEST(EstimatorReplay, AcceptsARecordedSessionAtRest) {
   EXPECT_LT(innovations, 10.0);  // 6 with the noise that the filter assumes
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::estimator_replay_test

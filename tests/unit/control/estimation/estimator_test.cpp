@@ -7,8 +7,7 @@
 
 #include "tests/unit/control/estimation/estimator_motion.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::estimator_test {
 
 using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
@@ -274,5 +273,4 @@ TEST(Estimator, RefusesAPoseOlderThanItsHistory) {
   EXPECT_FALSE(estimator.correct(Motion::pose(3 * kStep_ns, 2)));
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::estimator_test

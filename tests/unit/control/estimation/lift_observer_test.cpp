@@ -8,8 +8,7 @@
 
 #include "swiftlet/plant/model/vehicle.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::lift_observer_test {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -118,5 +117,4 @@ TEST(LiftObserver, IgnoresInvalidInputAndStaysWithinItsBounds) {
   EXPECT_EQ(observer.ratio(), 1.0);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::lift_observer_test

@@ -7,8 +7,7 @@
 
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::moment_observer_test {
 
 using Eigen::Vector3d;
 
@@ -98,5 +97,4 @@ TEST(MomentObserver, StaysWithinItsLimits) {
   EXPECT_LT((observer.moment_frd() - kLimit_frd.cwiseProduct(Vector3d(-1.0, 1.0, -0.5))).norm(), 1.0e-9);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::moment_observer_test

@@ -5,8 +5,7 @@
 #include "swiftlet/math/rotation_vector.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::odometry_motion_test {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -70,5 +69,4 @@ TEST(OdometryMotion, WithoutVelocityIsTheThrust) {
       << "the ground carries it";
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::odometry_motion_test

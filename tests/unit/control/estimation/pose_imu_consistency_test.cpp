@@ -7,8 +7,7 @@
 
 #include "tests/unit/control/estimation/estimator_motion.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::pose_imu_consistency_test {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -95,5 +94,4 @@ TEST(PoseImuConsistencyTest, RestartsAfterBegin) {
   EXPECT_EQ(update(0.5), Result::kAgree);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::pose_imu_consistency_test

@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::pose_stream_test {
 
 using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
@@ -223,5 +222,4 @@ TEST(PoseContinuity, HasNoVelocityBeforeFivePoses) {
   EXPECT_LT((continuity.velocity_ned() - Vector3d(1.0, 0.0, 0.0)).norm(), 1e-9);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::pose_stream_test

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::poses_ahead_test {
 
 plant::PoseSample pose(std::int64_t stamp_ns) {
   plant::PoseSample out;
@@ -36,5 +35,4 @@ TEST(PosesAhead, OnlySoManyWait) {
   EXPECT_FALSE(poses.take(100).has_value());
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::poses_ahead_test

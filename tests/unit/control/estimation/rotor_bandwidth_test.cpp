@@ -7,8 +7,7 @@
 #include "swiftlet/control/estimation/rotor_observer.hpp"
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::rotor_bandwidth_test {
 
 constexpr double kBandwidth = 112.0;  // rad/s
 constexpr std::int64_t kStart_ns = 1'000'000'000;
@@ -44,5 +43,4 @@ TEST(RotorObserverStamps, IgnoresRepeatedAndLateSamples) {
   EXPECT_EQ(observer.speeds(), speeds);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::rotor_bandwidth_test

@@ -7,8 +7,7 @@
 
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::rotor_observer_test {
 
 using Eigen::Vector3d;
 using tests::kaylion;
@@ -144,5 +143,4 @@ TEST(RotorObserver, IgnoresSamplesThatAreNotMeasurements) {
   EXPECT_EQ(observer.speeds(), before);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::rotor_observer_test

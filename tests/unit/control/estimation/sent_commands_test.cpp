@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::sent_commands_test {
 
 constexpr std::int64_t kPeriodNs = 2'000'000;
 constexpr double kPeriod_s = 0.002;
@@ -66,5 +65,4 @@ TEST(SentCommands, BoundsTheDelay) {
   EXPECT_EQ(commands.obeyed_thrust_n(), 1999.0);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::sent_commands_test

@@ -7,8 +7,7 @@
 #include "swiftlet/plant/model/propulsion.hpp"
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::supply_observer_test {
 
 constexpr double kStep_s = 0.002;
 
@@ -52,5 +51,4 @@ TEST(SupplyObserver, AMeasurementIsTheVoltageNow) {
   EXPECT_DOUBLE_EQ(observer.voltage_v(), 3.8);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::supply_observer_test

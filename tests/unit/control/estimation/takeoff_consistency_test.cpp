@@ -6,8 +6,7 @@
 
 #include "swiftlet/plant/model/vehicle.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::takeoff_consistency_test {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -110,5 +109,4 @@ TEST(TakeoffConsistencyMonitor, EndsOnceThePoseShowsTheClimb) {
   EXPECT_FALSE(climb(monitor, 1.0, 0.0).contradicted);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::takeoff_consistency_test

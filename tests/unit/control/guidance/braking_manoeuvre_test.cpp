@@ -10,8 +10,7 @@
 #include "swiftlet/math/random.hpp"
 #include "tests/support/malloc_guard.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::braking_manoeuvre_test {
 
 using Eigen::Vector3d;
 
@@ -122,5 +121,4 @@ TEST(BrakingManoeuvre, AllocatesNoMemory) {
   EXPECT_GT(segment.duration_s, 0.0);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::braking_manoeuvre_test

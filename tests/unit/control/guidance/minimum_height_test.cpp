@@ -9,8 +9,7 @@
 #include "swiftlet/math/random.hpp"
 #include "tests/unit/control/supervision/supervised_flight.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::minimum_height_test {
 
 using Eigen::Vector3d;
 using tests::SupervisedFlight;
@@ -217,5 +216,4 @@ TEST_F(MinimumHeight, HoldsWhileRequestsInterruptEachOther) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::minimum_height_test

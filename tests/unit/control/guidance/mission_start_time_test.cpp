@@ -7,8 +7,7 @@
 
 #include "tests/unit/control/supervision/supervised_flight.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::mission_start_time_test {
 
 constexpr double kSpoolUp_s = 0.8;
 
@@ -99,5 +98,4 @@ TEST_F(MissionStartTime, IsTakenBackByDisarmAndByLand) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::mission_start_time_test

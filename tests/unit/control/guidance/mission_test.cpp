@@ -11,8 +11,7 @@
 #include "swiftlet/control/planning/waypoint_path.hpp"
 #include "tests/unit/control/supervision/supervised_flight.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::mission_test {
 
 using Eigen::Vector3d;
 using tests::SupervisedFlight;
@@ -547,5 +546,4 @@ TEST(MissionBounds, HoldForGivenTrajectories) {
   EXPECT_STREQ(check(mission, limits).reason, too_fast) << "to the left as to the right";
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::mission_test

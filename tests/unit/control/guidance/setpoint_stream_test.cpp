@@ -9,8 +9,7 @@
 
 #include "tests/unit/control/supervision/supervised_flight.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::setpoint_stream_test {
 
 using Eigen::Vector3d;
 using tests::SupervisedFlight;
@@ -332,5 +331,4 @@ TEST_F(Stream, IgnoresFieldsThatAKindDoesNotUse) {
   EXPECT_EQ(refusal(setpoint), "accepted");
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::setpoint_stream_test

@@ -7,8 +7,7 @@
 
 #include "swiftlet/control/guidance/reference_path.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::time_scaling_test {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
@@ -126,5 +125,4 @@ TEST(TimeScaling, TakingVehicleTimeKeepsTheReference) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::time_scaling_test

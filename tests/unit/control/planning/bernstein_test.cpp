@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::bernstein_test {
 
 Polynomial random_polynomial(std::mt19937& generator) {
   std::uniform_real_distribution<double> coefficient(-1.0, 1.0);
@@ -134,5 +133,4 @@ TEST(Bernstein, BoundsTheExtremaWhenSubdivisionsDoNotSuffice) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::bernstein_test

@@ -8,8 +8,7 @@
 
 #include "swiftlet/control/types/polynomial.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::checks_test {
 
 TEST(PlanChecks, RefuseMissionsWithItemValueAndLimit) {
   const Limits limits;
@@ -64,5 +63,4 @@ TEST(PlanChecks, RefuseDiscontinuousOutsideOrFastTrajectories) {
   EXPECT_NE(std::string(check(trajectory, limits).reason).find("duration"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::checks_test

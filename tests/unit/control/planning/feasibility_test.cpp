@@ -8,8 +8,7 @@
 #include "swiftlet/plant/model/propulsion.hpp"
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::feasibility_test {
 
 constexpr double kSupply_v = 3.7;
 
@@ -146,5 +145,4 @@ TEST(Feasibility, MessageNamesValueLimitAndPosition) {
   EXPECT_TRUE(worst.exceeded());
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::feasibility_test

@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::smoothing_spline_test {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
@@ -163,5 +162,4 @@ TEST(SmoothingSplines, StandStillExactly) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::smoothing_spline_test

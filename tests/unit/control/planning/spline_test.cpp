@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::spline_test {
 
 using Eigen::Vector3d;
 
@@ -198,5 +197,4 @@ INSTANTIATE_TEST_SUITE_P(Costs, Splines, testing::Values(Smoothness::kMinimumJer
                                                                                : "MinimumJerk";
                          });
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::spline_test

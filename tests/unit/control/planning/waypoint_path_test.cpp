@@ -7,8 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::waypoint_path_test {
 
 using Eigen::Vector3d;
 
@@ -287,5 +286,4 @@ TEST(Path, RefusesInvalidInput) {
             "the path has 1026 points, at most 1025 fit");
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::waypoint_path_test

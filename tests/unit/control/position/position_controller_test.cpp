@@ -9,8 +9,7 @@
 #include "swiftlet/control/types/polynomial.hpp"
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::position_controller_test {
 
 using Eigen::Vector3d;
 
@@ -150,5 +149,4 @@ TEST(PositionController, InvalidInputDoesNotChangeTheIntegral) {
             Vector3d::Zero());
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::position_controller_test

@@ -10,8 +10,7 @@
 #include "swiftlet/control/types/polynomial.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::thrust_attitude_map_test {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -162,5 +161,4 @@ TEST_F(ThrustAttitudeTest, FreeFallReferenceHasNoDerivatives) {
   EXPECT_EQ(out.thrust_rate, 0.0);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::thrust_attitude_map_test

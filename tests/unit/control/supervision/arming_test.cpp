@@ -6,8 +6,7 @@
 
 #include "tests/unit/control/placed_flight.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::arming_test {
 
 // An arming check: accepted at its limit, refused with a sentence just beyond it.
 struct ArmingLimit {
@@ -116,5 +115,4 @@ TEST(ArmingRefusal, ListsAllReasonsInWholeSentences) {
   EXPECT_GE(sentences, 3U);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::arming_test

@@ -4,8 +4,7 @@
 #include "swiftlet/control/supervision/supervisor.hpp"
 #include "tests/unit/control/supervision/flight_fixture.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::continued_flight_test {
 
 using Eigen::Vector3d;
 
@@ -70,5 +69,4 @@ TEST_F(ContinuedFlight, FailoverWithAnUnknownMissionHolds) {
   EXPECT_EQ(control_setpoint_.reference.velocity_ned, Vector3d::Zero());
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::continued_flight_test

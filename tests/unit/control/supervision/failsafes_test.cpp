@@ -4,8 +4,7 @@
 #include "swiftlet/control/supervision/supervisor.hpp"
 #include "tests/unit/control/supervision/flight_fixture.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::failsafes_test {
 
 using Eigen::Vector3d;
 using tests::SupervisedFlight;
@@ -153,5 +152,4 @@ TEST_F(FlightFailsafes, FailsafeOverridesARequestOfTheSameStep) {
   EXPECT_EQ(supervisor_.mode(), Mode::kDescent);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::failsafes_test

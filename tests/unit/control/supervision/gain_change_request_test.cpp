@@ -7,8 +7,7 @@
 #include "swiftlet/control/types/gains.hpp"
 #include "tests/unit/control/placed_flight.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::gain_change_request_test {
 
 class GainChangeRequest : public testing::Test {
  protected:
@@ -105,5 +104,4 @@ TEST_F(GainChangeRequest, SucceedsWhenTheRotorsStop) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::gain_change_request_test

@@ -7,8 +7,7 @@
 
 #include "tests/unit/control/supervision/supervised_flight.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::request_progress_test {
 
 using Eigen::Vector3d;
 using tests::SupervisedFlight;
@@ -325,5 +324,4 @@ TEST_F(RequestProgress, UnknownMissionIsAborted) {
   EXPECT_EQ(end_of(asked_), "aborted aborted: mission or trajectory unknown after failover");
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::request_progress_test

@@ -5,8 +5,7 @@
 #include "swiftlet/control/supervision/supervisor.hpp"
 #include "tests/unit/control/supervision/flight_fixture.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::supervised_mission_test {
 
 using Eigen::Vector3d;
 
@@ -65,5 +64,4 @@ TEST_F(SupervisedMission, PausesNoMissionThatRisesFromTheGround) {
   EXPECT_EQ(supervisor_.mission().state, MissionState::kCompleted);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::supervised_mission_test

@@ -9,8 +9,7 @@
 #include "swiftlet/control/planning/checks.hpp"
 #include "tests/unit/control/supervision/flight_fixture.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::supervisor_test {
 
 using Eigen::Vector3d;
 
@@ -164,5 +163,4 @@ TEST_F(Supervision, FliesATrajectoryFromItsStartToItsEnd) {
   EXPECT_NEAR((estimate_.position_ned - Vector3d(0, 1, -1.5)).norm(), 0.0, 1e-3);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::supervisor_test

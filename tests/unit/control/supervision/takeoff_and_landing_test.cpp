@@ -6,8 +6,7 @@
 #include "swiftlet/control/supervision/supervisor.hpp"
 #include "tests/unit/control/supervision/flight_fixture.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::takeoff_and_landing_test {
 
 using tests::SupervisedFlight;
 
@@ -169,5 +168,4 @@ TEST_F(TakeoffAndLanding, LiftRisesSlowerOverALinkWithDelay) {
   EXPECT_NEAR(steepest_rise(0.16), 0.5, 1e-6);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::takeoff_and_landing_test

@@ -7,12 +7,12 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/control/supervision/transitions.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::transitions_document_test {
 
-const char kFile[] = SWIFTLET_SOURCE_DIR "/control/supervision/README.md";
-const std::string kBegin = "<!-- table: written by flight_controller_test -->\n";
+const std::string kFile = tests::in_source("control/supervision/README.md");
+const std::string kBegin = "<!-- table: written by control_test -->\n";
 const std::string kEnd = "<!-- end of the table -->\n";
 
 std::string text_of(const ModeSet& modes) {
@@ -54,5 +54,4 @@ TEST(TransitionsDocument, ShowsTheTableOfTheCode) {
   FAIL() << "control/supervision/README.md differs from the code's table: copy " << written << " there";
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::transitions_document_test

@@ -14,8 +14,7 @@
 #include "swiftlet/control/types/gains.hpp"
 #include "tests/unit/control/placed_flight.hpp"
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::transitions_test {
 
 // The columns of the grid below. A small letter is a situation within a mode.
 struct Place {
@@ -538,5 +537,4 @@ TEST_F(GroundLinks, LossOnTheGroundDoesNotEndTheNextFlight) {
   EXPECT_EQ(flight_.mode(), Mode::kHolding);
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::transitions_test

@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::gains_test {
 
 GainChange change() {
   GainChange out;
@@ -59,5 +58,4 @@ TEST(SettingsName, IsCutToItsLength) {
   EXPECT_EQ(std::string(settings_name(std::string(50, 'a')).data()), std::string(kMaxSettingsName, 'a'));
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::gains_test

@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::control {
-namespace {
+namespace swiftlet::control::polynomial_test {
 
 using Eigen::Vector3d;
 
@@ -236,5 +235,4 @@ TEST(Join, RestToRestDurationReachesAPeakLimit) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::control
+}  // namespace swiftlet::control::polynomial_test

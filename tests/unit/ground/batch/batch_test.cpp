@@ -17,10 +17,10 @@
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/services/runtime/child_process.hpp"
 #include "tests/support/hop_mission.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::batch_test {
 
 const std::string kMass =
     "  vehicle.mass: {distribution: uniform, min: 0.95, max: 1.05, unit: nominal, source: estimate}\n";
@@ -40,7 +40,7 @@ const std::string kDropouts =
 class BatchTest : public testing::Test {
  protected:
   FlyOptions options(const std::string& parameters) const {
-    const std::string config = SWIFTLET_SOURCE_DIR "/config/";
+    const std::string config = tests::in_source("config/");
     FlyOptions options;
     options.launch_mode = LaunchMode::kInProcess;
     options.mission = folder_.write("hop.yaml", tests::kHopMission);
@@ -273,5 +273,4 @@ TEST_F(BatchTest, ReportsWhyNoPictureIsDrawn) {
   EXPECT_EQ(draw_batch(folder_.path(), {}), "no picture was drawn: no run has a tracking error");
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::batch_test

@@ -9,9 +9,9 @@
 
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::gains_report_test {
 
 using Json = nlohmann::json;
 
@@ -20,7 +20,7 @@ constexpr FlownDelays kDelays_s = {0.041, 0.042, kAny, 0.031, 0.032, 0.033};
 
 control::ControlSettings settings(control::AttitudeModel model, double integral_pole) {
   control::ControlSettings s =
-      runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
+      runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml"));
   s.attitude.model = model;
   s.attitude.roll = {Eigen::Vector3d(625.0, 2.0, 0.5), 4.0};
   s.attitude.pitch = {Eigen::Vector3d(500.0, 2.0, 0.5), 4.0};
@@ -30,7 +30,7 @@ control::ControlSettings settings(control::AttitudeModel model, double integral_
 }
 
 control::ControlDesign design(control::AttitudeModel model, double integral_pole) {
-  const plant::Vehicle vehicle = runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+  const plant::Vehicle vehicle = runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
   return control::design(vehicle, settings(model, integral_pole));
 }
 
@@ -109,5 +109,4 @@ TEST(Gains, HoldTheDelayOfEachLoopInFlight) {
   EXPECT_NE(table.find("\n  yaw       any\n"), std::string::npos) << table;
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::gains_report_test

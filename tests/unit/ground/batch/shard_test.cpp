@@ -12,8 +12,7 @@
 #include "swiftlet/io/config_error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::shard_test {
 
 TEST(Shard, BlocksCoverAllRunsOnce) {
   for (const std::size_t runs : {std::size_t{1}, std::size_t{7}, std::size_t{100}, std::size_t{1'000'000}}) {
@@ -163,5 +162,4 @@ TEST_F(ShardFile, RefusesDamagedFiles) {
   expect_damage(good.substr(0, good.size() / 2), "parse error");
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::shard_test

@@ -6,8 +6,7 @@
 #include "swiftlet/control/supervision/request_status.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::action_test {
 
 using control::Event;
 using control::Reason;
@@ -83,5 +82,4 @@ TEST(Interruption, NamesWhatAnotherToolSent) {
   EXPECT_EQ(interruption_by({ActionResult::Kind::kCanceled, "replaced"}), "mission interrupted: replaced");
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::action_test

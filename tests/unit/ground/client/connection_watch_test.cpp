@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::connection_watch_test {
 
 using Kind = ConnectionEvent::Kind;
 using namespace std::chrono_literals;
@@ -65,5 +64,4 @@ TEST_F(ConnectionWatchTest, ReportsAReplacedControllerWithAndWithoutTimeout) {
   EXPECT_EQ(look_after(0ms)->kind, Kind::kReplaced);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::connection_watch_test

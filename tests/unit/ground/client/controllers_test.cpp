@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::controllers_test {
 
 using namespace std::chrono_literals;
 
@@ -60,5 +59,4 @@ TEST(LiveControllers, AreNotThoseThatAreSilent) {
   EXPECT_EQ(text_of(view), "0");
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::controllers_test

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::discovery_test {
 
 using Words = std::vector<std::string>;
 
@@ -18,5 +17,4 @@ TEST(VehicleDiscovery, FindsVehiclesThatPublish) {
   EXPECT_EQ(listed({}), "");
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::discovery_test

@@ -10,8 +10,7 @@
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::ground_signals_test {
 
 namespace msg = comms::msg;
 using tests::eventually;
@@ -101,5 +100,4 @@ TEST_F(GroundSignals, SimulationClockRunsOneWindowAheadUpToTheGoal) {
   ASSERT_TRUE(arrives(3'100));
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::ground_signals_test

@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::silence_test {
 
 using namespace std::chrono_literals;
 
@@ -108,5 +107,4 @@ TEST(PoseAge, GrowsWhileControlIsSilent) {
   EXPECT_DOUBLE_EQ(pose_age_s(healthy(3s), kNow), 3.01);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::silence_test

@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::vehicle_setpoints_test {
 
 using control::Setpoint;
 using control::SetpointKind;
@@ -49,5 +48,4 @@ TEST(VehicleSetpoints, AttitudeAndBodyRatesHaveThrust) {
   EXPECT_EQ(rates.specific_thrust, 8.0);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::vehicle_setpoints_test

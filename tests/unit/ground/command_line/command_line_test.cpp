@@ -3,8 +3,7 @@
 
 #include "swiftlet/ground/cli/commands.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::command_line_test {
 
 class CommandLine : public testing::Test {
  protected:
@@ -83,11 +82,11 @@ TEST_F(CommandLine, TakeoffRequiresAPositiveHeight) {
 
 TEST_F(CommandLine, FlyAcceptsSupportedRates) {
   EXPECT_TRUE(parses("fly square --imu-rate 1000"));
-  EXPECT_TRUE(parses("fly square --imu-rate 500 --seed 3 --domain 232 --json --transport shm"));
+  EXPECT_TRUE(parses("fly square --imu-rate 500 --seed 3 --domain 232 --json --clock lockstep"));
   EXPECT_FALSE(parses("fly square --imu-rate 800"));
   EXPECT_TRUE(parses("fly"));
   EXPECT_FALSE(parses("fly square --seed -1"));
-  EXPECT_FALSE(parses("fly square --transport pigeon"));
+  EXPECT_FALSE(parses("fly square --clock sundial"));
 }
 
 TEST_F(CommandLine, RefusesInvalidDomainsAndVehicleNames) {
@@ -113,5 +112,4 @@ TEST_F(CommandLine, RefusesUnknownWords) {
   EXPECT_FALSE(parses(""));
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::command_line_test

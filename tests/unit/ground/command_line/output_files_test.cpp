@@ -7,8 +7,7 @@
 #include "swiftlet/ground/command_line/command.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::output_files_test {
 
 TEST(OutputFiles, MustNotOverwriteInputs) {
   const tests::TemporaryFolder folder;
@@ -28,5 +27,4 @@ TEST(OutputFiles, MustBeDistinct) {
   EXPECT_NO_THROW(refuse_overwriting({{"--out", ""}, {"--report", ""}}, {}));
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::output_files_test

@@ -12,15 +12,15 @@
 
 #include "swiftlet/ground/fleet/fleet_plot.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::fleet_check_test {
 
 using nlohmann::json;
 using tests::TemporaryFolder;
 
-const std::string kFleets = SWIFTLET_SOURCE_DIR "/config/fleets/";
+const std::string kFleets = tests::in_source("config/fleets/");
 const std::string kHead =
     "frame: ned\nvehicle: crazyflie2\nsafety: {radius_xy_m: 0.15, radius_z_m: 0.3}\nvehicles:\n";
 const std::string kHop =
@@ -154,5 +154,4 @@ TEST_F(FleetCheckTest, NamesFileLineAndKeyOfBadFiles) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::fleet_check_test

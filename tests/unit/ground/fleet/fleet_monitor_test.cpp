@@ -8,8 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::fleet_monitor_test {
 
 using Eigen::Vector3d;
 using Kind = Order::Kind;
@@ -310,5 +309,4 @@ TEST(Late, IsWaitedForUntilItHasPassed) {
   EXPECT_LT(first_s, 9.0) << "and is not waited for to its end";
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::fleet_monitor_test

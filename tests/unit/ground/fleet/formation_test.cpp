@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::formation_test {
 
 using Eigen::Vector3d;
 
@@ -95,5 +94,4 @@ TEST(Formation, LandsNobodyOnAnother) {
   EXPECT_FALSE(obstacles[4]) << "0.4 m beside";
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::formation_test

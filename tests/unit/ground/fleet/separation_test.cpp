@@ -8,8 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::separation_test {
 
 using control::PolynomialSegment;
 
@@ -112,5 +111,4 @@ TEST(Separation, HoldsForStandingVehicles) {
   EXPECT_NEAR(closest_approach(standing(0, 1), kSmall, standing(0, 5), kSmall).clearance, 0.0, 1e-9);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::separation_test

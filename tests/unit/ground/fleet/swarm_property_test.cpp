@@ -14,8 +14,7 @@
 #include "swiftlet/ground/fleet/fleet_monitor.hpp"
 #include "tests/support/campaign.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::swarm_property_test {
 
 constexpr double kStep_s = 0.02;
 constexpr double kMonitor_s = 0.04;  // period of the monitor
@@ -306,5 +305,4 @@ TEST(RandomSwarms, StayApartAndNeverCollideWhenOneFails) {
       flown, drawn, slowed_by_late, aside, back);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::swarm_property_test

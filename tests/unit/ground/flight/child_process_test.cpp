@@ -14,8 +14,7 @@
 #include "swiftlet/ground/flight/process_group.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::child_process_test {
 
 using namespace std::chrono_literals;
 
@@ -125,5 +124,4 @@ TEST_F(ChildProcessTest, GroupReportsUncleanExits) {
   EXPECT_EQ(complaints.front(), "fails ended with exit status 3");
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::child_process_test

@@ -7,8 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::flight_outcome_test {
 
 constexpr std::int64_t kSample_ns = 10'000'000;  // period of telemetry
 constexpr int kSamples = 1000;
@@ -71,5 +70,4 @@ TEST(Evaluate, FailsOnAGroundTruthThatIsNotFinite) {
   EXPECT_EQ(report.reason, "the ground truth is not finite");
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::flight_outcome_test

@@ -6,12 +6,12 @@
 #include "swiftlet/control/planning/feasibility.hpp"
 #include "swiftlet/ground/flight/in_process_flight.hpp"
 #include "swiftlet/io/text_file.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::foreign_flight_test {
 
-const std::string kData = SWIFTLET_SOURCE_DIR "/tests/data/";
+const std::string kData = tests::in_source("tests/data/");
 
 class ForeignFlight : public testing::Test {
  protected:
@@ -56,7 +56,7 @@ INSTANTIATE_TEST_SUITE_P(Files, ForeignCsv, testing::Values("crazyswarm_figure8.
                          [](const auto& file) { return file.index == 0 ? "Crazyswarm" : "UavTrajectories"; });
 
 TEST_F(ForeignFlight, TracksThePx4BoxMission) {
-  std::string settings = runtime::read_text_file(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
+  std::string settings = runtime::read_text_file(tests::in_source("config/control/motor_lag.yaml"));
   const auto set = [&](const std::string& key, const std::string& value) {
     const std::size_t begin = settings.find(key + ":");
     settings.replace(begin, settings.find('\n', begin) - begin, key + ": " + value);
@@ -69,5 +69,4 @@ TEST_F(ForeignFlight, TracksThePx4BoxMission) {
   EXPECT_LT(report.errors.rms_3d_m, 0.01);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::foreign_flight_test

@@ -12,10 +12,10 @@
 #include "swiftlet/ground/flight/flight_inputs.hpp"
 #include "swiftlet/ground/flight/in_process_flight.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::launch_configuration_test {
 
 // At 100 Hz: to `reach_m` and back, and a tremble of `tremble_m` at 8 Hz.
 std::string samples(double reach_m, double tremble_m, double duration_s = 8.0) {
@@ -95,7 +95,7 @@ TEST_F(LaunchConfigurationTest, HasNoGreatestDuration) {
 // The controller descends at 0.4 m/s, whatever the item says.
 TEST_F(LaunchConfigurationTest, KnowsHowLongALandingFromHighUpTakes) {
   std::ostringstream settings;
-  settings << std::ifstream(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml").rdbuf();
+  settings << std::ifstream(tests::in_source("config/control/motor_lag.yaml")).rdbuf();
   std::string high = settings.str();
   const std::string fence = "fence_min_ned_m: [-3.0, -3.0, -2.5]";
   high.replace(high.find(fence), fence.size(), "fence_min_ned_m: [-3.0, -3.0, -12.0]");
@@ -158,5 +158,4 @@ TEST_F(LaunchConfigurationTest, RefusesAModelThatBreaksARuleOrCannotFlyTheMissio
   EXPECT_EQ(refusal_of(given).rfind("mine: ", 0), 0U) << refusal_of(given);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::launch_configuration_test

@@ -13,8 +13,7 @@
 #include "swiftlet/ground/flight/launch_configuration.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::record_folder_test {
 
 namespace fs = std::filesystem;
 
@@ -188,5 +187,4 @@ TEST(RecordSpace, GrowsWithDurationRateAndFiles) {
   EXPECT_GT(plan.record_bytes(), sensors + std::uintmax_t{60} * 500 * 200);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::record_folder_test

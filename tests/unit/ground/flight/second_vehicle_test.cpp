@@ -11,12 +11,12 @@
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/plant/model/airframe.hpp"
 #include "swiftlet/plant/model/propulsion.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::second_vehicle_test {
 
-const std::string kConfig = SWIFTLET_SOURCE_DIR "/config/";
+const std::string kConfig = tests::in_source("config/");
 
 plant::Vehicle crazyflie() { return runtime::load_vehicle(kConfig + "vehicles/crazyflie2.yaml"); }
 
@@ -55,7 +55,7 @@ TEST(SecondVehicle, FliesTheSquareWithThePapersControlLaws) {
 
 TEST(SecondVehicle, MatchesTheIdentificationFromItsBench) {
   const plant::Vehicle vehicle = crazyflie();
-  const std::string folder = SWIFTLET_SOURCE_DIR "/tests/data/crazyflie2_bench";
+  const std::string folder = tests::in_source("tests/data/crazyflie2_bench");
   const Bench bench = load_bench(folder, load_bench_settings(folder), vehicle.esc);
   const plant::Vehicle found = identification::identify_bench(bench.data, vehicle).vehicle;
   EXPECT_NEAR(found.motor.k2 / vehicle.motor.k2, 1.0, 1e-3);
@@ -72,5 +72,4 @@ TEST(SecondVehicle, MatchesTheMeasuredRotorSpeedAndThrust) {
               0.1 * 24.4e-3 * plant::kGravity);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::second_vehicle_test

@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::start_barrier_test {
 
 using namespace std::chrono_literals;
 
@@ -44,5 +43,4 @@ TEST(StartBarrier, ReleasesNoneAfterAFailure) {
   EXPECT_FALSE(barrier.wait_for_all(1ms)) << "although both are ready";
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::start_barrier_test

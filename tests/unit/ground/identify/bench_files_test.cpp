@@ -7,15 +7,15 @@
 #include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/identification/bench/bench_simulation.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::bench_files_test {
 
 const plant::Vehicle& kaylion() {
   static const plant::Vehicle vehicle =
-      runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+      runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
   return vehicle;
 }
 
@@ -103,5 +103,4 @@ TEST_F(BenchFolder, ReadsItsSettings) {
   EXPECT_NE(tests::refusal([&] { load_bench_settings(folder_.path()); }).find("base"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::bench_files_test

@@ -14,10 +14,10 @@
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/io/settings/vehicle_writer.hpp"
 #include "swiftlet/math/random.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::bench_to_flight_test {
 
 // A vehicle with randomly perturbed parameters of `like`.
 plant::Vehicle perturbed(const plant::Vehicle& like, std::uint64_t seed) {
@@ -70,7 +70,7 @@ FlightReport fly(const LaunchConfiguration& plan, const plant::Vehicle& truth, s
 class BenchToFlight : public testing::TestWithParam<std::uint64_t> {
  protected:
   tests::TemporaryFolder folder_;
-  plant::Vehicle kaylion_ = runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+  plant::Vehicle kaylion_ = runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
   plant::Vehicle truth_ = perturbed(kaylion_, GetParam());
 };
 
@@ -105,5 +105,4 @@ TEST_P(BenchToFlight, KeepsItsMarginsWithinTheBenchUncertainty) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, BenchToFlight, testing::Values(1, 2, 3, 4, 5));
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::bench_to_flight_test

@@ -13,17 +13,16 @@
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/plant/model/airframe.hpp"
 #include "tests/support/campaign.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/unit/ground/identify/identified_flights.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::command_flight_test {
 
 using identification::FlightIdentification;
 using identification::FlightLog;
 using identification::ParameterEstimate;
 using identification::SpeedSource;
 
-const std::string kSource = SWIFTLET_SOURCE_DIR;
 constexpr double kDelayS = 0.006;  // added to the commands of simulated flights
 
 LaunchConfiguration delayed_plan() {
@@ -120,9 +119,9 @@ TEST(CommandFlight, RecoversLagAndGainsInGusts) {
 
 // GIVEN the log of a real Crazyflie THEN the result is near values published for this type and this log
 TEST(CommandFlight, AgreesWithPublishedValuesOfARealVehicle) {
-  const plant::Vehicle base = runtime::load_vehicle(kSource + "/config/vehicles/crazyflie2.yaml");
+  const plant::Vehicle base = runtime::load_vehicle(tests::in_source("config/vehicles/crazyflie2.yaml"));
   const ReadFlightLog read =
-      read_flight_log(kSource + "/tests/data/crazyflie_flight.csv.gz", base, BodyAxes::kDetected);
+      read_flight_log(tests::in_source("tests/data/crazyflie_flight.csv.gz"), base, BodyAxes::kDetected);
   ASSERT_EQ(read.log.size(), 50496U);
   const FlightIdentification found = identification::identify_flight({read.log}, base, {});
   EXPECT_EQ(found.source, SpeedSource::kCommanded);
@@ -174,9 +173,9 @@ TEST(CommandFlight, NamesExchangedMotors) {
 }
 
 TEST(CommandFlight, NamesExchangedMotorsOfARealVehicle) {
-  const plant::Vehicle base = runtime::load_vehicle(kSource + "/config/vehicles/crazyflie2.yaml");
+  const plant::Vehicle base = runtime::load_vehicle(tests::in_source("config/vehicles/crazyflie2.yaml"));
   const FlightLog log =
-      read_flight_log(kSource + "/tests/data/crazyflie_flight.csv.gz", base, BodyAxes::kDetected).log;
+      read_flight_log(tests::in_source("tests/data/crazyflie_flight.csv.gz"), base, BodyAxes::kDetected).log;
   const char* const places[] = {"front right", "rear right", "rear left", "front left"};
   for (std::size_t one = 0; one < 4; ++one) {
     for (std::size_t other = one + 1; other < 4; ++other) {
@@ -203,5 +202,4 @@ items:
   EXPECT_NO_THROW(identification::require_motor_order(log, {0, log.size()}, plan.vehicle));
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::command_flight_test

@@ -7,8 +7,7 @@
 
 #include "tests/unit/ground/identify/identified_flights.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::flight_checks_test {
 
 using identification::FlightIdentification;
 using identification::FlightLog;
@@ -187,5 +186,4 @@ TEST(CalmFlight, DoesNotIdentifyInertiaOrLagWithoutPoses) {
   EXPECT_TRUE(contains(found.unexcited, "thrust_to_rate.yaw: r changes by"));
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::flight_checks_test

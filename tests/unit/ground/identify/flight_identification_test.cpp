@@ -11,8 +11,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/ground/identify/identified_flights.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::flight_identification_test {
 
 using identification::FlightIdentification;
 using identification::FlightLog;
@@ -176,5 +175,4 @@ TEST(FlightIdentification, RefusesSwappedMotors) {
   expect_refused({log}, plan.vehicle, "are the motors in its order");
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::flight_identification_test

@@ -5,15 +5,15 @@
 
 #include "swiftlet/identification/bench/bench_simulation.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::identification_report_test {
 
 IdentificationReport report() {
   IdentificationReport out;
   out.bench_folder = "a <bench>";
   out.base_vehicle = "kaylion";
-  out.base = runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+  out.base = runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
   identification::BenchNoise noise;
   noise.outliers = 0.05;
   out.bench.data = identification::simulate_bench(out.base, noise, 2);
@@ -75,5 +75,4 @@ TEST(IdentificationTable, NamesParametersOutliersAndFindings) {
     EXPECT_NE(table.find(part), std::string::npos) << part;
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::identification_report_test

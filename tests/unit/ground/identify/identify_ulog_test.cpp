@@ -12,11 +12,11 @@
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/math/random.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/ulog_writer.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::identify_ulog_test {
 
 using nlohmann::json;
 using tests::UlogWriter;
@@ -73,7 +73,7 @@ class IdentifyUlog : public testing::Test {
   }
 
   tests::TemporaryFolder folder_;
-  const plant::Vehicle base_ = runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+  const plant::Vehicle base_ = runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
 };
 
 TEST_F(IdentifyUlog, FindsHoverAndSlope) {
@@ -119,5 +119,4 @@ TEST_F(IdentifyUlog, RefusesWhatALogDoesNotHave) {
             std::string::npos);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::identify_ulog_test

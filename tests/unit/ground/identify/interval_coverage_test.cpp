@@ -16,8 +16,7 @@
 #include "tests/support/campaign.hpp"
 #include "tests/unit/ground/identify/identified_flights.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::interval_coverage_test {
 
 using identification::FlightIdentification;
 using identification::FlightLog;
@@ -187,5 +186,4 @@ TEST_F(IntervalCoverage, WindAndGusts) {
   });
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::interval_coverage_test

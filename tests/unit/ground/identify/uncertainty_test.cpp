@@ -8,13 +8,11 @@
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/simulation/dispersion.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::uncertainty_test {
 
-plant::Vehicle kaylion() {
-  return runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
-}
+plant::Vehicle kaylion() { return runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
 
 plant::VehicleUncertainty uncertainty() {
   plant::VehicleUncertainty out;
@@ -82,5 +80,4 @@ TEST(Uncertainty, RefusesParametersThatCannotVary) {
   EXPECT_EQ(refused(given), "v.yaml: uncertainty: esc.pulse_min cannot be varied");
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::uncertainty_test

@@ -18,15 +18,15 @@
 #include "swiftlet/simulation/mission_runner.hpp"
 #include "swiftlet/simulation/simulated_flight.hpp"
 #include "tests/support/campaign.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::agreement_test {
 
 using control::MissionItem;
 using control::MissionItemKind;
 using Eigen::Vector3d;
 
-const std::string kConfig = SWIFTLET_SOURCE_DIR "/config/";
+const std::string kConfig = tests::in_source("config/");
 constexpr double kSameTime_s =
     0.05;  // the watch looks at the telemetry rate, and a take-off begins where it is estimated
 // From the first contact until the reference has been 5 cm below the ground for 0.2 s. The touchdown ends the flight at once where it
@@ -168,5 +168,4 @@ TEST_F(AgreementTest, OfDryRunUploadAndFlight) {
   EXPECT_GT(beyond_limits, 0);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::agreement_test

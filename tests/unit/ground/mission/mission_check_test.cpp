@@ -13,15 +13,15 @@
 #include "swiftlet/ground/mission/mission_plot.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::mission_check_test {
 
 using control::Demand;
 using control::WorstDemand;
 
-const std::string kConfig = SWIFTLET_SOURCE_DIR "/config/";
+const std::string kConfig = tests::in_source("config/");
 const std::string kHead = "frame: ned\ntolerance_m: 0.1\nitems:\n";
 
 class MissionCheckTest : public testing::Test {
@@ -200,5 +200,4 @@ TEST_F(MissionCheckTest, DrawsThePathAsPng) {
             std::string::npos);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::mission_check_test

@@ -11,15 +11,15 @@
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::pace_test {
 
 using control::Demand;
 
-const std::string kConfig = SWIFTLET_SOURCE_DIR "/config/";
+const std::string kConfig = tests::in_source("config/");
 const std::string kFigureOfEight = kData + "crazyswarm_figure8.csv";
 
 class PaceTest : public testing::Test {
@@ -114,5 +114,4 @@ TEST_F(PaceTest, SaysWhyAMissionCannotBeFlownAtAnyPace) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::pace_test

@@ -8,8 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::pages {
-namespace {
+namespace swiftlet::pages::packed_column_test {
 
 // What a browser does, by other means.
 std::vector<std::uint32_t> unpacked(const std::string& text, std::size_t count) {
@@ -68,5 +67,4 @@ TEST(PackedColumn, ErrorsOfStepsDoNotAddUp) {
 
 TEST(PackedColumn, MayBeEmpty) { EXPECT_TRUE(unpacked(packed({}), 0).empty()); }
 
-}  // namespace
-}  // namespace swiftlet::pages
+}  // namespace swiftlet::pages::packed_column_test

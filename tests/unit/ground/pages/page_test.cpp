@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::pages {
-namespace {
+namespace swiftlet::pages::page_test {
 
 Page example() {
   Page page("a <title>");
@@ -48,5 +47,4 @@ TEST(Page, NamesPanelsThatShareAFigure) {
   EXPECT_NE(html.find("<figcaption>error (mm) over mass (kg)</figcaption>"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace swiftlet::pages
+}  // namespace swiftlet::pages::page_test

@@ -16,8 +16,7 @@
 #include "tests/support/program_path.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::plot {
-namespace {
+namespace swiftlet::plot::gnuplot_test {
 
 namespace fs = std::filesystem;
 
@@ -292,5 +291,4 @@ TEST_F(GnuplotTest, ReportsAFileThatCannotBeWritten) {
             (folder_ / "none" / "some.png").string() + ": cannot be written: No such file or directory");
 }
 
-}  // namespace
-}  // namespace swiftlet::plot
+}  // namespace swiftlet::plot::gnuplot_test

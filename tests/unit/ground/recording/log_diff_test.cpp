@@ -14,8 +14,7 @@
 #include "swiftlet/services/messages/schemas.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::log_diff_test {
 
 constexpr std::int64_t kMs = 1'000'000;
 
@@ -142,5 +141,4 @@ TEST_F(LogDiff, NamesATopicThatIsInNeitherFile) {
   EXPECT_THROW(difference(a, b, {"/kl1/imu"}), runtime::ConfigError);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::log_diff_test

@@ -12,8 +12,7 @@
 #include "swiftlet/services/dds/payload.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::recording_test {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -148,7 +147,7 @@ TEST(StandardMessages, OfAnEstimateArePoseTransformOdometryAndPath) {
 
 TEST(StandardMessages, OfImuAndBatteryAreInFluAndSi) {
   StandardMessages standard("kl1");
-  const auto imu = following(standard, "imu", comms::to_message(comms::tests::imu_sample()), 1);
+  const auto imu = following(standard, "imu", comms::to_message(comms::fixtures::imu_sample()), 1);
   ASSERT_EQ(imu.size(), 1U);
   const auto values = decoded(imu.front());
   EXPECT_EQ(values.at("header.frame_id"), mcap::Value(std::string("kl1")));
@@ -156,12 +155,13 @@ TEST(StandardMessages, OfImuAndBatteryAreInFluAndSi) {
   EXPECT_EQ(values.at("angular_velocity.x"), mcap::Value(0.3));
   EXPECT_EQ(values.at("angular_velocity.y"), mcap::Value(0.4));
   EXPECT_EQ(values.at("orientation_covariance[0]"), mcap::Value(-1.0));
-  const auto battery = following(standard, "battery", comms::to_message(comms::tests::battery_sample()), 1);
+  const auto battery =
+      following(standard, "battery", comms::to_message(comms::fixtures::battery_sample()), 1);
   ASSERT_EQ(battery.size(), 1U);
   EXPECT_EQ(decoded(battery.front()).at("percentage"), mcap::Value(0.75));
   EXPECT_EQ(decoded(battery.front()).at("current"), mcap::Value(-2.5));
-  EXPECT_TRUE(
-      following(standard, "rotor_speeds", comms::to_message(comms::tests::rotor_speed_sample()), 1).empty());
+  EXPECT_TRUE(following(standard, "rotor_speeds", comms::to_message(comms::fixtures::rotor_speed_sample()), 1)
+                  .empty());
 }
 
 TEST(StandardMessages, OfEventsAreLinesOfALog) {
@@ -205,5 +205,4 @@ TEST(StandardMessages, OfBytesThatAreNoMessageAreNone) {
     EXPECT_TRUE(standard.of(topic, sample(0, bytes)).empty()) << topic;
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::recording_test

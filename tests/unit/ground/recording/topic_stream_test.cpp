@@ -10,8 +10,7 @@
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::topic_stream_test {
 
 using namespace std::chrono_literals;
 
@@ -81,5 +80,4 @@ TEST_F(TopicStreamTest, RefusesAnUnknownTopicAndNamesAll) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::topic_stream_test

@@ -7,8 +7,7 @@
 #include "swiftlet/io/flat_yaml.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::flight_comparison_test {
 
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
@@ -111,5 +110,4 @@ TEST_F(FlightComparison, CountsTheVehiclesOfARecord) {
   EXPECT_EQ(names, (std::vector<std::string>{"kl1", "kl2", "kl10"}));
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::flight_comparison_test

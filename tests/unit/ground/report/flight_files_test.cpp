@@ -12,8 +12,7 @@
 #include "tests/support/program_path.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::flight_files_test {
 
 namespace fs = std::filesystem;
 
@@ -190,5 +189,4 @@ TEST_F(FlightFilesTest, ThrowsWhenTheFolderIsMissing) {
   EXPECT_THROW(write_report_json(folder_ / "gone" / "report.json", {}), std::runtime_error);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::flight_files_test

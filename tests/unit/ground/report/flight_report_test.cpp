@@ -5,8 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::flight_report_test {
 
 FlightReport flown_report() {
   FlightReport report;
@@ -83,5 +82,4 @@ TEST(FlightReportText, OmitsFiguresThatWereNotMeasured) {
   EXPECT_EQ(text.find("tracking"), std::string::npos) << text;
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::flight_report_test

@@ -8,8 +8,7 @@
 
 #include "swiftlet/ground/recording/cdr_writer.hpp"
 
-namespace swiftlet::ros {
-namespace {
+namespace swiftlet::ros::requests_test {
 
 constexpr double kQuarterTurn = 1.5707963267948966;
 
@@ -92,5 +91,4 @@ TEST(RosVelocity, RefusesWhatAVehicleCannotFly) {
   EXPECT_EQ(refusal, "it is no geometry_msgs/Twist");
 }
 
-}  // namespace
-}  // namespace swiftlet::ros
+}  // namespace swiftlet::ros::requests_test

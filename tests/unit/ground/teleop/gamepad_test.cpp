@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::gamepad_test {
 
 input_event event(int type, int code, int value) {
   input_event event{};
@@ -113,5 +112,4 @@ TEST(Gamepad, RequiresTwoSticks) {
   EXPECT_THROW(Gamepad({{ABS_RX, {}}, {ABS_RY, {}}}), std::runtime_error);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::gamepad_test

@@ -11,8 +11,7 @@
 
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::input_device_test {
 
 class EventFifo : public testing::Test {
  protected:
@@ -108,5 +107,4 @@ TEST_F(EventFifo, OtherFilesAreRefused) {
             (folder_.path() / "file").string() + " is not an event device; they are /dev/input/event*");
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::input_device_test

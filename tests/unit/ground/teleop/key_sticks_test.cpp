@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::key_sticks_test {
 
 const KeyTimeouts kTimeouts{0.7, 0.25};
 
@@ -64,5 +63,4 @@ TEST(KeySticks, AllCanBeReleased) {
   EXPECT_TRUE(keys.sticks(0.0).centred());
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::key_sticks_test

@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::sticks_test {
 
 const TeleopLimits kLimits{0.5, 0.3, 0.8};
 
@@ -36,5 +35,4 @@ TEST(Sticks, KeepTheSpeedLimitInAnyDirection) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::sticks_test

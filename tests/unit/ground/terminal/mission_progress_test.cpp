@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::mission_progress_test {
 
 TEST(MissionProgress, SaysWhatIsNotKnownYet) {
   VehicleState state;
@@ -16,5 +15,4 @@ TEST(MissionProgress, SaysWhatIsNotKnownYet) {
   EXPECT_EQ(mission_progress_text(state), "2/6  mission  ( 1.00,  0.25, -1.00) m, 3.92 V");
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::mission_progress_test

@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::watch_screen_test {
 
 const Clock::time_point kNow = Clock::time_point() + std::chrono::hours(1);
 
@@ -248,5 +247,4 @@ TEST(Warnings, MarkAnAssumedThreshold) {
             std::string::npos);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::watch_screen_test

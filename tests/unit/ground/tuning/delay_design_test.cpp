@@ -9,16 +9,16 @@
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/io/text_file.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::delay_design_test {
 
-constexpr const char* kFile = SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml";
+const std::string kFile = tests::in_source("config/control/motor_lag.yaml");
 
 class DelayDesignTest : public testing::Test {
  protected:
   const control::ControlSettings settings_ = runtime::load_control_settings(kFile);
-  const plant::Vehicle vehicle_ = runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+  const plant::Vehicle vehicle_ = runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
 };
 
 TEST_F(DelayDesignTest, EveryLoopToleratesTwiceTheDelay) {
@@ -52,5 +52,4 @@ TEST_F(DelayDesignTest, WritesSettingsThatReadBack) {
   EXPECT_EQ(read.limits.max_tilt_rad, settings_.limits.max_tilt_rad);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::delay_design_test

@@ -11,18 +11,14 @@
 #include "swiftlet/ground/tuning/tuning_table.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::ground {
-namespace {
-
-constexpr double kPi = 3.14159265358979323846;
+namespace swiftlet::ground::tuning_test {
 
 control::ControlSettings settings(const std::string& name) {
-  return runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/" + name + ".yaml");
+  return runtime::load_control_settings(tests::in_source("config/control/") + name + ".yaml");
 }
-plant::Vehicle kaylion() {
-  return runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
-}
+plant::Vehicle kaylion() { return runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
 
 // At the plotted crossover the magnitude is 0 dB, and the phase is the margin above -180 degrees.
 TEST(TuningStudy, CurvesAgreeWithTheMargins) {
@@ -43,7 +39,7 @@ TEST(TuningStudy, CurvesAgreeWithTheMargins) {
       EXPECT_NEAR(between(loop.magnitude_db), 0.0, 0.02) << one.name << " " << control::kFlownLoopNames[i];
       EXPECT_NEAR(between(loop.phase_deg) + 180.0, loop.margins.phase_deg, 0.2)
           << one.name << " " << control::kFlownLoopNames[i];
-      EXPECT_NEAR(loop.margins.delay_s, loop.margins.phase_deg * kPi / 180.0 / loop.crossover, 1e-9)
+      EXPECT_NEAR(loop.margins.delay_s, loop.margins.phase_deg * M_PI / 180.0 / loop.crossover, 1e-9)
           << one.name << " " << control::kFlownLoopNames[i];
     }
   }
@@ -100,5 +96,4 @@ TEST(TuningFigure, HasAStepAndABodePanelForEachLoop) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::tuning_test

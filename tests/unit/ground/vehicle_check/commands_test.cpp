@@ -9,8 +9,7 @@
 #include "tests/unit/ground/vehicle_check/expect_results.hpp"
 #include "tests/unit/ground/vehicle_check/recorded_vehicle.hpp"
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::commands_test {
 
 using ground::CheckResults;
 using ground::CommandPhase;
@@ -175,5 +174,4 @@ TEST(Tether, AVehicleThatCannotTurnFails) {
                "the vehicle does not turn");
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::commands_test

@@ -13,8 +13,7 @@
 #include "tests/unit/ground/vehicle_check/expect_results.hpp"
 #include "tests/unit/ground/vehicle_check/recorded_vehicle.hpp"
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::hand_motion_test {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -173,5 +172,4 @@ TEST(MotionWatch, DoesNotTakeRestForAMotion) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::hand_motion_test

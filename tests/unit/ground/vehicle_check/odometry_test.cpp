@@ -10,8 +10,7 @@
 #include "swiftlet/math/rotation_vector.hpp"
 #include "tests/unit/ground/vehicle_check/recorded_vehicle.hpp"
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::odometry_test {
 
 using ground::CheckResults;
 using ground::VehicleRecording;
@@ -80,5 +79,4 @@ TEST(OdometryAtRest, DefectsAreNamed) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::odometry_test

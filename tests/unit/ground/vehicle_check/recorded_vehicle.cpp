@@ -5,11 +5,13 @@
 #include <optional>
 
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/plant/simulation/command_watchdog.hpp"
 #include "swiftlet/plant/simulation/imu.hpp"
 #include "swiftlet/plant/simulation/mocap.hpp"
 #include "swiftlet/plant/simulation/plant_simulation.hpp"
 #include "tests/support/hand_path.hpp"
+#include "tests/support/paths.hpp"
 
 namespace swiftlet::tests {
 namespace {
@@ -26,7 +28,6 @@ constexpr std::int64_t kWay_ns = 300'000;                  // of a sample
 constexpr std::int64_t kFirstStamp_ns = 5'000'000'000;
 constexpr double kVoltage_v = 4.1;
 
-double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 std::int64_t arrival(std::int64_t stamp_ns) { return stamp_ns + kClockOffset_ns + kWay_ns; }
 
 void describe(VehicleRecording& recording) {
@@ -63,7 +64,7 @@ class CarriedVehicle {
 
  private:
   void sample(const HandPath& path, std::int64_t stamp_ns, VehicleRecording& recording) {
-    const double time_s = seconds(stamp_ns);
+    const double time_s = math::seconds(stamp_ns);
     ground::ImuReport report;
     report.imu = imu_.sample(stamp_ns, path.specific_force_frd(time_s), path.body_rates_frd(time_s));
     report.obeyed.reported = true;
@@ -181,9 +182,7 @@ class CommandedVehicle {
 
 }  // namespace
 
-plant::Vehicle kaylion() {
-  return runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
-}
+plant::Vehicle kaylion() { return runtime::load_vehicle(in_source("config/vehicles/kaylion.yaml")); }
 
 VehicleRecording record_standing() {
   return CarriedVehicle().record(HandPath(start()), kFirstStamp_ns, kFirstStamp_ns + 2'000'000'000);
@@ -193,7 +192,7 @@ RecordedHand record_hand() {
   constexpr double kRest_s = 1.0;
   HandPath path(start());
   RecordedHand hand;
-  double time_s = seconds(kFirstStamp_ns) + 2.0;
+  double time_s = math::seconds(kFirstStamp_ns) + 2.0;
   for (const HandStep step : {HandStep::kRollRight, HandStep::kBack, HandStep::kNoseUp, HandStep::kBack,
                               HandStep::kTurnRight, HandStep::kForward, HandStep::kUp, HandStep::kWave}) {
     const double begin_s = time_s;

@@ -1,5 +1,6 @@
 #include "swiftlet/ground/vehicle_check/standing_vehicle.hpp"
 
+#include <cmath>
 #include <functional>
 #include <string>
 #include <utility>
@@ -7,12 +8,12 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/ground/vehicle_check/streams.hpp"
 #include "swiftlet/math/random.hpp"
 #include "tests/unit/ground/vehicle_check/expect_results.hpp"
 #include "tests/unit/ground/vehicle_check/recorded_vehicle.hpp"
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::standing_vehicle_test {
 
 using ground::CheckResults;
 using ground::VehicleRecording;
@@ -268,8 +269,29 @@ TEST(StandingVehicle, ASimulatedVehicleMayRunFasterThanTheClock) {
   for (auto& received : recording.imu.samples)
     received.received_ns = recording.begin_ns + (received.received_ns - recording.begin_ns) / 2;
   expect_names(check(recording), "imu.clock", "do not run with the clock");
+  EXPECT_EQ(ground::vehicle_rate(recording), 1.0) << "a faulty clock is no time";
   recording.description->simulated = true;
   EXPECT_TRUE(ground::passes(check(recording), "imu.clock"));
+  EXPECT_NEAR(ground::vehicle_rate(recording), 2.0, 0.01);
+  recording = record_standing();
+  recording.description->simulated = true;
+  EXPECT_EQ(ground::vehicle_rate(recording), 1.0) << "this computer's clock is exact";
+}
+
+// GIVEN samples that all come 30 ms later from the middle on THEN a real vehicle is late, and a simulated one has paused; bursts
+// of one that did not pause are found.
+TEST(StandingVehicle, ASimulatedVehicleMayPause) {
+  VehicleRecording recording = record_standing();
+  const std::int64_t pause_ns = recording.begin_ns + std::llround(0.5e9 * recording.duration_s());
+  for (auto& received : recording.imu.samples)
+    if (received.received_ns >= pause_ns) received.received_ns += 30'000'000;
+  expect_names(check(recording), "imu.delivery", "delivered in bursts or late");
+  recording.description->simulated = true;
+  expect_sound(check(recording), {"imu.delivery", "imu.age"});
+  recording = record_standing();
+  recording.description->simulated = true;
+  deliver_in_bursts(recording);
+  expect_names(check(recording), "imu.delivery", "delivered in bursts or late");
 }
 
 TEST(StandingVehicle, NothingPassesWithoutData) {
@@ -277,5 +299,4 @@ TEST(StandingVehicle, NothingPassesWithoutData) {
     EXPECT_NE(result.verdict, ground::Verdict::kPass) << result.name;
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::standing_vehicle_test

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::access_test {
 
 TEST(Access, OfLoopbackIsForItsNamesOnly) {
   const Access access;
@@ -54,5 +53,4 @@ TEST(Access, ReadsTargets) {
   EXPECT_FALSE(has_query("/newest", "newest"));
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::access_test

@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::found_vehicles_test {
 
 using Names = std::vector<std::string>;
 
@@ -38,5 +37,4 @@ TEST(FoundVehicles, TriesEachPartUntilItSucceeds) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::found_vehicles_test

@@ -7,8 +7,7 @@
 
 #include "swiftlet/services/messages/topics.hpp"
 
-namespace swiftlet::ground::foxglove {
-namespace {
+namespace swiftlet::ground::foxglove::foxglove_test {
 
 using nlohmann::json;
 
@@ -130,5 +129,4 @@ TEST(Foxglove, ReadsServiceCalls) {
   EXPECT_NE(fault_of(parse_binary(other.data(), other.size())), "");
 }
 
-}  // namespace
-}  // namespace swiftlet::ground::foxglove
+}  // namespace swiftlet::ground::foxglove::foxglove_test

@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::frame_queue_test {
 
 Frame frame(std::uint32_t subscription, std::int64_t time_ns, std::size_t bytes = 10, bool is_event = false) {
   return {subscription, time_ns, std::make_shared<const mcap::Bytes>(bytes), is_event};
@@ -78,5 +77,4 @@ TEST(FrameQueue, ForgetsASubscription) {
   EXPECT_EQ(queue.dropped(), 0U);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::frame_queue_test

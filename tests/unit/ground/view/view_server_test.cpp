@@ -25,8 +25,7 @@
 #include "tests/support/foxglove_client.hpp"
 #include "tests/support/private_domain.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::view_server_test {
 
 namespace asio = boost::asio;
 namespace beast = boost::beast;
@@ -77,7 +76,7 @@ class Server : public testing::Test {
     return request;
   }
   Answer ask(const http::request<http::string_body>& request) const {
-    return ground::ask(server_->port(), request);
+    return view_server_test::ask(server_->port(), request);
   }
   std::unique_ptr<FoxgloveClient> client(const std::string& target = "/") const {
     auto client = std::make_unique<FoxgloveClient>(server_->port());
@@ -423,5 +422,4 @@ TEST_F(Server, SendsAStopBesideManyOtherRequests) {
   }));
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::view_server_test

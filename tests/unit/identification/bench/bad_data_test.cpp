@@ -7,8 +7,7 @@
 #include "swiftlet/identification/fitting/checks.hpp"
 #include "tests/unit/identification/bench/benches.hpp"
 
-namespace swiftlet::identification {
-namespace {
+namespace swiftlet::identification::bad_data_test {
 
 using tests::bench_of;
 using tests::kaylion;
@@ -59,5 +58,4 @@ TEST(BadBenchData, RefusesABenchWithoutExperiments) {
   EXPECT_THROW(identify_bench({}, kaylion()), BenchError);
 }
 
-}  // namespace
-}  // namespace swiftlet::identification
+}  // namespace swiftlet::identification::bad_data_test

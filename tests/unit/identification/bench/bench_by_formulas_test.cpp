@@ -11,12 +11,10 @@
 
 #include "tests/unit/identification/bench/benches.hpp"
 
-namespace swiftlet::identification {
-namespace {
+namespace swiftlet::identification::bench_by_formulas_test {
 
 using tests::kaylion;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kWeightPerMass = 9.80665;  // m/s^2
 
 // Differs from KayLion in every parameter that a bench measures.
@@ -131,7 +129,7 @@ BenchData bench_by_formulas(const Truth& truth, double noise, unsigned seed,
         bifilar.length_m.push_back(length_m);
         bifilar.separation_m.push_back(truth.separation_m);
         bifilar.period_s.push_back(
-            4.0 * kPi / truth.separation_m *
+            4.0 * M_PI / truth.separation_m *
             std::sqrt(truth.inertia[axis] * length_m / (truth.mass_kg * kWeightPerMass)) *
             (1.0 + noise * normal(generator)));
       }
@@ -247,5 +245,4 @@ TEST(BenchByFormulas, EqualsTheSimulatedBench) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::identification
+}  // namespace swiftlet::identification::bench_by_formulas_test

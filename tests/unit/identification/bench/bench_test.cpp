@@ -8,8 +8,7 @@
 
 #include "tests/unit/identification/bench/benches.hpp"
 
-namespace swiftlet::identification {
-namespace {
+namespace swiftlet::identification::bench_test {
 
 using tests::bench_of;
 using tests::contains;
@@ -183,5 +182,4 @@ TEST(Bench, IsDeterministic) {
   EXPECT_EQ(first.esc->outliers, second.esc->outliers);
 }
 
-}  // namespace
-}  // namespace swiftlet::identification
+}  // namespace swiftlet::identification::bench_test

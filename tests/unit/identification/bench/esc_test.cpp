@@ -4,8 +4,7 @@
 
 #include "tests/unit/identification/bench/benches.hpp"
 
-namespace swiftlet::identification {
-namespace {
+namespace swiftlet::identification::esc_test {
 
 using tests::bench_of;
 using tests::contains;
@@ -67,5 +66,4 @@ TEST(EscExperiment, RefusesReadingsNoEscCanProduce) {
   EXPECT_EQ(refused([&] { identify_esc(bad, {}); }), "throttle: is 0.5 in all 45 rows, must vary");
 }
 
-}  // namespace
-}  // namespace swiftlet::identification
+}  // namespace swiftlet::identification::esc_test

@@ -7,15 +7,12 @@
 #include "swiftlet/identification/bench/mass.hpp"
 #include "tests/unit/identification/bench/benches.hpp"
 
-namespace swiftlet::identification {
-namespace {
+namespace swiftlet::identification::inertia_test {
 
 using tests::bench_of;
 using tests::contains;
 using tests::kaylion;
 using tests::refused;
-
-constexpr double kPi = 3.14159265358979323846;
 
 InertiaTarget target(double mass_error = 0.0) { return {"inertia.zz", "J_z", 0.040, mass_error, 0.0695}; }
 
@@ -23,7 +20,7 @@ SwingData swing(double inertia, const std::vector<double>& arms) {
   SwingData data;
   for (const double arm : arms) {
     data.arm_m.push_back(arm);
-    data.period_s.push_back(2.0 * kPi * std::sqrt((inertia + 0.040 * arm * arm) / (0.040 * 9.80665 * arm)));
+    data.period_s.push_back(2.0 * M_PI * std::sqrt((inertia + 0.040 * arm * arm) / (0.040 * 9.80665 * arm)));
   }
   return data;
 }
@@ -67,5 +64,4 @@ TEST(MassExperiment, WarnsThatEqualReadingsHideTheirSpread) {
   EXPECT_TRUE(contains(found.warnings, "the balance's resolution hides their spread"));
 }
 
-}  // namespace
-}  // namespace swiftlet::identification
+}  // namespace swiftlet::identification::inertia_test

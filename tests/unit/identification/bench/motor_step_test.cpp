@@ -7,8 +7,7 @@
 #include "swiftlet/plant/model/motor.hpp"
 #include "tests/unit/identification/bench/benches.hpp"
 
-namespace swiftlet::identification {
-namespace {
+namespace swiftlet::identification::motor_step_test {
 
 using tests::bench_of;
 using tests::contains;
@@ -105,5 +104,4 @@ TEST(MotorStepExperiment, RefusesRecordsWithoutAValidStep) {
             std::string::npos);
 }
 
-}  // namespace
-}  // namespace swiftlet::identification
+}  // namespace swiftlet::identification::motor_step_test

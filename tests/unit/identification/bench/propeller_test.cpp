@@ -5,8 +5,7 @@
 #include "swiftlet/plant/model/rotor.hpp"
 #include "tests/unit/identification/bench/benches.hpp"
 
-namespace swiftlet::identification {
-namespace {
+namespace swiftlet::identification::propeller_test {
 
 using tests::refused;
 
@@ -36,5 +35,4 @@ TEST(PropellerCoefficients, RefuseValuesNoPropellerCanHave) {
   EXPECT_NE(refusal(3.7901e-8, 1.8623e-11, 2200.0).find("figure of merit"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace swiftlet::identification
+}  // namespace swiftlet::identification::propeller_test

@@ -8,8 +8,7 @@
 #include "tests/support/campaign.hpp"
 #include "tests/unit/identification/bench/benches.hpp"
 
-namespace swiftlet::identification {
-namespace {
+namespace swiftlet::identification::recovery_test {
 
 struct Tally {
   int count = 0;
@@ -120,5 +119,4 @@ TEST(Recovery, CoversTheTimeConstantOfAPhysicalMotor) {
   EXPECT_NEAR(tally.coverage(), 0.95, 3.0 * tests::coverage_error(benches));
 }
 
-}  // namespace
-}  // namespace swiftlet::identification
+}  // namespace swiftlet::identification::recovery_test

@@ -8,8 +8,7 @@
 #include "swiftlet/plant/model/motor.hpp"
 #include "tests/unit/identification/bench/benches.hpp"
 
-namespace swiftlet::identification {
-namespace {
+namespace swiftlet::identification::steady_motor_test {
 
 using tests::bench_of;
 using tests::contains;
@@ -64,5 +63,4 @@ TEST(SteadyMotorExperiment, WarnsWhenK2AndK3AreNotSeparable) {
   EXPECT_TRUE(contains(identify_steady_motor(data, {}).warnings, "these data barely separate K2 and K3"));
 }
 
-}  // namespace
-}  // namespace swiftlet::identification
+}  // namespace swiftlet::identification::steady_motor_test

@@ -5,8 +5,7 @@
 #include "swiftlet/plant/model/propulsion.hpp"
 #include "tests/unit/identification/bench/benches.hpp"
 
-namespace swiftlet::identification {
-namespace {
+namespace swiftlet::identification::throttle_thrust_test {
 
 using tests::bench_of;
 using tests::contains;
@@ -56,5 +55,4 @@ TEST(ThrottleThrustExperiment, FitsTheChainWhenItsPartsAreUnknown) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::identification
+}  // namespace swiftlet::identification::throttle_thrust_test

@@ -4,8 +4,7 @@
 
 #include "tests/unit/identification/bench/benches.hpp"
 
-namespace swiftlet::identification {
-namespace {
+namespace swiftlet::identification::thrust_torque_test {
 
 using tests::bench_of;
 using tests::contains;
@@ -55,5 +54,4 @@ TEST(ThrustTorqueExperiment, RefusesGramsTakenForNewtons) {
   EXPECT_NE(refused([&] { identify_thrust_torque(bad, {}); }).find("m times the thrust"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace swiftlet::identification
+}  // namespace swiftlet::identification::thrust_torque_test

@@ -6,8 +6,7 @@
 
 #include "swiftlet/math/random.hpp"
 
-namespace swiftlet::identification {
-namespace {
+namespace swiftlet::identification::arma_noise_test {
 
 constexpr double kReflection[kNoiseParameters] = {0.4, -0.3, -0.9, 0.5};
 
@@ -59,5 +58,4 @@ TEST(ArmaNoise, PredictionAssumesZeroFutureInnovations) {
   for (std::size_t i = 0; i < expected.size(); ++i) ASSERT_NEAR(expected[i], v[40 + i], 1e-12) << i;
 }
 
-}  // namespace
-}  // namespace swiftlet::identification
+}  // namespace swiftlet::identification::arma_noise_test

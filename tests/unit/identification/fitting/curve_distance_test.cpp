@@ -7,8 +7,7 @@
 
 #include "swiftlet/identification/fitting/recent_results.hpp"
 
-namespace swiftlet::identification {
-namespace {
+namespace swiftlet::identification::curve_distance_test {
 
 // In units of the spreads, the distance to a straight line is the perpendicular one.
 TEST(CurveDistance, OfALineIsPerpendicular) {
@@ -77,5 +76,4 @@ TEST(RecentResults, RemainValidAfterEviction) {
   EXPECT_EQ(*first, 11);
 }
 
-}  // namespace
-}  // namespace swiftlet::identification
+}  // namespace swiftlet::identification::curve_distance_test

@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::identification {
-namespace {
+namespace swiftlet::identification::inertia_triangle_inequality_test {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -104,5 +103,4 @@ TEST(InertiaTriangleInequality, KeepsAViolationBeyondFourDeviations) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::identification
+}  // namespace swiftlet::identification::inertia_triangle_inequality_test

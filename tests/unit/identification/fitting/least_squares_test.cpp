@@ -9,8 +9,7 @@
 
 #include "swiftlet/math/random.hpp"
 
-namespace swiftlet::identification {
-namespace {
+namespace swiftlet::identification::least_squares_test {
 
 // y = 2 x + 1 with noise, rows at x = 0 .. 1.
 struct Line {
@@ -122,5 +121,4 @@ TEST(LeastSquares, IntervalFactorFollowsStudentsT) {
   EXPECT_NEAR(interval_factor(1000000), 1.95996, 1e-4);
 }
 
-}  // namespace
-}  // namespace swiftlet::identification
+}  // namespace swiftlet::identification::least_squares_test

@@ -7,8 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::identification {
-namespace {
+namespace swiftlet::identification::series_fit_test {
 
 using Eigen::Index;
 using Eigen::VectorXd;
@@ -176,5 +175,4 @@ TEST(SeriesFit, ReportsUnobservableParametersAsUnknown) {
   EXPECT_NEAR(fit.covariance(0, 0) / alone.covariance(0, 0), 24.0 / 23.0, 1e-3);
 }
 
-}  // namespace
-}  // namespace swiftlet::identification
+}  // namespace swiftlet::identification::series_fit_test

@@ -11,8 +11,7 @@
 #include "swiftlet/identification/flight/flight_model.hpp"
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::identification {
-namespace {
+namespace swiftlet::identification::flight_by_formulas_test {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -270,5 +269,4 @@ TEST(ThrustCurve, SlopeMatchesItsFiniteDifference) {
     EXPECT_NEAR(curve.slope_at(command), (curve.at(command + 1e-6) - curve.at(command - 1e-6)) / 2e-6, 1e-6);
 }
 
-}  // namespace
-}  // namespace swiftlet::identification
+}  // namespace swiftlet::identification::flight_by_formulas_test

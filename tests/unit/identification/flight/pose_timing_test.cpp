@@ -10,8 +10,7 @@
 #include "swiftlet/math/rotation_vector.hpp"
 #include "tests/support/campaign.hpp"
 
-namespace swiftlet::identification {
-namespace {
+namespace swiftlet::identification::pose_timing_test {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -103,5 +102,4 @@ TEST(PoseTiming, IsNotIdentifiedFromFewPoses) {
   EXPECT_FALSE(find_pose_timing(log, segments_of(log)).identified);
 }
 
-}  // namespace
-}  // namespace swiftlet::identification
+}  // namespace swiftlet::identification::pose_timing_test

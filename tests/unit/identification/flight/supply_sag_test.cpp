@@ -9,14 +9,14 @@
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/plant/model/airframe.hpp"
 #include "swiftlet/plant/simulation/dynamics.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::identification {
-namespace {
+namespace swiftlet::identification::supply_sag_test {
 
 constexpr double kStep = 2e-3;  // of the command
 
 plant::Vehicle vehicle_named(const std::string& name) {
-  return runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/" + name + ".yaml");
+  return runtime::load_vehicle(tests::in_source("config/vehicles/") + name + ".yaml");
 }
 
 // Settled thrust of each rotor, N, at half the charge.
@@ -80,5 +80,4 @@ TEST(SupplySag, IsZeroWithoutResistance) {
   EXPECT_NEAR(shared_over_single(vehicle), 1.0, 1e-9);
 }
 
-}  // namespace
-}  // namespace swiftlet::identification
+}  // namespace swiftlet::identification::supply_sag_test

@@ -9,16 +9,14 @@
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/io/text_file.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::flight_log_files_test {
 
 using identification::FlightLog;
 
-plant::Vehicle kaylion() {
-  return runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
-}
+plant::Vehicle kaylion() { return runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
 
 // 8 IMU samples 2 ms apart; a pose and a battery sample with every fourth.
 FlightLog recorded() {
@@ -211,5 +209,4 @@ TEST(FlightLogFiles, ReadsGzipAndReportsCorruptArchives) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::flight_log_files_test

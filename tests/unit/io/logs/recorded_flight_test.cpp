@@ -11,11 +11,11 @@
 #include "swiftlet/io/mcap/series.hpp"
 #include "swiftlet/io/mcap/writer.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::recorded_flight_test {
 
 using tests::refusal;
 
@@ -130,7 +130,7 @@ TEST_F(RecordedFlight, BecomesALogForIdentification) {
   const mcap::Reader file = recorded();
   EXPECT_TRUE(is_mcap(path_));
   EXPECT_EQ(recorded_vehicle(file, ""), "kl1");
-  const plant::Vehicle base = runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+  const plant::Vehicle base = runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
   const identification::FlightLog log = read_flight_log(folder_.path(), base, BodyAxes::kDetected).log;
   ASSERT_EQ(log.size(), 4U);
   EXPECT_EQ(log.rotor_count, 4);
@@ -184,5 +184,4 @@ TEST_F(RecordedFlight, WithoutASignalIsRefused) {
             std::string::npos);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::recorded_flight_test

@@ -14,8 +14,7 @@
 #include "swiftlet/io/mavlink/payload.hpp"
 #include "swiftlet/math/random.hpp"
 
-namespace swiftlet::mavlink {
-namespace {
+namespace swiftlet::mavlink::frame_test {
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -229,5 +228,4 @@ TEST(MavlinkParser, ResultsDoNotDependOnHowTheBytesAreSplit) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::mavlink
+}  // namespace swiftlet::mavlink::frame_test

@@ -13,8 +13,7 @@
 #include "swiftlet/io/mavlink/payload.hpp"
 #include "swiftlet/math/random.hpp"
 
-namespace swiftlet::mavlink {
-namespace {
+namespace swiftlet::mavlink::messages_test {
 
 // A field of a definition in https://mavlink.io/en/messages/common.html.
 struct Field {
@@ -247,5 +246,4 @@ TEST(MavlinkMessages, SurviveARoundTrip) {
   EXPECT_TRUE(survives_a_round_trip<HilStateQuaternion>());
 }
 
-}  // namespace
-}  // namespace swiftlet::mavlink
+}  // namespace swiftlet::mavlink::messages_test

@@ -14,8 +14,7 @@
 #include "tests/unit/io/config_error_check.hpp"
 #include "tests/unit/io/mcap/recorded_file.hpp"
 
-namespace swiftlet::mcap {
-namespace {
+namespace swiftlet::mcap::mcap_test {
 
 using tests::file_content;
 using tests::KeptMessage;
@@ -273,5 +272,4 @@ TEST_F(McapTest, AFileWithoutMessagesIsWhole) {
   EXPECT_TRUE(messages_of(file).empty());
 }
 
-}  // namespace
-}  // namespace swiftlet::mcap
+}  // namespace swiftlet::mcap::mcap_test

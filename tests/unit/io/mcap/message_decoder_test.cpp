@@ -6,8 +6,7 @@
 
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::mcap {
-namespace {
+namespace swiftlet::mcap::message_decoder_test {
 
 using tests::refusal;
 
@@ -132,5 +131,4 @@ TEST(MessageDecoder, RefusesDefinitionsThatItDoesNotUnderstand) {
             "test_msgs/msg/Thing: has the encoding 'jsonschema', must be ros2msg");
 }
 
-}  // namespace
-}  // namespace swiftlet::mcap
+}  // namespace swiftlet::mcap::message_decoder_test

@@ -14,8 +14,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::crazyflie_log_test {
 
 using Eigen::Vector3d;
 
@@ -157,5 +156,4 @@ TEST_F(CrazyflieLogTest, ACutNeedsTwoSamples) {
       std::string::npos);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::crazyflie_log_test

@@ -10,8 +10,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::foreign_table_test {
 
 using Eigen::Vector3d;
 
@@ -168,5 +167,4 @@ TEST_F(ForeignTableTest, ListOfWaypoints) {
       std::string::npos);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::foreign_table_test

@@ -8,10 +8,11 @@
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
+#include "tests/support/paths.hpp"
 
 namespace swiftlet::ground {
 
-inline const std::string kData = SWIFTLET_SOURCE_DIR "/tests/data/";
+inline const std::string kData = tests::in_source("tests/data/");
 
 // Limits of a field outdoors.
 inline control::Limits field() {

@@ -11,11 +11,11 @@
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/planning/waypoint_path.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/ground/fault.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::mission_file_test {
 
 using control::MissionItemKind;
 
@@ -355,8 +355,8 @@ TEST(PlannedDuration, IncludesTheYawTurn) {
 class PaperMission : public testing::TestWithParam<const char*> {};
 
 TEST_P(PaperMission, TakesAboutFortySecondsWithinTheFigureAxes) {
-  const MissionFile file = load_mission_file(
-      std::string(SWIFTLET_SOURCE_DIR "/config/missions/") + GetParam() + ".yaml", control::Limits{});
+  const MissionFile file =
+      load_mission_file(tests::in_source("config/missions/") + GetParam() + ".yaml", control::Limits{});
   EXPECT_EQ(file.name, GetParam());
   EXPECT_TRUE(file.takes_off());
   EXPECT_TRUE(file.lands());
@@ -371,5 +371,4 @@ TEST_P(PaperMission, TakesAboutFortySecondsWithinTheFigureAxes) {
 
 INSTANTIATE_TEST_SUITE_P(, PaperMission, testing::Values("square", "zigzag"));
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::mission_file_test

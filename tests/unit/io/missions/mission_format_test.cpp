@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/paths.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::mission_format_test {
 
 using Eigen::Vector3d;
 
@@ -67,11 +67,10 @@ TEST(LoadTrajectoryFile, AddsNeitherTakeOffNorLanding) {
   for (const std::string& assumption : path.assumptions)
     EXPECT_EQ(assumption.find("take-off"), std::string::npos) << assumption;
   EXPECT_EQ(refusal([] {
-              load_trajectory_file(SWIFTLET_SOURCE_DIR "/config/missions/square.yaml", control::Limits());
+              load_trajectory_file(tests::in_source("config/missions/square.yaml"), control::Limits());
             }),
-            SWIFTLET_SOURCE_DIR
-            "/config/missions/square.yaml: must hold exactly one trajectory; `swiftlet mission fly` flies "
-            "missions");
+            tests::in_source("config/missions/square.yaml") +
+                ": must hold exactly one trajectory; `swiftlet mission fly` flies missions");
 }
 
 TEST(CsvFrame, OfAFileThatNamesNoneIsThatOfTheOption) {
@@ -97,5 +96,4 @@ TEST(CsvFrame, OfAFileThatNamesNoneIsThatOfTheOption) {
       1e-9);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::mission_format_test

@@ -10,8 +10,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::placement_test {
 
 using Eigen::Vector3d;
 
@@ -197,5 +196,4 @@ TEST_F(PlacementTest, EveryFormIsHeldInsideTheFenceOption) {
   EXPECT_EQ(refused("q.plan", kPlan).rfind("--fence: ", 0), 0U) << refused("q.plan", kPlan);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::placement_test

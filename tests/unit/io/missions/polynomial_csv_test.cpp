@@ -10,8 +10,7 @@
 #include "tests/unit/ground/fault.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::polynomial_csv_test {
 
 using control::MissionItemKind;
 using Eigen::Vector3d;
@@ -117,5 +116,4 @@ TEST(PolynomialCsv, AcceptsTheMaximumOfSegments) {
   EXPECT_EQ(polynomials(repeated_hover(1024)).mission.segments.size(), 1024U);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::polynomial_csv_test

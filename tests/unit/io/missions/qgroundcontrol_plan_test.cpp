@@ -8,8 +8,7 @@
 #include "tests/unit/ground/fault.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::qgroundcontrol_plan_test {
 
 using control::MissionItemKind;
 using Eigen::Vector3d;
@@ -156,5 +155,4 @@ TEST(QGroundControlPlan, RequiresAHomeForGeographicItems) {
             "q.plan:3: mission: has items with geographic coordinates, must have a plannedHomePosition");
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::qgroundcontrol_plan_test

@@ -13,8 +13,7 @@
 #include "tests/unit/ground/fault.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::sampled_csv_test {
 
 using Eigen::Vector3d;
 
@@ -244,5 +243,4 @@ INSTANTIATE_TEST_SUITE_P(
               "s.csv:4: is 0.300 m from the row before, 0.01 s earlier: 30.00 m/s, the limit is 2.00 m/s"}),
     name_of);
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::sampled_csv_test

@@ -8,8 +8,7 @@
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/math/euler.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::setpoint_rows_test {
 
 using control::SetpointKind;
 using Eigen::Vector3d;
@@ -172,5 +171,4 @@ TEST(Resampled, InterpolatesLinearlyAndTakesTheShorterTurn) {
   EXPECT_FALSE(resampled(of({}), 4.0)());
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::setpoint_rows_test

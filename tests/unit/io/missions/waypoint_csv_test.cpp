@@ -9,8 +9,7 @@
 #include "tests/unit/ground/fault.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::waypoint_csv_test {
 
 using Eigen::Vector3d;
 
@@ -74,5 +73,4 @@ TEST(WaypointCsv, AcceptsTheMaximumOfPoints) {
   EXPECT_EQ(waypoints(hover_points(1025)).mission.segments.size(), 1024U);
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::waypoint_csv_test

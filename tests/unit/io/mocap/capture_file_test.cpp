@@ -5,14 +5,14 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/io/text_file.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::mocap {
-namespace {
+namespace swiftlet::mocap::capture_file_test {
 
 using tests::refusal;
 
-const std::string kFile = SWIFTLET_SOURCE_DIR "/tests/data/natnet_3.0_traffic.pcapng";
+const std::string kFile = tests::in_source("tests/data/natnet_3.0_traffic.pcapng");
 
 // Little-endian numbers.
 std::string le(std::uint64_t number, int bytes) {
@@ -87,5 +87,4 @@ TEST(Capture, ThatIsNoneOrCutIsRefused) {
   EXPECT_EQ(fault(text.substr(0, text.size() - 1)), "c: ends within a block");
 }
 
-}  // namespace
-}  // namespace swiftlet::mocap
+}  // namespace swiftlet::mocap::capture_file_test

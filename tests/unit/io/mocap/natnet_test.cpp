@@ -13,13 +13,13 @@
 #include "swiftlet/io/mocap/capture_file.hpp"
 #include "swiftlet/io/text_file.hpp"
 #include "tests/support/mocap/natnet_packets.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::mocap::natnet {
-namespace {
+namespace swiftlet::mocap::natnet::natnet_test {
 
 namespace packets = tests::natnet;
 
-const std::string kData = SWIFTLET_SOURCE_DIR "/tests/data/";
+const std::string kData = tests::in_source("tests/data/");
 const std::vector<Version> kVersions = {{3, 0}, {3, 1}, {4, 0}, {4, 1}, {4, 2}};
 
 std::vector<CapturedDatagram> traffic() {
@@ -219,5 +219,4 @@ TEST(NatNetMessages, WithImpossibleCountsAreRefused) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::mocap::natnet
+}  // namespace swiftlet::mocap::natnet::natnet_test

@@ -8,14 +8,12 @@
 
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::mocap {
-namespace {
+namespace swiftlet::mocap::room_test {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using tests::refusal;
 
-constexpr double kPi = 3.14159265358979323846;
 const std::string kHead = "source: natnet\nframe: zup\n";
 
 Room room_with(Axes axes) {
@@ -93,7 +91,7 @@ TEST(RoomFrameAxes, TurnTheBodyWithThem) {
 TEST(RoomFrameAxes, HaveTheOriginAndNorthOfTheRoom) {
   Room room = room_with(Axes::kZUp);
   room.origin = {1, 1, 0};
-  room.north_rad = kPi / 2;  // to the right: along -y of the motion capture
+  room.north_rad = M_PI / 2;  // to the right: along -y of the motion capture
   const NedPose pose = RoomFrame(room).body_pose({1, 0, 0}, Quaterniond::Identity());
   EXPECT_TRUE(pose.position_ned.isApprox(Vector3d(1, 0, 0))) << pose.position_ned;
   // A body that points along the forward axis of the motion capture points to the west.
@@ -147,5 +145,4 @@ TEST(RoomVehicle, IsWhereItsBodySays) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::mocap
+}  // namespace swiftlet::mocap::room_test

@@ -8,8 +8,7 @@
 
 #include "tests/support/mocap/vicon_packets.hpp"
 
-namespace swiftlet::mocap::vicon {
-namespace {
+namespace swiftlet::mocap::vicon::vicon_test {
 
 using tests::vicon_frame;
 using tests::ViconObject;
@@ -64,5 +63,4 @@ TEST(ViconFrame, ThatIsCutOrAnotherIsRefused) {
   EXPECT_STREQ(parse_frame(bytes.data(), bytes.size(), frame), "an object has no name");
 }
 
-}  // namespace
-}  // namespace swiftlet::mocap::vicon
+}  // namespace swiftlet::mocap::vicon::vicon_test

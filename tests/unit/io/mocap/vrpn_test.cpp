@@ -7,8 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::mocap::vrpn {
-namespace {
+namespace swiftlet::mocap::vrpn::vrpn_test {
 
 Bytes pose_payload(double x, double qw, std::int32_t sensor = 3) {
   Bytes out;
@@ -105,5 +104,4 @@ TEST(VrpnPose, ThatIsNoneIsRefused) {
   EXPECT_STREQ(fault, "a pose is shorter than 64 bytes");
 }
 
-}  // namespace
-}  // namespace swiftlet::mocap::vrpn
+}  // namespace swiftlet::mocap::vrpn::vrpn_test

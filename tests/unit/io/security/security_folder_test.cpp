@@ -13,8 +13,7 @@
 #include "swiftlet/io/text_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::security_folder_test {
 
 namespace fs = std::filesystem;
 
@@ -269,5 +268,4 @@ TEST_F(SecurityFolderTest, NamesTheAuthorityThatHasExpired) {
   EXPECT_EQ(refusal([&] { renew_identity(folder, "control", 30); }), sentence);
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::security_folder_test

@@ -5,17 +5,17 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/io/text_file.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::control_settings_file_test {
 
 using control::AttitudeModel;
 using control::ControlSettings;
 using tests::refusal;
 
 std::string file(const std::string& name) {
-  return read_text_file(SWIFTLET_SOURCE_DIR "/config/control/" + name + ".yaml");
+  return read_text_file(tests::in_source("config/control/") + name + ".yaml");
 }
 
 TEST(ControlSettingsFile, LoadsBothConfigurations) {
@@ -392,5 +392,4 @@ const Fault kFaults[] = {
 
 INSTANTIATE_TEST_SUITE_P(Control, SettingsFaults, testing::ValuesIn(kFaults));
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::control_settings_file_test

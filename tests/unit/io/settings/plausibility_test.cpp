@@ -8,12 +8,12 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::plant {
-namespace {
+namespace swiftlet::plant::plausibility_test {
 
 Vehicle shipped(const std::string& name) {
-  return runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/" + name + ".yaml");
+  return runtime::load_vehicle(tests::in_source("config/vehicles/") + name + ".yaml");
 }
 
 // A vehicle of 10 kg with arms of half a metre.
@@ -111,5 +111,4 @@ TEST(Plausibility, LeavesInvalidValuesToTheOtherRules) {
   EXPECT_TRUE(implausible(Vehicle()).empty());
 }
 
-}  // namespace
-}  // namespace swiftlet::plant
+}  // namespace swiftlet::plant::plausibility_test

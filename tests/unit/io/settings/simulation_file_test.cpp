@@ -3,16 +3,16 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/io/text_file.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::simulation_file_test {
 
 using plant::SimulationSettings;
 using tests::refusal;
 
 std::string file(const std::string& name) {
-  return read_text_file(SWIFTLET_SOURCE_DIR "/config/simulation/" + name + ".yaml");
+  return read_text_file(tests::in_source("config/simulation/") + name + ".yaml");
 }
 
 // default.yaml with one text replaced.
@@ -257,5 +257,4 @@ TEST(SimulationFile, NamesAMissingFile) {
             std::string::npos);
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::simulation_file_test

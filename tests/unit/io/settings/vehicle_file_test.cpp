@@ -8,16 +8,16 @@
 
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/plant/model/rotor.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::vehicle_file_test {
 
 using plant::Vehicle;
 using tests::refusal;
 
 const std::string& kaylion_text() {
-  static const std::string text = read_text_file(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+  static const std::string text = read_text_file(tests::in_source("config/vehicles/kaylion.yaml"));
   return text;
 }
 
@@ -56,7 +56,7 @@ std::vector<double> numbers(const Vehicle& v) {
 }
 
 TEST(VehicleFile, KayLionHasTheIdentifiedParameters) {
-  const Vehicle v = load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+  const Vehicle v = load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
   EXPECT_EQ(v.name, "kaylion");
   EXPECT_EQ(v.mass_kg, 0.040);
   EXPECT_EQ(v.inertia, Eigen::Matrix3d(Eigen::Vector3d(4.4e-5, 4.5e-5, 8.8e-5).asDiagonal()));
@@ -225,5 +225,4 @@ TEST(VehicleFile, IgnoresCommentsAndBlankLines) {
   EXPECT_EQ(numbers(parse_vehicle(flow, "v.yaml")), numbers(parse_vehicle(kaylion_text(), "v.yaml")));
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::vehicle_file_test

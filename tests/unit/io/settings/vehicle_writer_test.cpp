@@ -4,14 +4,14 @@
 
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/io/text_file.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::vehicle_writer_test {
 
 using tests::refusal;
 
-const std::string kKaylion = SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml";
+const std::string kKaylion = tests::in_source("config/vehicles/kaylion.yaml");
 
 std::string written(const plant::VehicleUncertainty& uncertainty = {}) {
   return vehicle_text(load_vehicle(kKaylion), load_vehicle_sources(kKaylion), uncertainty,
@@ -86,5 +86,4 @@ TEST(VehicleUncertaintySection, RefusesInvalidEntries) {
   EXPECT_NE(refused(bad).find("value: is 1.5, must be"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::vehicle_writer_test

@@ -5,8 +5,7 @@
 #include "swiftlet/io/config_error.hpp"
 #include "tests/support/ulog_writer.hpp"
 
-namespace swiftlet::ulog {
-namespace {
+namespace swiftlet::ulog::ulog_test {
 
 using tests::UlogWriter;
 
@@ -134,5 +133,4 @@ TEST(Ulog, NamesWhatIsMissing) {
             "a.ulg: uses features of ULog that are not known here");
 }
 
-}  // namespace
-}  // namespace swiftlet::ulog
+}  // namespace swiftlet::ulog::ulog_test

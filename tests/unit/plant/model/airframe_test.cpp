@@ -3,10 +3,10 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "swiftlet/math/linear_algebra.hpp"
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::plant {
-namespace {
+namespace swiftlet::plant::airframe_test {
 
 using tests::kaylion;
 using tests::multirotor;
@@ -75,10 +75,9 @@ TEST(Airframe, TrimBalancesTheWeightWithoutAMoment) {
     EXPECT_NEAR(wrench.tail<3>().norm(), 0.0, 1e-13);
     // Least squares: the trim lies in the row space of the effectiveness.
     const Eigen::MatrixXd e = effectiveness(vehicle);
-    const Eigen::VectorXd within = e.transpose() * (e * e.transpose()).ldlt().solve(e * trim);
+    const Eigen::VectorXd within = e.transpose() * math::solve_positive_definite(e * e.transpose(), e * trim);
     EXPECT_NEAR((within - trim).norm(), 0.0, 1e-10);
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::plant
+}  // namespace swiftlet::plant::airframe_test

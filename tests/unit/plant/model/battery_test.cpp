@@ -6,8 +6,7 @@
 
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::plant {
-namespace {
+namespace swiftlet::plant::battery_test {
 
 using tests::kaylion;
 using tests::UniformRandom;
@@ -67,5 +66,4 @@ TEST(Battery, TerminalVoltageIsNeverNegative) {
   EXPECT_EQ(terminal_voltage(kaylion().battery, 1.0, 99.0), 0.0);
 }
 
-}  // namespace
-}  // namespace swiftlet::plant
+}  // namespace swiftlet::plant::battery_test

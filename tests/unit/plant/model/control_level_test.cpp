@@ -4,8 +4,7 @@
 
 #include "swiftlet/plant/model/vehicle_command.hpp"
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::control_level_test {
 
 using plant::ControlLevel;
 using plant::ControlLevels;
@@ -48,5 +47,4 @@ TEST(VehicleCommand, RotorsOffKeepsHeaderAndLevel) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::control_level_test

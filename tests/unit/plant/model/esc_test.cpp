@@ -6,8 +6,7 @@
 
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::plant {
-namespace {
+namespace swiftlet::plant::esc_test {
 
 using tests::kaylion;
 using tests::UniformRandom;
@@ -84,5 +83,4 @@ TEST(Esc, FiniteArgumentsGiveFiniteResults) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::plant
+}  // namespace swiftlet::plant::esc_test

@@ -8,8 +8,7 @@
 #include "swiftlet/plant/model/airframe.hpp"
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::plant {
-namespace {
+namespace swiftlet::plant::motor_test {
 
 using tests::kaylion;
 using tests::UniformRandom;
@@ -189,5 +188,4 @@ TEST(Motor, DragOpposesRotationInBothDirections) {
   EXPECT_LT(speed_rate_from_current(d, 0.0, 100.0), 0.0);
 }
 
-}  // namespace
-}  // namespace swiftlet::plant
+}  // namespace swiftlet::plant::motor_test

@@ -7,8 +7,7 @@
 #include "swiftlet/plant/model/airframe.hpp"
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::plant {
-namespace {
+namespace swiftlet::plant::propulsion_test {
 
 using tests::kaylion;
 using tests::UniformRandom;
@@ -80,5 +79,4 @@ TEST(Propulsion, ClampsUnreachableThrust) {
   EXPECT_EQ(throttle_from_steady_thrust(kaylion(), 3.7, -1.0), 0.0);
 }
 
-}  // namespace
-}  // namespace swiftlet::plant
+}  // namespace swiftlet::plant::propulsion_test

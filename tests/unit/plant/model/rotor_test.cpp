@@ -4,8 +4,7 @@
 
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::plant {
-namespace {
+namespace swiftlet::plant::rotor_test {
 
 using tests::kaylion;
 using tests::UniformRandom;
@@ -47,5 +46,4 @@ TEST(Rotor, BladeCoefficientsRoundTrip) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::plant
+}  // namespace swiftlet::plant::rotor_test

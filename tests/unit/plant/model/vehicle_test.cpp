@@ -9,8 +9,7 @@
 
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::plant {
-namespace {
+namespace swiftlet::plant::vehicle_test {
 
 using tests::kaylion;
 using tests::multirotor;
@@ -160,5 +159,4 @@ TEST(Validate, AcceptsAnOffsetCentreOfMass) {
   EXPECT_TRUE(validate(vehicle).empty());
 }
 
-}  // namespace
-}  // namespace swiftlet::plant
+}  // namespace swiftlet::plant::vehicle_test

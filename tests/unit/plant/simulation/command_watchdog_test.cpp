@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::command_watchdog_test {
 
 using plant::ActuatorCommand;
 using plant::CommandFault;
@@ -223,5 +222,4 @@ TEST(CommandWatchdog, RefusesCommandsOlderThanTheTimeout) {
   EXPECT_EQ(watchdog.accept(command(1000), 1200), CommandFault::kNone);
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::command_watchdog_test

@@ -15,8 +15,7 @@
 #include "tests/unit/plant/model/vehicles.hpp"
 #include "tests/unit/plant/simulation/worlds.hpp"
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::dynamics_test {
 
 using Eigen::Vector3d;
 using plant::Dynamics;
@@ -346,5 +345,4 @@ TEST(Dynamics, GroundEffectRaisesTheThrust) {
   EXPECT_EQ(factor_at(0.1 * kRadius_m), factor_at(0.5 * kRadius_m)) << "no nearer";
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::dynamics_test

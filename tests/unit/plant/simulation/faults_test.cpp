@@ -14,8 +14,7 @@
 #include "tests/unit/plant/model/vehicles.hpp"
 #include "tests/unit/plant/simulation/worlds.hpp"
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::faults_test {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -378,5 +377,4 @@ TEST_F(PlantFaults, WindAcceleratesAVehicleWithDrag) {
               1e-9);
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::faults_test

@@ -10,8 +10,7 @@
 #include "tests/unit/plant/model/vehicles.hpp"
 #include "tests/unit/plant/simulation/worlds.hpp"
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::ground_contact_test {
 
 using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
@@ -203,5 +202,4 @@ TEST(GroundContact, FloorIsAtTheEndOfTheLegs) {
   EXPECT_FALSE(ground.out_of_reach(-0.05));
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::ground_contact_test

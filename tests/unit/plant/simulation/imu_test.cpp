@@ -8,8 +8,7 @@
 #include "tests/unit/plant/model/vehicles.hpp"
 #include "tests/unit/plant/simulation/worlds.hpp"
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::imu_test {
 
 using Eigen::Vector3d;
 using plant::Imu;
@@ -197,5 +196,4 @@ TEST(Imu, IntegratesToTheVelocityChangeOfAnImpact) {
   EXPECT_NEAR(change, 0.0, 1.0e-9);  // from rest to rest
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::imu_test

@@ -8,8 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::mocap_test {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -260,5 +259,4 @@ TEST(Mocap, UnevenFramesDependOnTheSeedOnly) {
   EXPECT_GT(left_out, 20'000);
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::mocap_test

@@ -10,8 +10,7 @@
 
 #include "swiftlet/plant/simulation/atmosphere.hpp"
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::navigation_sensors_test {
 
 using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
@@ -205,5 +204,4 @@ TEST(NavigationSensors, RepeatWithTheirSeed) {
   EXPECT_NE(pressure_pa, other.sample(truth).barometer->pressure_pa);
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::navigation_sensors_test

@@ -10,8 +10,7 @@
 #include "tests/unit/plant/model/vehicles.hpp"
 #include "tests/unit/plant/simulation/worlds.hpp"
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::plant_simulation_test {
 
 using plant::PlantSimulation;
 using plant::SimulationSettings;
@@ -138,5 +137,4 @@ TEST(PlantSimulation, StartsWithSamplesOfStampZero) {
   EXPECT_EQ(plant.battery()->voltage_v, 4.19);
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::plant_simulation_test

@@ -7,8 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::settings_test {
 
 using plant::SimulationSettings;
 
@@ -146,5 +145,4 @@ TEST(SimulationSettings, RequiresSamplePeriodsOfWholeSteps) {
   EXPECT_TRUE(plant::validate(settings).empty());
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::settings_test

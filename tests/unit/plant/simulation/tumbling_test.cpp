@@ -12,8 +12,7 @@
 #include "tests/unit/plant/simulation/paper_equations.hpp"
 #include "tests/unit/plant/simulation/worlds.hpp"
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::tumbling_test {
 
 using Eigen::Vector3d;
 using paper::Motor;
@@ -102,5 +101,4 @@ TEST(Tumbling, MatchesThePaperWithProductsOfInertia) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::tumbling_test

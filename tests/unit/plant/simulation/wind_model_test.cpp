@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::wind_model_test {
 
 using Eigen::Vector3d;
 using plant::AirSettings;
@@ -118,5 +117,4 @@ TEST(WindModel, DrydenGustsHaveTheirVarianceFromTheStart) {
   EXPECT_NEAR(squares / 9000.0, 1.0, 0.06);
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::wind_model_test

@@ -10,6 +10,7 @@
 #include "swiftlet/services/control/command_server.hpp"
 #include "swiftlet/services/control/inner_loop.hpp"
 #include "swiftlet/services/messages/convert.hpp"
+#include "tests/support/paths.hpp"
 
 namespace swiftlet::services {
 
@@ -21,8 +22,8 @@ constexpr std::uint64_t kClient = 77;
 class CommandServerTest : public testing::Test {
  protected:
   CommandServerTest()
-      : vehicle_(runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml")),
-        settings_(runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml")),
+      : vehicle_(runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"))),
+        settings_(runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml"))),
         loop_(vehicle_, settings_),
         command_server_(loop_, vehicle_, settings_, GainDesigner(vehicle_, settings_), wake_) {}
 

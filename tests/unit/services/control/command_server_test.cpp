@@ -1,10 +1,12 @@
 // Requests through the command server and the inner loop, and the allocations of the inner loop.
 #include "swiftlet/services/control/command_server.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -13,8 +15,7 @@
 #include "tests/support/malloc_guard.hpp"
 #include "tests/unit/services/control/command_server_fixture.hpp"
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::command_server_test {
 
 using namespace std::chrono_literals;
 
@@ -129,6 +130,36 @@ TEST_F(CommandServerTest, IgnoresRepetitionsOfAPendingRequest) {
   for (int i = 0; i < 3; ++i) command_server_.on_command(command(Command_Constants::ARM, 1));
   step();
   EXPECT_EQ(command_server_.collect().size(), 1U);
+}
+
+// GIVEN a mission that takes long to check WHEN a command with its client and id arrives meanwhile THEN the one heard
+// first is evaluated and answered, and the other one is taken for its repetition.
+TEST_F(CommandServerTest, ARequestClaimsItsKeyBeforeItIsChecked) {
+  settle();
+  control::Mission lengthy;  // its rotor thrusts are checked at 40,000 points
+  lengthy.segments.assign(100, control::minimum_jerk({0, 0, -1}, 0.0, {0, 0, -1}, 0.0, 2.0));
+  lengthy.items = {
+      {control::MissionItemKind::kTakeoff, {0, 0, -1}, 0.0, true, 0.5, 0.0},
+      {control::MissionItemKind::kTrajectory, {0, 0, 0}, 0.0, true, 0.5, 0.0, 0, 100},
+  };
+  for (std::uint64_t id = 1; id <= 5; ++id) {  // the threads may be delayed now and then
+    lengthy.id = id;
+    msg::Mission mission = comms::to_message(lengthy);
+    mission.client(kClient);
+    std::atomic<bool> begins{false};
+    std::thread upload([&] {
+      begins = true;
+      command_server_.on_mission(mission);
+    });
+    while (!begins) std::this_thread::yield();
+    command_server_.on_command(command(Command_Constants::HOLD, id));
+    upload.join();
+    EXPECT_EQ(loop_.requests.read_available(), 1U);
+    step();
+    const std::vector<RequestResult> answers = command_server_.collect();
+    EXPECT_EQ(answers.size(), 1U);
+    for (const RequestResult& answer : answers) EXPECT_EQ(answer.id, id);
+  }
 }
 
 TEST_F(CommandServerTest, DistinguishesEqualIdsOfDifferentClients) {
@@ -324,6 +355,22 @@ TEST_F(CommandServerTest, InnerLoopDoesNotAllocate) {
   EXPECT_EQ(command_server_.collect().size(), 4U);
 }
 
+// A standby that hears both would keep the first one, and fly it after a failover.
+TEST_F(CommandServerTest, RefusesADifferentMissionOfAPendingId) {
+  settle();
+  command_server_.on_mission(mission(2, 1.0));
+  msg::Mission other = mission(2, 1.5);
+  other.client(kClient + 1);
+  command_server_.on_mission(other);
+  step();
+  const std::vector<RequestResult> answers = command_server_.collect();
+  ASSERT_EQ(answers.size(), 2U);
+  EXPECT_EQ(answers[0].client, kClient + 1);
+  EXPECT_STREQ(answers[0].outcome.reason, "mission id 2 belongs to another mission: upload with a new id");
+  EXPECT_TRUE(answers[1].outcome.accepted) << answers[1].outcome.reason;
+  EXPECT_EQ(command_server_.mission(2).items().at(1).position_ned()[0], 1.0);
+}
+
 TEST_F(CommandServerTest, RefusesADifferentMissionOfAKnownId) {
   settle();
   command_server_.on_mission(mission(2, 1.0));
@@ -343,5 +390,4 @@ TEST_F(CommandServerTest, RefusesADifferentMissionOfAKnownId) {
   EXPECT_TRUE(answers[1].outcome.accepted) << answers[1].outcome.reason;
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::command_server_test

@@ -14,11 +14,12 @@
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
+#include "swiftlet/services/messages/convert.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/private_domain.hpp"
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::control_service_test {
 
 namespace msg = comms::msg;
 namespace topics = comms::topics;
@@ -57,9 +58,9 @@ class RealtimeService : public testing::Test {
     runtime::RealtimeSettings realtime;
     realtime.priority = 10;
     service_ = std::make_unique<ControlService>(
-        runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml"),
-        runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml"), 0,
-        control_node_, realtime, runtime::Clock::kRealtime);
+        runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")),
+        runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml")), 0, control_node_,
+        realtime, runtime::Clock::kRealtime);
     telemetry_ = std::thread([this] { service_->run(stop_); });
   }
 
@@ -69,7 +70,9 @@ class RealtimeService : public testing::Test {
     imu.stamp_ns(static_cast<std::int64_t>(sequence_) * 2'000'000);
     imu.sequence_number(sequence_);
     imu.specific_force_frd({0.0, 0.0, -9.81});
+    comms::set_obeyed_command({true, false, 0, 0}, imu);
     imu_.publish(imu);
+    last_imu_ = imu;
     msg::MocapPose pose;
     pose.stamp_ns(imu.stamp_ns());
     pose.sequence_number(sequence_);
@@ -98,6 +101,7 @@ class RealtimeService : public testing::Test {
   comms::Publisher<msg::Imu> imu_ = vehicle_node_.publish(topics::kImu);
   comms::Publisher<msg::MocapPose> pose_ = vehicle_node_.publish(topics::kMocapPose);
   std::uint64_t sequence_ = 0;
+  msg::Imu last_imu_;
   std::atomic<bool> stop_{false};
   std::unique_ptr<ControlService> service_;
   std::thread telemetry_;
@@ -124,5 +128,23 @@ TEST_F(RealtimeService, StatusReflectsTheCurrentScheduling) {
   EXPECT_TRUE(becomes(1, false));
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+// A plant in lockstep repeats a sample while its time stands still: the command for it may be lost.
+TEST_F(RealtimeService, ARepeatedSampleIsAnsweredWithTheSameCommand) {
+  tests::Inbox<msg::ActuatorCommand> commands;
+  const auto subscription = vehicle_node_.subscribe<msg::ActuatorCommand>(
+      topics::kActuatorCommand, [&](const msg::ActuatorCommand& command) { commands.put(command); });
+  ASSERT_TRUE(eventually([&] {
+    send_samples();
+    return commands.size() > 0;
+  }));
+  ASSERT_TRUE(commands.wait([&](const auto& all) { return all.back().imu_sequence_number() == sequence_; }));
+  const std::size_t before = commands.size();
+  ASSERT_TRUE(eventually([&] {
+    imu_.publish(last_imu_);
+    return commands.size() > before + 3;
+  }));
+  const auto all = commands.items();
+  for (std::size_t i = before; i < all.size(); ++i) EXPECT_TRUE(all[i] == all[before - 1]) << i;
+}
+
+}  // namespace swiftlet::services::control_service_test

@@ -10,8 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::failover_test {
 
 constexpr std::int64_t kPeriodNs = 2'000'000;
 constexpr std::int64_t kStartNs = 5'000'000'000;  // of the host clock
@@ -480,5 +479,4 @@ TEST(Failover, TermsRiseWithEachTakeover) {
   EXPECT_LE(vehicle.longest_gap_ns(), Failover::kPatienceNs + 3 * kPeriodNs);
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::failover_test

@@ -9,11 +9,11 @@
 #include "swiftlet/io/settings/fixed_settings.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/io/text_file.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::gain_designer_test {
 
-const std::string kFile = SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml";
+const std::string kFile = tests::in_source("config/control/motor_lag.yaml");
 
 class GainDesignerTest : public testing::Test {
  protected:
@@ -28,7 +28,7 @@ class GainDesignerTest : public testing::Test {
     return designer_.design(asked, designer_.initial(), change_).reason;
   }
 
-  GainDesigner designer_{runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml"),
+  GainDesigner designer_{runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")),
                          runtime::load_control_settings(kFile), runtime::load_fixed_settings(kFile)};
   control::GainChange change_;
 };
@@ -73,5 +73,4 @@ TEST_F(GainDesignerTest, RefusesSettingsThatBreakARuleOrAreUnstable) {
   EXPECT_EQ(refusal(asked).rfind("disturbance.bandwidth_rad_s: cannot change to 0 in flight", 0), 0U);
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::gain_designer_test

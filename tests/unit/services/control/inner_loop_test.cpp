@@ -8,9 +8,9 @@
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::inner_loop_test {
 
 constexpr std::int64_t kPeriod = 2'000'000;  // ns
 constexpr std::uint64_t kSamplesPerPose = 5;
@@ -50,8 +50,8 @@ class StandbyLoop : public testing::Test {
 
   plant::ImuSample imu_;
   plant::PoseSample pose_;
-  InnerLoop loop_{runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml"),
-                  runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml")};
+  InnerLoop loop_{runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")),
+                  runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml"))};
 };
 
 TEST_F(StandbyLoop, IsReadyWhenItsEstimateHasSettled) {
@@ -70,5 +70,4 @@ TEST_F(StandbyLoop, IsNotReadyAsLongAsItFollowsNobody) {
   EXPECT_TRUE(run(kPeriod, true));
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::inner_loop_test

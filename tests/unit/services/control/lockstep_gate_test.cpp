@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::lockstep_gate_test {
 
 using Stream = LockstepGate::Stream;
 
@@ -51,5 +50,4 @@ TEST(LockstepGate, RecognisesOldSamplesPerStream) {
   EXPECT_TRUE(gate.is_new(Stream::kBattery, 4)) << "each stream has its own counter";
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::lockstep_gate_test

@@ -12,9 +12,9 @@
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/services/control/delay_monitor.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::loop_delay_test {
 
 constexpr std::int64_t kPeriodNs = 2'000'000;
 
@@ -67,8 +67,8 @@ TEST(LoopDelay, IgnoresTheCommandThatWasObeyedBeforeTheFirstSample) {
 class DelayMargin : public testing::Test {
  protected:
   const control::ControlSettings settings_ =
-      runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
-  const plant::Vehicle vehicle_ = runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+      runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml"));
+  const plant::Vehicle vehicle_ = runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
   const control::ControlDesign design_ = control::design(vehicle_, settings_);
   const control::ControlGains gains_ = control::control_gains(design_, settings_);
   const control::ObservedRotors rotors_ = control::observed_rotors(design_.rotor_lag_s, settings_);
@@ -105,5 +105,4 @@ TEST_F(DelayMargin, FollowsTheGainsWhenTheirChangeIsComplete) {
   EXPECT_LT(monitor.update({}, stiffer, true).margin_s, before_s);
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::loop_delay_test

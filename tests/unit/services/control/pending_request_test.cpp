@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::pending_request_test {
 
 using State = PendingRequest::State;
 
@@ -41,5 +40,4 @@ TEST(PendingRequest, OneOfTwoThreadsClaimsIt) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::pending_request_test

@@ -6,8 +6,7 @@
 
 #include "swiftlet/control/types/mission.hpp"
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::plan_store_test {
 
 using control::Mission;
 using MissionStore = PlanStore<Mission>;
@@ -68,5 +67,4 @@ TEST(PlanStore, KeepsALentMissionUntilALaterStateIsTaken) {
   EXPECT_EQ(store.find(1), nullptr);
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::plan_store_test

@@ -8,8 +8,7 @@
 #include "tests/support/malloc_guard.hpp"
 #include "tests/unit/services/control/command_server_fixture.hpp"
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::standby_command_server_test {
 
 // A standby that receives the same samples as the fixture's controller.
 class StandbyCommandServerTest : public CommandServerTest {
@@ -119,6 +118,25 @@ TEST_F(StandbyCommandServerTest, FollowsOnlyTheControllerOfTheTermItFollows) {
   pass_state_to_standby();
   step_standby(Role::kStandby);
   EXPECT_EQ(standby_state().mode, control::Mode::kArmed);
+}
+
+// GIVEN a standby that follows a mission WHEN a controller of another term tells of its own flight, and more missions
+// arrive than the standby stores THEN it keeps the mission that its inner loop flies.
+TEST_F(StandbyCommandServerTest, KeepsTheMissionThatItFollows) {
+  fly_mission();
+  standby_server_.on_mission(mission(2, 1.0));
+  follow(20);
+  FailoverState rival;
+  rival.term = kTerm + 1;
+  standby_server_.follow(rival);
+  step_standby(Role::kStandby);
+  for (std::uint64_t id = 11; id <= 15; ++id) standby_server_.on_flown_mission(mission(id, 1.0));
+  standby_server_.collect();
+  EXPECT_EQ(standby_server_.mission(2).id(), 2U);
+  for (int i = 0; i < 1500; ++i) {  // into the next item of the mission
+    step();
+    step_standby(Role::kStandby);
+  }
 }
 
 TEST_F(StandbyCommandServerTest, ContinuesAMissionKnownFromItsUpload) {
@@ -253,5 +271,4 @@ TEST_F(StandbyCommandServerTest, FollowingDoesNotAllocate) {
   EXPECT_EQ(calls, 0U);
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::standby_command_server_test

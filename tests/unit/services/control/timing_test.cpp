@@ -6,8 +6,7 @@
 #include "swiftlet/services/control/step_timing.hpp"
 #include "swiftlet/services/plant/answer_latencies.hpp"
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::timing_test {
 
 constexpr std::int64_t kPeriod = 2'000'000;  // ns
 
@@ -135,5 +134,4 @@ TEST(AnswerLatencies, CountUnansweredSamplesAfterThePatience) {
   EXPECT_EQ(times.times().count(), 1U);
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::timing_test

@@ -7,13 +7,12 @@
 
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::vehicle_sample_test {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
 TEST(VehicleSample, HasWhatTheMessagesShare) {
-  comms::msg::VehicleOdometry message = comms::tests::example<comms::msg::VehicleOdometry>();
+  comms::msg::VehicleOdometry message = comms::fixtures::example<comms::msg::VehicleOdometry>();
   message.battery_sequence_number(4);
   comms::set_obeyed_command({true, true, 7, 99}, message);
   const VehicleSample sample = vehicle_sample(message);
@@ -25,7 +24,7 @@ TEST(VehicleSample, HasWhatTheMessagesShare) {
 }
 
 TEST(VehicleSample, AnInvalidMessageIsNotFinite) {
-  comms::msg::VehicleOdometry message = comms::tests::example<comms::msg::VehicleOdometry>();
+  comms::msg::VehicleOdometry message = comms::fixtures::example<comms::msg::VehicleOdometry>();
   message.q_ned_from_frd({0.0, 0.0, 0.0, 0.0});
   const VehicleSample sample = vehicle_sample(message);
   EXPECT_EQ(sample.stamp_ns(), message.stamp_ns());
@@ -46,5 +45,4 @@ TEST(AnsweredSamples, AreOfOneKind) {
   EXPECT_EQ(std::string(answered.ignored(12 * kSecond + 2)), "vehicle_odometry");
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::vehicle_sample_test

@@ -8,8 +8,7 @@
 #include "swiftlet/services/dds/node.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::comms {
-namespace {
+namespace swiftlet::comms::dds_profile_test {
 
 // Fast DDS keeps the profiles of all files that it has read.
 std::string unique_name() {
@@ -118,5 +117,4 @@ TEST_F(DdsProfiles, AreRefusedIfBroken) {
   EXPECT_THROW(Node(settings_with("/no/such/profile.xml")), runtime::ConfigError);
 }
 
-}  // namespace
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::comms::dds_profile_test

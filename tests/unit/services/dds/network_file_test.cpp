@@ -10,8 +10,7 @@
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::comms {
-namespace {
+namespace swiftlet::comms::network_file_test {
 
 NodeSettings applied(const std::string& text, NodeSettings settings = {}) {
   apply_network_file(text, "/etc/swiftlet/network.yaml", settings);
@@ -29,13 +28,14 @@ std::string refusal(const std::string& text) {
 
 TEST(NetworkFile, SetsWhatItHas) {
   const NodeSettings peers =
-      applied("peers: [lab2, 10.0.0.7:7412]\ninterfaces: [lo]\ntransport: shm\ndds_profile: profile.xml\n");
+      applied("peers: [lab2, 10.0.0.7:7412]\ninterfaces: [lo]\ndds_profile: profile.xml\n");
   EXPECT_EQ(peers.network.peers, (std::vector<std::string>{"lab2", "10.0.0.7:7412"}));
   EXPECT_EQ(peers.network.interfaces, std::vector<std::string>{"lo"});
-  EXPECT_EQ(peers.transport, Transport::kSharedMemory);
   EXPECT_EQ(peers.network.dds_profile, "/etc/swiftlet/profile.xml");
   EXPECT_EQ(applied("discovery_servers: [lab1, lab2:11812]\n").network.discovery_servers, "lab1;lab2:11812");
   EXPECT_TRUE(applied("localhost_only: true\n").localhost_only);
+  EXPECT_TRUE(applied("open_network: false\n").on_loopback());
+  EXPECT_FALSE(applied("open_network: true\n").on_loopback());
   EXPECT_EQ(applied("interfaces: [lo]\n", peers).network.peers, peers.network.peers);
 }
 
@@ -65,21 +65,24 @@ TEST(NetworkFile, NamesWhatIsWrong) {
       ", must be HOST or HOST:PORT, a name or IPv4 address and a port from 1 to 65535";
   EXPECT_EQ(refusal("peers:\n  - lab2\n  - lab3:0\n"), file + "3: peers[1]: is 'lab3:0'" + address);
   EXPECT_EQ(refusal("discovery_servers: [':1']\n"), file + "1: discovery_servers[0]: is ':1'" + address);
-  EXPECT_EQ(refusal("transport: udp\ninterfaces: [wlan9]\n"),
+  EXPECT_EQ(refusal("localhost_only: false\ninterfaces: [wlan9]\n"),
             file +
                 "2: interfaces[0]: is 'wlan9', must be an interface that is up, by name or IPv4 address: " +
                 interfaces_text(false));
-  EXPECT_EQ(refusal("transport: tcp\n"), file + "1: transport: is tcp, must be udp or shm");
   EXPECT_EQ(refusal("peers: [lab2]\nlocalhost_only: true\n"),
             file + "1: peers: excludes localhost_only: true");
   EXPECT_EQ(refusal("peers: [lab2]\ndiscovery_servers: [lab1]\n"),
             file + "2: discovery_servers: excludes peers");
   EXPECT_EQ(refusal("interfaces: [lo]\nlocalhost_only: true\n"),
             file + "1: interfaces: excludes localhost_only: true");
-  EXPECT_NE(refusal("peer: [lab2]\n").find(file + "1: "), std::string::npos) << refusal("peer: [lab2]\n");
+  for (const std::string key : {"peer", "transport"}) {
+    const std::string unknown = refusal("interfaces: [lo]\n" + key + ": udp\n");
+    EXPECT_EQ(unknown.find(file + "2: " + key + ": is unknown, must be one of "), 0U) << unknown;
+  }
   EXPECT_NE(refusal("peers: []\n"), "accepted");
   EXPECT_NE(refusal("localhost_only: yes please\n"), "accepted");
+  EXPECT_EQ(refusal("open_network: true\nlocalhost_only: true\n"),
+            file + "1: open_network: excludes localhost_only: true");
 }
 
-}  // namespace
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::comms::network_file_test

@@ -1,6 +1,7 @@
 #include "swiftlet/services/dds/network_qos.hpp"
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <netinet/in.h>
 #include <optional>
@@ -14,11 +15,11 @@
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/dds/participant_session.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::comms::tests {
-namespace {
+namespace swiftlet::comms::fixtures::network_qos_test {
 
 using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
@@ -45,12 +46,29 @@ class TakenPort {
   const int socket_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
 };
 
+// A server of Fast DDS may end that takes in two changes of a participant at once: of which the first is that it joins.
+TEST(ParticipantSession, WaitsBeforeItChangesWhatItAnnouncedFirst) {
+  const DomainLock lock;
+  NodeSettings settings;
+  settings.name = "client";
+  settings.domain = lock.domain();
+  settings.open_network = true;
+  settings.network.discovery_servers = "127.0.0.1:11811";
+  const auto began = std::chrono::steady_clock::now();
+  const ParticipantSession session(settings, {}, guard_of(settings), nullptr);
+  EXPECT_GE(session.next_announcement(), began + kAnnouncementSpacing);
+  settings.network.discovery_servers.clear();
+  const ParticipantSession without(settings, {}, guard_of(settings), nullptr);
+  EXPECT_LE(without.next_announcement(), std::chrono::steady_clock::now());
+}
+
 // GIVEN a host on which the first ports for samples are taken WHEN a process announces a change, as a source does, and
 // subscribes then THEN samples reach it, and nothing is sent to the ports that others have taken.
 TEST(SetNetwork, AnnouncesTheOwnPortAlsoAfterAChange) {
   const DomainLock lock;
   NodeSettings settings;
   settings.domain = lock.domain();
+  settings.open_network = true;
   settings.network.peers = {"127.0.0.1"};
   const DiscoveryPorts ports = discovery_ports(settings.domain);
   const TakenPort first(ports.first + 1);
@@ -85,5 +103,4 @@ TEST(SetNetwork, RefusesMalformedPeers) {
   EXPECT_THROW(Node{settings}, runtime::ConfigError);
 }
 
-}  // namespace
-}  // namespace swiftlet::comms::tests
+}  // namespace swiftlet::comms::fixtures::network_qos_test

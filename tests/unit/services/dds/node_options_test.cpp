@@ -8,8 +8,7 @@
 
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::comms {
-namespace {
+namespace swiftlet::comms::node_options_test {
 
 class NodeOptions : public testing::Test {
  protected:
@@ -42,15 +41,36 @@ TEST_F(NodeOptions, RefuseWhatCannotBe) {
   EXPECT_FALSE(parses("--discovery-server lab1 --localhost-only"));
 }
 
+TEST_F(NodeOptions, OpenTheNetwork) {
+  ASSERT_TRUE(parses(""));
+  EXPECT_TRUE(settings_.on_loopback());
+  ASSERT_TRUE(parses("--open-network"));
+  EXPECT_FALSE(settings_.on_loopback());
+  EXPECT_FALSE(parses("--open-network --localhost-only"));
+  setenv("SWIFTLET_OPEN_NETWORK", "1", 1);
+  ASSERT_TRUE(parses(""));
+  EXPECT_FALSE(settings_.on_loopback());
+  ASSERT_TRUE(parses("--localhost-only"));
+  EXPECT_TRUE(settings_.on_loopback());
+  unsetenv("SWIFTLET_OPEN_NETWORK");
+  setenv("ROS_LOCALHOST_ONLY", "1", 1);
+  ASSERT_TRUE(parses("--open-network"));
+  EXPECT_FALSE(settings_.on_loopback());
+  unsetenv("ROS_LOCALHOST_ONLY");
+  settings_ = {};
+  settings_.network_key_file = "lab.key";
+  EXPECT_FALSE(settings_.on_loopback());
+  settings_.localhost_only = true;
+  EXPECT_TRUE(settings_.on_loopback());
+}
+
 TEST_F(NodeOptions, WinOverTheNetworkFile) {
   const tests::TemporaryFolder folder;
-  const std::string peers = "--network " + folder.write("peers.yaml", "peers: [lab2]\ntransport: shm\n");
+  const std::string peers = "--network " + folder.write("peers.yaml", "peers: [lab2]\n");
   ASSERT_TRUE(parses(peers));
   EXPECT_EQ(settings_.network.peers, std::vector<std::string>{"lab2"});
-  EXPECT_EQ(settings_.transport, Transport::kSharedMemory);
-  ASSERT_TRUE(parses("--peer lab3 --transport udp " + peers));
+  ASSERT_TRUE(parses("--peer lab3 " + peers));
   EXPECT_EQ(settings_.network.peers, std::vector<std::string>{"lab3"});
-  EXPECT_EQ(settings_.transport, Transport::kUdp);
   ASSERT_TRUE(parses("--localhost-only " + peers));
   EXPECT_TRUE(settings_.network.peers.empty());
   ASSERT_TRUE(parses("--discovery-server lab1 " + peers));
@@ -118,5 +138,4 @@ TEST_F(NodeOptions, TakeTheProfileOfEitherFastDds) {
   unsetenv("FASTRTPS_DEFAULT_PROFILES_FILE");
 }
 
-}  // namespace
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::comms::node_options_test

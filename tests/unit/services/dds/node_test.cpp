@@ -22,19 +22,17 @@
 #include "tests/unit/services/dds/steady_sender.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::comms::tests {
-namespace {
+namespace swiftlet::comms::fixtures::node_test {
 
 using swiftlet::comms::DomainLock;
 using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
 using namespace std::chrono_literals;
 
-NodeSettings settings(const DomainLock& lock, const char* name, Transport transport = Transport::kUdp) {
+NodeSettings settings(const DomainLock& lock, const char* name) {
   NodeSettings settings;
   settings.name = name;
   settings.domain = lock.domain();
-  settings.transport = transport;
   settings.localhost_only = true;
   return settings;
 }
@@ -113,6 +111,43 @@ TEST(Node, ACallbackThatThrowsEndsItsSubscriptionAlone) {
   EXPECT_EQ(ill_calls, 1);
 }
 
+TEST(NodeDeathTest, ACallbackThatThrowsEndsTheProcess) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto receive_and_throw = [] {
+    const DomainLock lock;
+    Node here(settings(lock, "here"));
+    Node there(settings(lock, "there"));
+    const auto throws = there.subscribe<msg::Imu>(
+        topics::kImu, [](const msg::Imu&) { throw std::runtime_error("the step failed"); });
+    auto publisher = here.publish(topics::kImu);
+    eventually(
+        [&] {
+          publisher.publish(example<msg::Imu>());
+          return false;
+        },
+        20s);
+  };
+  EXPECT_DEATH(receive_and_throw(), "the step failed");
+  const auto discover_and_throw = [] {
+    const DomainLock lock;
+    Node here(settings(lock, "here"));
+    here.on_peer([](const PeerEvent&) { throw std::runtime_error("the log is full"); });
+    Node there(settings(lock, "there"));
+    eventually([] { return false; }, 20s);
+  };
+  EXPECT_DEATH(discover_and_throw(), "the log is full");
+}
+
+TEST(Node, NoNameOfAPeerControlsATerminal) {
+  const DomainLock lock;
+  Node here(settings(lock, "here"));
+  Inbox<std::string> names;
+  here.on_peer([&](const PeerEvent& event) { names.put(event.name); });
+  Node there(settings(lock, "\x1b[2Jground\n12:00:00 control info: landed"));
+  ASSERT_TRUE(eventually([&] { return names.size() > 0; }));
+  EXPECT_EQ(names.items().front(), "?[2Jground?12:00:00 control info: landed");
+}
+
 template <class T>
 class EachTopic : public testing::Test {};
 using Messages =
@@ -140,12 +175,10 @@ TYPED_TEST(EachTopic, ArrivesUnchanged) {
   EXPECT_TRUE(inbox.items().front() == sent);
 }
 
-class LongMission : public testing::TestWithParam<Transport> {};
-
-TEST_P(LongMission, ArrivesWhole) {
+TEST(LongMission, ArrivesWhole) {
   const DomainLock lock;
-  Node ground(settings(lock, "ground", GetParam()));
-  Node control(settings(lock, "control", GetParam()));
+  Node ground(settings(lock, "ground"));
+  Node control(settings(lock, "control"));
   Inbox<msg::Mission> missions;
   Inbox<msg::Trajectory> trajectories;
   const auto mission_subscription =
@@ -160,8 +193,8 @@ TEST_P(LongMission, ArrivesWhole) {
       [&] { return trajectory_publisher.matched() == 1 && trajectory_subscription.matched() == 1; }));
 
   const msg::Mission mission =
-      to_message(tests::mission(control::kMaxMissionItems, control::kMaxTrajectorySegments));
-  const msg::Trajectory trajectory = to_message(tests::trajectory(control::kMaxTrajectorySegments));
+      to_message(fixtures::mission(control::kMaxMissionItems, control::kMaxTrajectorySegments));
+  const msg::Trajectory trajectory = to_message(fixtures::trajectory(control::kMaxTrajectorySegments));
   ASSERT_TRUE(mission_publisher.publish(mission));
   ASSERT_TRUE(trajectory_publisher.publish(trajectory));
 
@@ -170,11 +203,6 @@ TEST_P(LongMission, ArrivesWhole) {
   EXPECT_TRUE(missions.items().front() == mission);
   EXPECT_TRUE(trajectories.items().front() == trajectory);
 }
-
-INSTANTIATE_TEST_SUITE_P(Transports, LongMission, testing::Values(Transport::kUdp, Transport::kSharedMemory),
-                         [](const auto& run) {
-                           return run.param == Transport::kUdp ? "Udp" : "SharedMemory";
-                         });
 
 // A recorder and another reader share a participant.
 TEST(RawSubscription, DeliversThePayloadWithStampAndNumber) {
@@ -234,7 +262,7 @@ TEST(Requests, ArriveInOrder) {
   auto publisher = ground.publish(topics::kCommand);
   ASSERT_TRUE(eventually([&] { return publisher.matched() == 1 && subscription.matched() == 1; }));
 
-  constexpr std::uint64_t kCount = std::uint64_t{3} * kMaxUnacknowledgedRequests;
+  constexpr std::uint64_t kCount = std::uint64_t{3} * kKeptRequests;
   msg::Command command;
   for (std::uint64_t id = 1; id <= kCount; ++id) {
     command.id(id);
@@ -544,5 +572,4 @@ TEST(NodeSettings, RefusesInvalidValues) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::comms::tests
+}  // namespace swiftlet::comms::fixtures::node_test

@@ -1,6 +1,6 @@
 // A separate process for the tests: joins a domain as "peer", receives requests, publishes its status and actuator
 // commands of the highest strength until its standard input is closed, then leaves.
-//   dds_peer DOMAIN udp|shm
+//   dds_peer DOMAIN
 // With "isolated" as DOMAIN, it enters a new network namespace, checks that two nodes discover each other
 // there, and exits with 0, or with 77 if it lacks the permission.
 #include <atomic>
@@ -18,7 +18,7 @@
 #include "tests/unit/services/dds/steady_sender.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::comms::tests {
+namespace swiftlet::comms::fixtures {
 namespace {
 
 constexpr int kNotPermitted = 77;
@@ -55,12 +55,11 @@ int check_isolated_nodes() {
   return done ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
-int run_peer(int domain, Transport transport) {
+int run_peer(int domain) {
   NodeSettings settings;
   settings.localhost_only = true;
   settings.name = "peer";
   settings.domain = domain;
-  settings.transport = transport;
   Node node(settings);
   const Subscription requests = node.subscribe<msg::Command>(topics::kCommand, [](const msg::Command&) {});
   auto state = node.publish(topics::kControlStatus);
@@ -74,13 +73,12 @@ int run_peer(int domain, Transport transport) {
 }
 
 }  // namespace
-}  // namespace swiftlet::comms::tests
+}  // namespace swiftlet::comms::fixtures
 
 int main(int argc, char** argv) {
   using namespace swiftlet::comms;
   if (argc < 2) return EXIT_FAILURE;
   const std::string domain = argv[1];
-  if (domain == "isolated") return tests::check_isolated_nodes();
-  const bool shared_memory = argc > 2 && std::string(argv[2]) == "shm";
-  return tests::run_peer(std::stoi(domain), shared_memory ? Transport::kSharedMemory : Transport::kUdp);
+  if (domain == "isolated") return fixtures::check_isolated_nodes();
+  return fixtures::run_peer(std::stoi(domain));
 }

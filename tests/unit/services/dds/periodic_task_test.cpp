@@ -7,8 +7,7 @@
 
 #include "tests/support/eventually.hpp"
 
-namespace swiftlet::comms {
-namespace {
+namespace swiftlet::comms::periodic_task_test {
 
 using namespace std::chrono_literals;
 
@@ -33,5 +32,4 @@ TEST(PeriodicTask, DestructorDoesNotWaitForThePeriod) {
   EXPECT_LT(std::chrono::steady_clock::now() - began, 5min);
 }
 
-}  // namespace
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::comms::periodic_task_test

@@ -1,20 +1,15 @@
-// Other processes: peers that join, leave and crash, their streams and their shared memory.
+// Other processes: peers that join, leave and crash, and their streams.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <future>
-#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <sys/wait.h>
-#include <system_error>
 #include <thread>
 #include <unistd.h>
 #include <vector>
@@ -23,13 +18,12 @@
 
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
-#include "swiftlet/services/dds/shared_memory.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/unit/services/dds/steady_sender.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::comms::tests {
-namespace {
+namespace swiftlet::comms::fixtures::process_test {
 
 using swiftlet::comms::DomainLock;
 using swiftlet::tests::eventually;
@@ -39,21 +33,17 @@ using namespace std::chrono_literals;
 // Runs dds_peer; the destructor kills it.
 class PeerProcess {
  public:
-  explicit PeerProcess(const std::vector<std::string>& words) {
+  explicit PeerProcess(std::string domain) {
     int ends[2];
     if (::pipe(ends) != 0) throw std::runtime_error("cannot make a pipe");
-    std::vector<std::string> arguments{SWIFTLET_DDS_PEER};
-    arguments.insert(arguments.end(), words.begin(), words.end());
-    std::vector<char*> pointers;
-    pointers.reserve(arguments.size() + 1);
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    pointers.push_back(nullptr);
+    std::string program = tests::in_build("tests/dds_peer");
+    char* const arguments[] = {program.data(), domain.data(), nullptr};
     pid_ = ::fork();
     if (pid_ == 0) {
       ::dup2(ends[0], STDIN_FILENO);
       ::close(ends[0]);
       ::close(ends[1]);
-      ::execv(pointers[0], pointers.data());
+      ::execv(arguments[0], arguments);
       ::_exit(127);
     }
     ::close(ends[0]);
@@ -80,31 +70,6 @@ class PeerProcess {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
-  // Files in /dev/shm that the process maps.
-  std::vector<std::string> shared_memory() const {
-    std::vector<std::string> files;
-    std::ifstream maps("/proc/" + std::to_string(pid_) + "/maps");
-    for (std::string line; std::getline(maps, line);) {
-      const auto place = line.find("/dev/shm/");
-      if (place != std::string::npos) files.push_back(line.substr(place));
-    }
-    return files;
-  }
-
-  // Files in /dev/shm of its own: it holds their locks. It maps those of others too, until it knows that they have ended.
-  std::vector<std::string> own_shared_memory() const {
-    constexpr std::string_view kLock = "_el";
-    std::vector<std::string> files;
-    for (const auto& entry : std::filesystem::directory_iterator("/proc/" + std::to_string(pid_) + "/fd")) {
-      std::error_code closed;
-      std::string file = std::filesystem::read_symlink(entry, closed);
-      if (file.rfind("/dev/shm/", 0) != 0 || file.size() < kLock.size()) continue;
-      file.resize(file.size() - kLock.size());
-      files.push_back(file);
-    }
-    return files;
-  }
-
  private:
   pid_t pid_ = -1;
   int input_ = -1;
@@ -113,7 +78,9 @@ class PeerProcess {
 class Peers : public testing::Test {
  protected:
   Peers() : node_(settings()) {
-    node_.on_peer([this](const PeerEvent& event) { events_.put(event); });
+    node_.on_peer([this](const PeerEvent& event) {
+      if (event.name == "peer") events_.put(event);
+    });
   }
 
   NodeSettings settings() const {
@@ -123,42 +90,29 @@ class Peers : public testing::Test {
     settings.localhost_only = true;
     return settings;
   }
-  PeerProcess start(const char* transport = "udp") const {
-    return PeerProcess({std::to_string(lock_.domain()), transport});
-  }
+  PeerProcess start() const { return PeerProcess(std::to_string(lock_.domain())); }
 
   DomainLock lock_;
   Inbox<PeerEvent> events_;
   Node node_;
 };
 
-TEST_F(Peers, AreReportedWhenTheyLeave) {
+TEST_F(Peers, AreReportedWithTheirStatusUntilTheyLeave) {
   PeerProcess peer = start();
   ASSERT_TRUE(events_.wait_for_count(1));
-  EXPECT_EQ(events_.items()[0].name, "peer");
   EXPECT_TRUE(events_.items()[0].alive);
+
+  Inbox<msg::ControlStatus> states;
+  const auto subscription = node_.subscribe<msg::ControlStatus>(
+      topics::kControlStatus, [&](const msg::ControlStatus& message) { states.put(message); });
+  ASSERT_TRUE(states.wait_for_count(1)) << "to a late joiner";
+  EXPECT_TRUE(states.items()[0] == example<msg::ControlStatus>());
 
   EXPECT_EQ(peer.finish(), 0);
 
   ASSERT_TRUE(events_.wait_for_count(2));
-  EXPECT_EQ(events_.items()[1].name, "peer");
   EXPECT_FALSE(events_.items()[1].alive);
   EXPECT_TRUE(events_.items()[1].said_goodbye);
-}
-
-// This and DeadControllersStream... measure real time and run alone (ALONE in CMakeLists.txt).
-TEST_F(Peers, AreReportedDeadWithinTheLease) {
-  PeerProcess peer = start();
-  ASSERT_TRUE(events_.wait_for_count(1));
-
-  peer.crash();
-  const auto crashed_at = std::chrono::steady_clock::now();
-
-  ASSERT_TRUE(events_.wait_for_count(2));
-  EXPECT_LT(std::chrono::steady_clock::now() - crashed_at, kLivelinessLease + 1s);
-  EXPECT_EQ(events_.items()[1].name, "peer");
-  EXPECT_FALSE(events_.items()[1].alive);
-  EXPECT_FALSE(events_.items()[1].said_goodbye);
 }
 
 TEST_F(Peers, AreReportedToALateListener) {
@@ -172,56 +126,44 @@ TEST_F(Peers, AreReportedToALateListener) {
   node_.on_peer({});
 }
 
-TEST_F(Peers, StatusReachesALateJoiner) {
-  const PeerProcess peer = start();
-  ASSERT_TRUE(events_.wait_for_count(1));
-  Inbox<msg::ControlStatus> states;
-  const auto subscription = node_.subscribe<msg::ControlStatus>(
-      topics::kControlStatus, [&](const msg::ControlStatus& message) { states.put(message); });
-  ASSERT_TRUE(states.wait_for_count(1));
-  EXPECT_TRUE(states.items()[0] == example<msg::ControlStatus>());
-}
-
-TEST_F(Peers, DeadControllersStreamIsTakenOverBeforeTheLeaseEnds) {
+// GIVEN a peer and a weaker one WHEN the peer stands still for longer than its lease THEN it is received again for as long as it
+// runs. WHEN it dies THEN the weaker one's stream is delivered before the lease ends, and the death is reported within it.
+TEST_F(Peers, AreReceivedAgainAfterASuspensionAndReportedDeadWithinTheLease) {
   Inbox<std::uint64_t> received;
   const auto subscription = node_.subscribe<msg::ActuatorCommand>(
       topics::kActuatorCommand,
       [&](const msg::ActuatorCommand& command) { received.put(command.sequence_number()); });
-  NodeSettings standby_settings = settings();
-  standby_settings.name = "standby";
-  Node standby(standby_settings);
-  auto commands = standby.publish(topics::kActuatorCommand, 1);
-  const SteadySender sender(commands, 1);
-  PeerProcess strong = start();
-  const bool obeyed =
-      received.wait([](const auto& numbers) { return !numbers.empty() && numbers.back() == 9; });
-
-  strong.crash();
-  const auto crashed_at = std::chrono::steady_clock::now();
-  const bool taken_over = received.wait([](const auto& numbers) { return numbers.back() == 1; });
-  const auto outage = std::chrono::steady_clock::now() - crashed_at;
-
-  EXPECT_TRUE(obeyed);
-  EXPECT_TRUE(taken_over);
-  EXPECT_LT(outage, kLivelinessLease / 2);
-}
-
-TEST_F(Peers, AreReceivedAgainAfterASuspension) {
-  Inbox<std::uint64_t> received;
-  const auto subscription = node_.subscribe<msg::ActuatorCommand>(
-      topics::kActuatorCommand,
-      [&](const msg::ActuatorCommand& command) { received.put(command.sequence_number()); });
-  const PeerProcess peer = start();
+  const auto of_peer = [](const std::vector<std::uint64_t>& numbers) {
+    return std::count(numbers.begin(), numbers.end(), 9U);
+  };
+  PeerProcess peer = start();
   ASSERT_TRUE(received.wait_for_count(1));
 
   peer.stop();
   ASSERT_TRUE(events_.wait_for_count(2));
   ASSERT_FALSE(events_.items()[1].alive);
-  const std::size_t before = received.size();
+  const auto before = of_peer(received.items());
   peer.resume();
+  EXPECT_TRUE(received.wait([&](const auto& numbers) { return of_peer(numbers) >= before + 1500; }))
+      << of_peer(received.items()) - before << " received after it resumed";
 
-  EXPECT_TRUE(received.wait_for_count(before + 1500))
-      << received.size() - before << " received after it resumed";
+  NodeSettings standby_settings = settings();
+  standby_settings.name = "standby";
+  Node standby(standby_settings);
+  auto commands = standby.publish(topics::kActuatorCommand, 1);
+  const SteadySender sender(commands, 1);
+  ASSERT_TRUE(eventually([&] { return commands.matched() == 1 && subscription.matched() == 2; }));
+  ASSERT_TRUE(received.wait([](const auto& numbers) { return numbers.back() == 9; }));
+  const std::size_t reported = events_.size();
+  peer.crash();
+  const auto crashed_at = std::chrono::steady_clock::now();
+  EXPECT_TRUE(received.wait([](const auto& numbers) { return numbers.back() == 1; }));
+  EXPECT_LT(std::chrono::steady_clock::now() - crashed_at, kLivelinessLease / 2);
+
+  ASSERT_TRUE(events_.wait_for_count(reported + 1));
+  EXPECT_LT(std::chrono::steady_clock::now() - crashed_at, kLivelinessLease + 1s);
+  EXPECT_FALSE(events_.items()[reported].alive);
+  EXPECT_FALSE(events_.items()[reported].said_goodbye);
 }
 
 // GIVEN requests that a peer does not acknowledge, because it is stopped WHEN their publishers are destroyed THEN they end,
@@ -245,7 +187,7 @@ TEST_F(Peers, PublishersOfUnacknowledgedRequestsEnd) {
     for (auto& of_node : publishers) {
       ended.push_back(std::async(std::launch::async, [&of_node] {
         for (auto& publisher : of_node) {
-          for (int i = 0; i < kMaxUnacknowledgedRequests; ++i) publisher.publish(example<msg::Command>());
+          for (int i = 0; i < kKeptRequests; ++i) publisher.publish(example<msg::Command>());
         }
         of_node.clear();
       }));
@@ -258,48 +200,33 @@ TEST_F(Peers, PublishersOfUnacknowledgedRequestsEnd) {
   }
 }
 
-TEST_F(Peers, UdpTransportMapsNoSharedMemory) {
-  PeerProcess peer = start("udp");
-  ASSERT_TRUE(events_.wait_for_count(1));
-  EXPECT_EQ(peer.shared_memory(), std::vector<std::string>{});
-}
-
-TEST_F(Peers, SharedMemoryIsRemovedForDeadProcessesOnly) {
-  PeerProcess dead = start("shm");
-  ASSERT_TRUE(events_.wait_for_count(1));
-  PeerProcess alive = start("shm");
-  ASSERT_TRUE(events_.wait_for_count(2));
-  const auto exist = [](const std::vector<std::string>& files) {
-    return std::any_of(files.begin(), files.end(),
-                       [](const std::string& file) { return std::filesystem::exists(file); });
-  };
-  const std::vector<std::string> left_over = dead.own_shared_memory();
-  ASSERT_FALSE(left_over.empty());
-
-  dead.crash();
-  ASSERT_TRUE(exist(left_over));
-
-  std::vector<std::string> remaining;
-  EXPECT_TRUE(eventually([&] {
-    remove_stale_shared_memory();
-    // It may have opened the port of the dead one again, to send to it.
-    const std::vector<std::string> in_use = alive.shared_memory();
-    remaining.clear();
-    std::copy_if(
-        left_over.begin(), left_over.end(), std::back_inserter(remaining), [&](const std::string& file) {
-          const bool shared_with_living = std::find(in_use.begin(), in_use.end(), file) != in_use.end();
-          return !shared_with_living && std::filesystem::exists(file);
-        });
-    return remaining.empty();
-  })) << testing::PrintToString(remaining);
-  const std::vector<std::string> own = alive.own_shared_memory();
-  EXPECT_FALSE(own.empty());
-  for (const std::string& file : own) EXPECT_TRUE(std::filesystem::exists(file)) << file;
-  EXPECT_EQ(alive.finish(), 0);
+// GIVEN a reader that acknowledges nothing, because its process is stopped WHEN more requests are sent than are kept THEN all are
+// sent before the lease of that process ends, and the other reader receives each.
+TEST_F(Peers, AReaderThatAcknowledgesNothingHoldsUpNoRequest) {
+  constexpr std::uint64_t kRequests = kKeptRequests + 4;
+  Inbox<std::uint64_t> received;
+  const auto subscription = node_.subscribe<msg::Command>(
+      topics::kCommand, [&](const msg::Command& command) { received.put(command.id()); });
+  NodeSettings client = settings();
+  client.name = "client";
+  Node ground(client);
+  Publisher<msg::Command> commands = ground.publish(topics::kCommand);
+  const PeerProcess peer = start();
+  ASSERT_TRUE(eventually([&] { return commands.matched() == 2; }));
+  peer.stop();
+  const auto began = std::chrono::steady_clock::now();
+  for (std::uint64_t id = 1; id <= kRequests; ++id) {
+    msg::Command command = example<msg::Command>();
+    command.id(id);
+    EXPECT_TRUE(commands.publish(command)) << id;
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - began, kLivelinessLease);
+  ASSERT_TRUE(received.wait_for_count(kRequests)) << received.size();
+  for (std::uint64_t id = 1; id <= kRequests; ++id) EXPECT_EQ(received.items()[id - 1], id);
 }
 
 TEST(Isolation, NodesDiscoverEachOtherInANewNetworkNamespace) {
-  PeerProcess process({"isolated"});
+  PeerProcess process("isolated");
   const int code = process.finish();
   if (code == 77) GTEST_SKIP() << "a new network namespace is not permitted";
   EXPECT_EQ(code, 0);
@@ -320,5 +247,4 @@ TEST(Domain, Holds32Participants) {
   EXPECT_TRUE(events.wait_for_count(31));
 }
 
-}  // namespace
-}  // namespace swiftlet::comms::tests
+}  // namespace swiftlet::comms::fixtures::process_test

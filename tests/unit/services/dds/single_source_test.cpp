@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::comms {
-namespace {
+namespace swiftlet::comms::single_source_test {
 
 using namespace std::chrono_literals;
 
@@ -36,5 +35,4 @@ TEST_F(SingleSourceTest, KeepsASlowSourceThatIsAlone) {
   EXPECT_TRUE(accepts(1, 5000ms));
 }
 
-}  // namespace
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::comms::single_source_test

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <unistd.h>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -18,8 +19,7 @@
 #include "tests/support/eventually.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::comms::tests {
-namespace {
+namespace swiftlet::comms::fixtures::source_test {
 
 using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
@@ -58,19 +58,25 @@ class Sources : public testing::Test {
   DomainLock lock_;
 };
 
-TEST_F(Sources, ASecondOneIsRefusedAndNamesTheFirst) {
-  Node first(settings("plant", "imu"));
-  EXPECT_EQ(first.become_source(), std::nullopt);
+TEST_F(Sources, ASecondOneIsRefusedAndNamesTheFirstUntilThatHasLeft) {
+  auto first = std::make_unique<Node>(settings("plant", "imu"));
+  EXPECT_EQ(first->become_source(), std::nullopt);
   EXPECT_EQ(refusal_of(settings("impostor", "imu")), lives("plant"));
+  first->rejoin();
+  EXPECT_EQ(refusal_of(settings("impostor", "imu")), lives("plant")) << "after a rejoin";
+  first.reset();
+  Node second(settings("plant", "imu"));
+  EXPECT_EQ(second.become_source(), std::nullopt);
 }
 
 TEST_F(Sources, OfOtherVehiclesAndTopicsDoNotExcludeEachOther) {
   Node plant(settings("plant", "imu"));
-  EXPECT_EQ(plant.become_source(), std::nullopt);
   Node mocap(settings("mocap", "mocap_pose"));
-  EXPECT_EQ(mocap.become_source(), std::nullopt);
   Node other(settings("plant", "imu", "kl2"));
-  EXPECT_EQ(other.become_source(), std::nullopt);
+  std::vector<std::future<std::optional<std::string>>> refusals;
+  for (Node* const node : {&plant, &mocap, &other})
+    refusals.push_back(std::async(std::launch::async, [node] { return node->become_source(); }));
+  for (auto& refusal : refusals) EXPECT_EQ(refusal.get(), std::nullopt);
 }
 
 TEST_F(Sources, ExactlyOneOfTwoThatStartAtOnceIsRefused) {
@@ -84,25 +90,10 @@ TEST_F(Sources, ExactlyOneOfTwoThatStartAtOnceIsRefused) {
   EXPECT_EQ(other_of_second, lives("first"));
 }
 
-TEST_F(Sources, AreFreeAgainOnceTheFirstHasLeft) {
-  auto first = std::make_unique<Node>(settings("plant", "imu"));
-  EXPECT_EQ(first->become_source(), std::nullopt);
-  first.reset();
-  Node second(settings("plant", "imu"));
-  EXPECT_EQ(second.become_source(), std::nullopt);
-}
-
 TEST_F(Sources, AProgramThatAnnouncesNothingExcludesASecondOne) {
   Node vehicle(settings("vehicle of another make", ""));
   const auto imu = vehicle.publish(topics::kImu);
   EXPECT_EQ(refusal_of(settings("plant", "imu")), lives("vehicle of another make"));
-}
-
-TEST_F(Sources, StayAfterARejoin) {
-  Node first(settings("plant", "imu"));
-  EXPECT_EQ(first.become_source(), std::nullopt);
-  first.rejoin();
-  EXPECT_EQ(refusal_of(settings("impostor", "imu")), lives("plant"));
 }
 
 TEST_F(Sources, EndAProcessThatIsNotTheFirst) {
@@ -188,5 +179,4 @@ TEST(Interfaces, NameTheLoopbackInterface) {
   EXPECT_NE(interfaces_text(false).find("lo (127.0.0.1)"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace swiftlet::comms::tests
+}  // namespace swiftlet::comms::fixtures::source_test

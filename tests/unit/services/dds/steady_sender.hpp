@@ -9,7 +9,7 @@
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::comms::tests {
+namespace swiftlet::comms::fixtures {
 
 class SteadySender {
  public:
@@ -39,4 +39,4 @@ class SteadySender {
   std::thread thread_;
 };
 
-}  // namespace swiftlet::comms::tests
+}  // namespace swiftlet::comms::fixtures

@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::comms {
-namespace {
+namespace swiftlet::comms::vehicle_list_test {
 
 using Names = std::vector<std::string>;
 
@@ -38,5 +37,4 @@ TEST(VehicleList, RefusesWithAClauseThatNamesTheFault) {
   EXPECT_THROW(vehicles_of_list("kl1,kl1"), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::comms::vehicle_list_test

@@ -19,8 +19,7 @@
 #include "tests/support/serialization.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::comms::tests {
-namespace {
+namespace swiftlet::comms::fixtures::broken_message_test {
 
 namespace dds = eprosima::fastdds::dds;
 using swiftlet::tests::eventually;
@@ -46,7 +45,7 @@ class RawPeer {
       : session_(swiftlet::tests::settings_of("raw", lock), Announcement(), std::make_shared<DatagramGuard>(),
                  nullptr) {
     dds::Topic* const raw_topic = session_.topic("rt/kl1/" + topic, dds::TypeSupport(new RawType(type)));
-    writer_ = session_.publisher->create_datawriter(raw_topic, writer_qos(qos, 0, 0, Transport::kUdp));
+    writer_ = session_.publisher->create_datawriter(raw_topic, writer_qos(qos, 0, 0));
   }
   bool send(const Bytes& bytes) { return write(*writer_, &bytes); }
   bool is_matched() const {
@@ -92,7 +91,7 @@ TEST(BrokenMessage, IsDroppedOnAStream) {
 }
 
 TEST(BrokenMessage, IsDroppedOnARequestTopic) {
-  const msg::Mission mission = to_message(tests::mission(3, 2));
+  const msg::Mission mission = to_message(fixtures::mission(3, 2));
   const Bytes whole = serialized<msg::MissionPubSubType>(mission);
   Bytes endless = whole;
   for (std::size_t i = 0; i < 4; ++i) endless.at(kEncapsulation + 16 + i) = 0xff;  // the number of items
@@ -100,5 +99,4 @@ TEST(BrokenMessage, IsDroppedOnARequestTopic) {
                                          {endless, cut(whole, whole.size() / 2), changed(whole, 0, 1)});
 }
 
-}  // namespace
-}  // namespace swiftlet::comms::tests
+}  // namespace swiftlet::comms::fixtures::broken_message_test

@@ -7,7 +7,7 @@
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/messages/topics.hpp"
 
-namespace swiftlet::comms::tests {
+namespace swiftlet::comms::fixtures {
 
 inline plant::PerRotor four_rotors(double first) { return {first, first + 0.1, first + 0.2, first + 0.3}; }
 
@@ -395,4 +395,4 @@ inline msg::VehicleInfo example() {
   return message;
 }
 
-}  // namespace swiftlet::comms::tests
+}  // namespace swiftlet::comms::fixtures

@@ -21,8 +21,7 @@
 #include "tests/support/serialization.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::comms::tests {
-namespace {
+namespace swiftlet::comms::fixtures::schemas_test {
 
 mcap::MessageDecoder decoder_of(const MessageSchema& schema) {
   return mcap::MessageDecoder({1, schema.name, "ros2msg", schema.definition});
@@ -115,5 +114,4 @@ TEST(Schemas, KnowWhereTheStampIs) {
   EXPECT_EQ(schema_of<msg::Command>().stamp_offset, -1);
 }
 
-}  // namespace
-}  // namespace swiftlet::comms::tests
+}  // namespace swiftlet::comms::fixtures::schemas_test

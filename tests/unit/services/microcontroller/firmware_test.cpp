@@ -11,8 +11,7 @@
 
 #include "tests/support/malloc_guard.hpp"
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::firmware_test {
 
 using protocol::message_of;
 
@@ -220,5 +219,4 @@ TEST_F(FirmwareTest, AllocatesNothing) {
   EXPECT_EQ(guard.calls(), 0U);
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::firmware_test

@@ -16,9 +16,9 @@
 #include "swiftlet/services/microcontroller/protocol/frame.hpp"
 #include "swiftlet/services/microcontroller/protocol/messages.hpp"
 #include "tests/support/malloc_guard.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::protocol {
-namespace {
+namespace swiftlet::protocol::protocol_test {
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -294,7 +294,7 @@ TYPED_TEST(EachMessage, HasItsTableInTheManual) {
   kind << "0x" << std::hex << std::setw(2) << std::setfill('0') << int{TypeParam::kKind};
   const std::string heading = "`" + kind.str() + "`, " + std::to_string(wire_size<TypeParam>()) + " bytes";
 
-  std::ifstream page(SWIFTLET_SOURCE_DIR "/docs/microcontroller-protocol.md");
+  std::ifstream page(tests::in_source("docs/microcontroller-protocol.md"));
   std::vector<std::string> documented;
   bool in_table = false;
   const std::regex row("\\| ([0-9]+) \\| `([^`]+)` \\| `([^`]+)` \\|.*");
@@ -324,11 +324,10 @@ TEST(Command, HasTheBytesThatTheManualShows) {
   for (const std::uint8_t byte : frame_of(encoder, command)) bytes << std::setw(2) << int{byte} << ' ';
   std::string shown = bytes.str();
   shown.pop_back();
-  std::ifstream page(SWIFTLET_SOURCE_DIR "/docs/microcontroller-protocol.md");
+  std::ifstream page(tests::in_source("docs/microcontroller-protocol.md"));
   std::stringstream text;
   text << page.rdbuf();
   EXPECT_NE(std::regex_replace(text.str(), std::regex("\n"), " ").find(shown), std::string::npos) << shown;
 }
 
-}  // namespace
-}  // namespace swiftlet::protocol
+}  // namespace swiftlet::protocol::protocol_test

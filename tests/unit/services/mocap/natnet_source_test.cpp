@@ -16,8 +16,7 @@
 #include "tests/support/eventually.hpp"
 #include "tests/support/mocap/natnet_server.hpp"
 
-namespace swiftlet::mocap {
-namespace {
+namespace swiftlet::mocap::natnet_source_test {
 
 using namespace std::chrono_literals;
 using tests::eventually;
@@ -307,5 +306,4 @@ TEST(NatNetDiscovery, NamesSeveralServersAndTakesTheOnlyOne) {
   EXPECT_THROW(only_server({}), std::runtime_error);
 }
 
-}  // namespace
-}  // namespace swiftlet::mocap
+}  // namespace swiftlet::mocap::natnet_source_test

@@ -14,15 +14,15 @@
 #include "tests/support/eventually.hpp"
 #include "tests/support/mocap/natnet_packets.hpp"
 #include "tests/support/mocap/vicon_packets.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::mocap {
-namespace {
+namespace swiftlet::mocap::other_sources_test {
 
 using namespace std::chrono_literals;
 using tests::vicon_frame;
 
-const std::string kData = SWIFTLET_SOURCE_DIR "/tests/data/";
+const std::string kData = tests::in_source("tests/data/");
 
 std::uint16_t free_port() { return UdpSocket("127.0.0.1", 0).port(); }
 
@@ -158,5 +158,4 @@ TEST(SourceOptions, WithoutARoomTakeTheBodiesOfTheNamesOfTheVehicles) {
   EXPECT_THROW(room_of(options, {"kl1"}), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace swiftlet::mocap
+}  // namespace swiftlet::mocap::other_sources_test

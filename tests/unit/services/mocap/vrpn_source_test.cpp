@@ -12,8 +12,7 @@
 #include "tests/support/eventually.hpp"
 #include "tests/support/mocap/vrpn_server.hpp"
 
-namespace swiftlet::mocap {
-namespace {
+namespace swiftlet::mocap::vrpn_source_test {
 
 using namespace std::chrono_literals;
 using tests::eventually;
@@ -177,5 +176,4 @@ TEST_F(Vrpn, ServerThatIsNotThereIsNamed) {
   }));
 }
 
-}  // namespace
-}  // namespace swiftlet::mocap
+}  // namespace swiftlet::mocap::vrpn_source_test

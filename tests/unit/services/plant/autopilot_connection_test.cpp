@@ -13,11 +13,11 @@
 
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/scripted_autopilot.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::autopilot_connection_test {
 
 using tests::kStuck;
 
@@ -33,7 +33,7 @@ class AutopilotConnectionTest : public testing::Test {
     });
   }
 
-  const plant::Vehicle vehicle_ = runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+  const plant::Vehicle vehicle_ = runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
 };
 
 TEST_F(AutopilotConnectionTest, RefusesASecondAutopilotAndKeepsTheFirst) {
@@ -93,5 +93,4 @@ TEST_F(AutopilotConnectionTest, OpensASerialDeviceAgainThatWasUnplugged) {
   ::close(board);
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::autopilot_connection_test

@@ -7,8 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::hil_messages_test {
 
 using Eigen::Vector3d;
 using mavlink::HilSensor;
@@ -84,5 +83,4 @@ TEST(HilMessages, StateIsTheTruth) {
   EXPECT_EQ(state.acceleration, (std::array<std::int16_t, 3>{0, 1000, 0}));  // forward is east
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::hil_messages_test

@@ -1,6 +1,7 @@
 // The lockstep loop with a controller and motion capture that answer, or stay silent.
 #include "swiftlet/services/plant/lockstep_loop.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -21,8 +22,7 @@
 #include "tests/support/eventually.hpp"
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::lockstep_loop_test {
 
 namespace msg = comms::msg;
 using namespace std::chrono_literals;
@@ -102,6 +102,17 @@ class Lockstep : public testing::Test {
       return found >= times && samples.back().stamp_ns() == stamp_ns;
     });
   }
+  // Waits until the newest sample has been sent several times.
+  bool stands_still() const {
+    constexpr std::size_t kTimes = 4;
+    return samples_.wait([](const Samples& samples) {
+      return samples.size() > kTimes &&
+             std::all_of(samples.end() - kTimes, samples.end(), [&](const msg::Imu& sample) {
+               return sample.stamp_ns() == samples.back().stamp_ns();
+             });
+    });
+  }
+  std::int64_t newest_ns() const { return samples_.items().back().stamp_ns(); }
   std::string failure() const {
     return failure_.wait_for_count(1) ? failure_.items().front() : std::string("no failure");
   }
@@ -204,22 +215,72 @@ TEST_F(Lockstep, WaitsForTheFirstAnswers) {
 
 TEST_F(Lockstep, NamesASilentController) {
   LockstepSettings settings;
-  settings.patience_s = 1.0;
+  settings.patience_s = 0.5;
   start(settings);
   ASSERT_TRUE(is_resent(0));
   answer(samples_.items().back());
-  EXPECT_EQ(failure(), "lockstep: control is silent: IMU sample 2 of t = 0.002 s has no answer for 1 s");
+  EXPECT_EQ(failure(), "lockstep: control is silent: IMU sample 2 of t = 0.002 s has no answer for 0.5 s");
 }
 
 TEST_F(Lockstep, NamesSilentMotionCapture) {
   answers_ = true;
   LockstepSettings settings;
-  settings.patience_s = 1.0;
+  settings.patience_s = 0.5;
   start(settings);
   ASSERT_TRUE(samples_.wait_for_count(10));
   mocap_answers_ = false;
   EXPECT_EQ(failure().rfind("lockstep: mocap is silent: ", 0), 0U) << failure();
   EXPECT_TRUE(is_resent(samples_.items().back().stamp_ns())) << "time must not advance";
+}
+
+LockstepSettings going_on() {
+  LockstepSettings settings;
+  settings.patience_s = 0.2;
+  settings.goes_on = true;
+  return settings;
+}
+
+// GIVEN a vehicle that goes on without a silent controller THEN it does so before the first answer, waits for each once there is
+// one, and goes on without it at a quarter of the pace of real time when it falls silent, until it answers again.
+TEST_F(Lockstep, GoesOnWithoutASilentController) {
+  const auto reaches = [this](std::int64_t stamp_ns) {
+    return samples_.wait(
+        [=](const Samples& samples) { return !samples.empty() && samples.back().stamp_ns() >= stamp_ns; });
+  };
+  start(going_on());
+  ASSERT_TRUE(reaches(20 * kPeriod_ns)) << "before the first answer";
+  for (int time = 0; time < 2; ++time) {
+    answers_ = true;
+    ASSERT_TRUE(reaches(newest_ns() + 50 * kPeriod_ns));
+    answers_ = false;
+    ASSERT_TRUE(stands_still()) << "it waits for the answer";
+    ASSERT_TRUE(reaches(newest_ns() + 2 * kPeriod_ns)) << "not for ever";
+    const std::int64_t begin_ns = runtime::monotonic_ns();
+    const std::int64_t from_ns = newest_ns();
+    ASSERT_TRUE(reaches(from_ns + 50 * kPeriod_ns));
+    const std::int64_t passed_ns = newest_ns() - from_ns;
+    EXPECT_LE(passed_ns, (runtime::monotonic_ns() - begin_ns) / 4 + 2 * kPeriod_ns)
+        << "a quarter of real time";
+  }
+}
+
+// Control needs no frame then that does not come.
+TEST_F(Lockstep, GoesOnWithoutSilentMotionCapture) {
+  answers_ = true;
+  start(going_on());
+  ASSERT_TRUE(samples_.wait(
+      [](const Samples& samples) { return !samples.empty() && samples.back().mocap_sequence_number() > 5; }));
+  mocap_answers_ = false;
+  ASSERT_TRUE(stands_still());
+  const std::int64_t stood_ns = newest_ns();
+  ASSERT_TRUE(samples_.wait(
+      [=](const Samples& samples) { return samples.back().stamp_ns() > stood_ns + 100 * kPeriod_ns; }));
+  std::uint64_t frames = 0;
+  for (const msg::Imu& sample : samples_.items()) {
+    if (sample.stamp_ns() <= stood_ns + kPeriod_ns) continue;
+    if (frames == 0) frames = sample.mocap_sequence_number();
+    EXPECT_EQ(sample.mocap_sequence_number(), frames);
+  }
 }
 
 // Time advances up to the simulation clock; an earlier clock message has no effect.
@@ -258,10 +319,10 @@ TEST_F(Lockstep, NamesASilentGround) {
   answers_ = true;
   LockstepSettings settings;
   settings.paused = true;
-  settings.patience_s = 2.0;  // also for answers on a loaded machine
+  settings.patience_s = 1.0;  // also for answers on a loaded machine
   start(settings);
   advance_to(5 * kPeriod_ns);
-  EXPECT_EQ(failure(), "lockstep: ground is silent: no simulation_clock has come for 2 s");
+  EXPECT_EQ(failure(), "lockstep: ground is silent: no simulation_clock has come for 1 s");
 }
 
 // However fast the answers arrive, simulated time runs at half the speed of the clock at most.
@@ -286,5 +347,4 @@ TEST_F(Lockstep, RefusesATraceThatCannotBeWritten) {
   EXPECT_THROW(LockstepLoop(*vehicle_, settings_, kSeed, settings, 4, plant_node_), std::runtime_error);
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::lockstep_loop_test

@@ -8,14 +8,14 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::rotor_mapping_test {
 
 using mavlink::HilActuatorControls;
 
 plant::Vehicle vehicle(const std::string& name) {
-  return runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/" + name + ".yaml");
+  return runtime::load_vehicle(tests::in_source("config/vehicles/") + name + ".yaml");
 }
 
 HilActuatorControls armed(float first, float second, float third, float fourth) {
@@ -99,5 +99,4 @@ TEST(RotorMapping, RefusesWhatDoesNotFitTheVehicle) {
   EXPECT_NE(refusal("px5", plus).find("must be px4, direct, or one number"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::rotor_mapping_test

@@ -11,8 +11,7 @@
 #include "swiftlet/services/px4/words.hpp"
 #include "tests/support/px4/rules.hpp"
 
-namespace swiftlet::px4 {
-namespace {
+namespace swiftlet::px4::offboard_session_test {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kPeriodNs = 10 * kMs;
@@ -250,5 +249,4 @@ TEST_F(Px4Session, AutomaticDisarmingBeforeTakeOffIsNamed) {
   EXPECT_EQ(session_.fault(), "PX4 disarmed: automatically before take-off");
 }
 
-}  // namespace
-}  // namespace swiftlet::px4
+}  // namespace swiftlet::px4::offboard_session_test

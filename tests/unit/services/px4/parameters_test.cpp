@@ -18,8 +18,7 @@
 #include "swiftlet/io/mavlink/messages.hpp"
 #include "swiftlet/io/mavlink/payload.hpp"
 
-namespace swiftlet::px4 {
-namespace {
+namespace swiftlet::px4::parameters_test {
 
 // Answers as PX4 does: PARAM_VALUE to the sender; nothing for a name that it does not have.
 class ScriptedParameters {
@@ -135,5 +134,4 @@ TEST(Px4Parameters, AnAddressThatIsNoneIsRefused) {
   EXPECT_THROW(ParameterClient("nobody", 1, 0, 1), std::runtime_error);
 }
 
-}  // namespace
-}  // namespace swiftlet::px4
+}  // namespace swiftlet::px4::parameters_test

@@ -21,15 +21,15 @@
 #include "swiftlet/services/px4/translate.hpp"
 #include "swiftlet/services/px4/versions.hpp"
 #include "swiftlet/services/px4/words.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/px4/capture.hpp"
 #include "tests/support/px4/rules.hpp"
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::px4_capture_test {
 
 namespace msg = px4::msg;
 
-constexpr const char* kFile = SWIFTLET_SOURCE_DIR "/tests/data/px4_1.16_offboard_flight.pcap.gz";
+const std::string kFile = in_source("tests/data/px4_1.16_offboard_flight.pcap.gz");
 constexpr double kAnswerTolerance_s = 0.05;
 constexpr double kLandingTolerance_s = 2.0;  // the script sees the estimated height, PX4 its throttle
 // PX4 lowers its throttle for this long when it touches the ground.
@@ -183,5 +183,4 @@ TEST_F(Px4Capture, TheScriptAnswersTheInputsAsPx4Did) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::px4_capture_test

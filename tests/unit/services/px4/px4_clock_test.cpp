@@ -7,8 +7,7 @@
 
 #include "swiftlet/math/random.hpp"
 
-namespace swiftlet::px4 {
-namespace {
+namespace swiftlet::px4::px4_clock_test {
 
 constexpr std::int64_t kPeriodNs = 10'000'000;
 constexpr std::int64_t kStart = 1'000'000'000'000;
@@ -89,5 +88,4 @@ TEST(Px4Clock, AQueueIsNoStepOfTheStamps) {
   EXPECT_EQ(clock.steps(), 0);
 }
 
-}  // namespace
-}  // namespace swiftlet::px4
+}  // namespace swiftlet::px4::px4_clock_test

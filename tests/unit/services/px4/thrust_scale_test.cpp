@@ -4,15 +4,15 @@
 
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/plant/model/propulsion.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::px4 {
-namespace {
+namespace swiftlet::px4::thrust_scale_test {
 
 constexpr std::int64_t kPeriodNs = 10'000'000;
 
 class Px4ThrustScale : public testing::Test {
  protected:
-  const plant::Vehicle vehicle_ = runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+  const plant::Vehicle vehicle_ = runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
   const double weight_n_ = vehicle_.mass_kg * plant::kGravity;
 
   double thrust_of(double throttle, double voltage_v) const {
@@ -80,5 +80,4 @@ TEST_F(Px4ThrustScale, LearnsNothingOnTheGroundOrInAFall) {
   EXPECT_EQ(scale.factor(), 1.0);
 }
 
-}  // namespace
-}  // namespace swiftlet::px4
+}  // namespace swiftlet::px4::thrust_scale_test

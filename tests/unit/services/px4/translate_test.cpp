@@ -6,16 +6,16 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::px4 {
-namespace {
+namespace swiftlet::px4::translate_test {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 const plant::Vehicle& kaylion() {
   static const plant::Vehicle vehicle =
-      runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+      runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
   return vehicle;
 }
 
@@ -185,5 +185,4 @@ TEST(Px4Translate, NonsenseIsRefusedByName) {
   EXPECT_TRUE(check(status)) << "arming_state 0";
 }
 
-}  // namespace
-}  // namespace swiftlet::px4
+}  // namespace swiftlet::px4::translate_test

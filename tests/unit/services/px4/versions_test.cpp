@@ -4,8 +4,7 @@
 
 #include "swiftlet/services/px4/px4_topics.hpp"
 
-namespace swiftlet::px4 {
-namespace {
+namespace swiftlet::px4::versions_test {
 
 TEST(Px4Versions, ThatOf116IsKnown) {
   EXPECT_EQ(version_of({"rt/fmu/out/vehicle_status_v1", "rt/fmu/out/battery_status"}, "/fmu").state,
@@ -35,5 +34,4 @@ TEST(Px4Versions, InstancesHaveFoldersOfTheirOwn) {
   EXPECT_EQ(topic_folder(3), "/px4_3/fmu");
 }
 
-}  // namespace
-}  // namespace swiftlet::px4
+}  // namespace swiftlet::px4::versions_test

@@ -8,8 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::command_line_test {
 
 class Numbers : public testing::Test {
  protected:
@@ -115,5 +114,4 @@ TEST(Help, WrapsDescriptions) {
   EXPECT_GE(wrapped, 4) << program.command_line().help();
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::command_line_test

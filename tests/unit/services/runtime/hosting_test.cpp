@@ -15,8 +15,7 @@
 
 #include "tests/support/log_text.hpp"
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::hosting_test {
 
 using namespace std::chrono_literals;
 using tests::LogText;
@@ -171,5 +170,4 @@ TEST(GroupPhase, SpreadsFewVehiclesAndGathersMany) {
   EXPECT_EQ(vehicles_at, (std::map<double, int>{{0.0, 4}, {0.25, 4}, {0.5, 4}, {0.75, 4}}));
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::hosting_test

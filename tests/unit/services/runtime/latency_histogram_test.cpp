@@ -9,8 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::latency_histogram_test {
 
 TEST(LatencyHistogram, IsEmptyAtFirst) {
   const LatencyHistogram histogram;
@@ -76,5 +75,4 @@ TEST(LatencyHistogram, ResetClearsIt) {
   EXPECT_EQ(histogram.quantile_ns(0.5), 7);
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::latency_histogram_test

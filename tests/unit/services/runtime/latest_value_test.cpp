@@ -7,8 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::latest_value_test {
 
 TEST(LatestValue, ReturnsTheNewestValueOnce) {
   LatestValue<int> latest;
@@ -52,5 +51,4 @@ TEST(LatestValue, ValuesAreWholeAndInOrderBetweenThreads) {
   EXPECT_FALSE(went_back);
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::latest_value_test

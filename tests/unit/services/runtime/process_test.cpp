@@ -17,13 +17,13 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <spdlog/spdlog.h>
 
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/stop_signal.hpp"
+#include "tests/support/log_text.hpp"
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::process_test {
 
 using namespace std::chrono_literals;
 
@@ -149,8 +149,8 @@ TEST(Logging, DestructorFlushesTheQueue) {
   testing::internal::CaptureStderr();
   {
     const Logging logging("test", {"warning", path.string()});
-    spdlog::info("not severe enough");
-    for (int i = 0; i < 100; ++i) spdlog::warn("line {}", i);
+    log_info("not severe enough");
+    for (int i = 0; i < 100; ++i) log_warning("line {}", i);
   }
   EXPECT_NE(testing::internal::GetCapturedStderr().find("line 99\n"), std::string::npos);
   std::ifstream file(path);
@@ -159,6 +159,13 @@ TEST(Logging, DestructorFlushesTheQueue) {
   std::filesystem::remove(path);
   EXPECT_EQ(text.str().find("not severe"), std::string::npos);
   EXPECT_NE(text.str().find("test warning: line 99\n"), std::string::npos);
+}
+
+// A wrong line must not end the thread that flies.
+TEST(Logging, SaysThatALineCannotBeFormatted) {
+  const tests::LogText logged;
+  log_info(fmt::runtime("height {:d} m"), "high");
+  EXPECT_EQ(logged.lines().rfind("cannot write a log line: ", 0), 0U) << logged.lines();
 }
 
 TEST(Logging, NamesAFileThatCannotBeWritten) {
@@ -170,5 +177,4 @@ TEST(Logging, NamesAFileThatCannotBeWritten) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::process_test

@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::semaphore_test {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
@@ -55,5 +54,4 @@ TEST(Semaphore, PostSynchronisesWithTheWait) {
   EXPECT_EQ(value, 2 * kRounds);
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::semaphore_test

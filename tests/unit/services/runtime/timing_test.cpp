@@ -8,8 +8,7 @@
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "swiftlet/services/runtime/semaphore.hpp"
 
-namespace swiftlet::runtime {
-namespace {
+namespace swiftlet::runtime::timing_test {
 
 using namespace std::chrono_literals;
 
@@ -80,5 +79,4 @@ TEST(Semaphore, CountsManyPostsAsOne) {
   EXPECT_GE(monotonic_ns() - start, 20 * kMillisecond);
 }
 
-}  // namespace
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::runtime::timing_test

@@ -13,8 +13,7 @@
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::byte_link_test {
 
 std::string refusal(const ByteLinkSettings& settings) {
   try {
@@ -130,5 +129,4 @@ TEST(UdpPort, SendsToWhoeverSentTheLastValidFrame) {
   EXPECT_EQ(stranger.read(bytes, sizeof bytes), 0U);
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::byte_link_test

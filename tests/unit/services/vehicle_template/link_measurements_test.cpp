@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::link_measurements_test {
 
 protocol::State state(bool rotors_running, std::uint32_t commands_obeyed) {
   protocol::State out;
@@ -63,5 +62,4 @@ TEST(LinkMeasurements, MeasuresEachObeyedCommandOnce) {
   EXPECT_EQ(measurements.late, 1U) << "later than 2 ms";
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::link_measurements_test

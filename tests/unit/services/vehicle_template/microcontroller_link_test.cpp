@@ -17,8 +17,7 @@
 #include "tests/support/malloc_guard.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::microcontroller_link_test {
 
 using protocol::message_of;
 
@@ -148,5 +147,4 @@ TEST_F(MicrocontrollerLinkTest, AllocatesNothing) {
   EXPECT_GT(samples, 0);
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::microcontroller_link_test

@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::services {
-namespace {
+namespace swiftlet::services::wire_test {
 
 TEST(Wire, AnImuSampleKeepsItsStampsAndReportsTheObeyedCommand) {
   protocol::Imu in;
@@ -68,5 +67,4 @@ TEST(Wire, RotorSpeedsAndBatteryKeepTheirValues) {
   EXPECT_EQ(battery.state_of_charge(), 0.5);
 }
 
-}  // namespace
-}  // namespace swiftlet::services
+}  // namespace swiftlet::services::wire_test

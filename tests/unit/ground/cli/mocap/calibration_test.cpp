@@ -19,8 +19,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::calibration_test {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -205,5 +204,4 @@ TEST(RecordedMotion, IsOfItsOwnVehicle) {
   EXPECT_EQ(missing.find("is a flight of"), std::string::npos) << missing;
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::calibration_test

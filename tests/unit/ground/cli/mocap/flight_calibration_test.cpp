@@ -17,8 +17,7 @@
 #include "tests/support/campaign.hpp"
 #include "tests/unit/ground/identify/identified_flights.hpp"
 
-namespace swiftlet::ground {
-namespace {
+namespace swiftlet::ground::flight_calibration_test {
 
 using Eigen::Vector3d;
 using identification::align_body;
@@ -228,5 +227,4 @@ TEST(FlightCalibration, KeepsWhatWasNotTold) {
                               "the flight tells nothing"));
 }
 
-}  // namespace
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::ground::flight_calibration_test

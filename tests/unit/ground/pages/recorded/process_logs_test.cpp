@@ -7,8 +7,7 @@
 
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::pages {
-namespace {
+namespace swiftlet::pages::process_logs_test {
 
 constexpr double kStart_s = 1.8e9;  // s since 1970
 
@@ -57,5 +56,4 @@ TEST(ProcessLogs, HaveNoPlaceInSimulatedTime) {
   EXPECT_EQ(log.events.size(), 1U);
 }
 
-}  // namespace
-}  // namespace swiftlet::pages
+}  // namespace swiftlet::pages::process_logs_test

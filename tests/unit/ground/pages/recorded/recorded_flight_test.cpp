@@ -11,8 +11,7 @@
 #include "swiftlet/io/mcap/writer.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::pages {
-namespace {
+namespace swiftlet::pages::recorded_flight_test {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kFirstNs = 500 * kMs;
@@ -213,5 +212,4 @@ TEST_F(FlightPage, SaysWhatIsMissing) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::pages
+}  // namespace swiftlet::pages::recorded_flight_test

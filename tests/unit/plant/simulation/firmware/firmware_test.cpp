@@ -8,8 +8,7 @@
 #include "tests/unit/plant/model/vehicles.hpp"
 #include "tests/unit/plant/simulation/worlds.hpp"
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::firmware_test {
 
 using Eigen::Vector3d;
 using plant::CommandFault;
@@ -215,5 +214,4 @@ TEST_F(Flown, TheLoopsUseNoHeap) {
   EXPECT_EQ(guard.calls(), 0U);
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::firmware_test

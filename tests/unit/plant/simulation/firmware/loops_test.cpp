@@ -12,8 +12,7 @@
 #include "swiftlet/plant/simulation/firmware/rate_loop.hpp"
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::loops_test {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -160,5 +159,4 @@ TEST(Mixer, KeepsMomentsAtTheExpenseOfThrust) {
   EXPECT_NEAR(wrench[1], moment.x(), 1e-6);
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::loops_test

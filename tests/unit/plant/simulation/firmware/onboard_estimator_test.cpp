@@ -8,8 +8,7 @@
 #include "swiftlet/math/rotation_vector.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::onboard_estimator_test {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -107,5 +106,4 @@ TEST(OnboardEstimator, StandsStillBeforeTheFirstPose) {
   EXPECT_FALSE(estimator.initialised());
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::onboard_estimator_test

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::plant {
-namespace {
+namespace swiftlet::plant::delay_line_test {
 
 TEST(DelayLine, HoldsEachItemUntilItIsDue) {
   DelayLine<int> line(4);
@@ -64,5 +63,4 @@ TEST(DelayLine, ClearDropsItemsUnderWay) {
   EXPECT_EQ(line.take(100), 2) << "delayed by an item that was cleared";
 }
 
-}  // namespace
-}  // namespace swiftlet::plant
+}  // namespace swiftlet::plant::delay_line_test

@@ -8,8 +8,7 @@
 #include "swiftlet/plant/simulation/links/command_path.hpp"
 #include "swiftlet/plant/simulation/streams.hpp"
 
-namespace swiftlet::tests {
-namespace {
+namespace swiftlet::tests::radio_test {
 
 using plant::RadioLine;
 using plant::RadioLink;
@@ -75,7 +74,7 @@ TEST(Radio, PacketsKeepTheirOrder) {
   for (int i = 0; i < 200; ++i) {
     const std::int64_t now_ns = i * 2 * kMillisecond;
     line.send(i, now_ns);
-    while (const auto packet = line.take(now_ns)) arrived.push_back(*packet);
+    while (const auto* packet = line.take(now_ns)) arrived.push_back(*packet);
   }
   ASSERT_GT(arrived.size(), 180U);
   for (std::size_t i = 0; i < arrived.size(); ++i) EXPECT_EQ(arrived[i], static_cast<int>(i));
@@ -103,5 +102,4 @@ TEST(Radio, DelaysCommandsBeforeFaultsDo) {
   EXPECT_TRUE(path.arrived(165 * kMillisecond).has_value());
 }
 
-}  // namespace
-}  // namespace swiftlet::tests
+}  // namespace swiftlet::tests::radio_test

@@ -15,8 +15,7 @@
 #include "tests/support/eventually.hpp"
 #include "tests/support/private_domain.hpp"
 
-namespace swiftlet::comms {
-namespace {
+namespace swiftlet::comms::clock_client_test {
 
 using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
@@ -96,5 +95,4 @@ TEST_F(Clocks, AnswerWhileTheyRun) {
   EXPECT_GT(reply.received_ns(), 0);
 }
 
-}  // namespace
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::comms::clock_client_test

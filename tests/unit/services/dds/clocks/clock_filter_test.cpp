@@ -7,8 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::comms {
-namespace {
+namespace swiftlet::comms::clock_filter_test {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kS = 1'000'000'000;
@@ -211,5 +210,4 @@ TEST(ClockFilter, RefusesAnExchangeThatIsNotNewer) {
   EXPECT_EQ(filter.estimate()->measured_ns, 2250);
 }
 
-}  // namespace
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::comms::clock_filter_test

@@ -6,8 +6,7 @@
 
 #include "tests/support/rtps_message.hpp"
 
-namespace swiftlet::comms::tests {
-namespace {
+namespace swiftlet::comms::check_test {
 
 using namespace swiftlet::tests;
 
@@ -307,5 +306,4 @@ TEST(Datagram, TypeDescriptionsAreHiddenFromTheMiddleware) {
   EXPECT_EQ(copy, message.bytes()) << "changes nothing else";
 }
 
-}  // namespace
-}  // namespace swiftlet::comms::tests
+}  // namespace swiftlet::comms::check_test

@@ -6,16 +6,16 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/services/dds/datagram/check.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/rtps_message.hpp"
 
-namespace swiftlet::comms::tests {
-namespace {
+namespace swiftlet::comms::other_version_test {
 
 using swiftlet::tests::Bytes;
 
 // By kind.
 std::map<std::string, Bytes> recorded() {
-  std::ifstream file(SWIFTLET_SOURCE_DIR "/tests/wire/fast_dds_3_datagrams.txt");
+  std::ifstream file(tests::in_source("tests/wire/fast_dds_3_datagrams.txt"));
   std::map<std::string, Bytes> datagrams;
   std::string kind;
   std::string hex;
@@ -47,5 +47,4 @@ TEST(DatagramsOfFastDds3, AreRefusedWhenCutOff) {
   EXPECT_NE(check_datagram(announcement.data(), announcement.size(), DatagramLimits()).fault, nullptr);
 }
 
-}  // namespace
-}  // namespace swiftlet::comms::tests
+}  // namespace swiftlet::comms::other_version_test

@@ -8,8 +8,7 @@
 
 #include "tests/support/log_text.hpp"
 
-namespace swiftlet::comms {
-namespace {
+namespace swiftlet::comms::refusal_log_test {
 
 using namespace std::chrono_literals;
 
@@ -55,5 +54,4 @@ TEST_F(RefusalLogTest, CountsMoreSendersThanItRemembersTogether) {
   EXPECT_EQ(lines_after(kRefusalLogPeriod), "refused 1 datagram from 10.0.0.18; the last: rule\n");
 }
 
-}  // namespace
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::comms::refusal_log_test

@@ -6,8 +6,7 @@
 
 #include "tests/support/rtps_message.hpp"
 
-namespace swiftlet::comms::tests {
-namespace {
+namespace swiftlet::comms::reply_check_test {
 
 using namespace swiftlet::tests;
 
@@ -108,5 +107,4 @@ TEST(ReplyCheck, AdmitsGapsBehindWhatWasAcknowledged) {
   EXPECT_NE(fault_of(replies, gap(99'000 + kGapsAhead - 8, 32)), "") << "with the numbers of its set";
 }
 
-}  // namespace
-}  // namespace swiftlet::comms::tests
+}  // namespace swiftlet::comms::reply_check_test

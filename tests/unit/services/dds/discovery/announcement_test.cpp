@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::comms {
-namespace {
+namespace swiftlet::comms::announcement_test {
 
 std::vector<std::uint8_t> bytes(const std::string& text) { return {text.begin(), text.end()}; }
 
@@ -68,5 +67,4 @@ TEST(SourceOrder, ExactlyOneOfTwoYields) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::comms::announcement_test

@@ -17,8 +17,7 @@
 #include "swiftlet/services/dds/node.hpp"
 #include "tests/support/eventually.hpp"
 
-namespace swiftlet::comms::tests {
-namespace {
+namespace swiftlet::comms::discovery_ports_test {
 
 using swiftlet::tests::Inbox;
 
@@ -149,5 +148,4 @@ TEST(DiscoveryPorts, LastDomainCanBeJoined) {
   EXPECT_NO_THROW(Node node(settings));
 }
 
-}  // namespace
-}  // namespace swiftlet::comms::tests
+}  // namespace swiftlet::comms::discovery_ports_test

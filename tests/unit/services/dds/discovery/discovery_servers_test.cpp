@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::comms {
-namespace {
+namespace swiftlet::comms::discovery_servers_test {
 
 TEST(DiscoveryServers, AreNumberedByTheirPlace) {
   const auto servers = parse_discovery_servers("lab1;;10.0.0.7:11900");
@@ -26,5 +25,4 @@ TEST(DiscoveryServers, AreRefusedIfOneIsMalformed) {
   EXPECT_NE(fault_of_discovery_servers(std::string(256, ';') + "lab1"), "");
 }
 
-}  // namespace
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::comms::discovery_servers_test

@@ -8,8 +8,7 @@
 
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
 
-namespace swiftlet::comms {
-namespace {
+namespace swiftlet::comms::host_address_test {
 
 TEST(HostAddress, IsANameOrAddressWithOrWithoutPort) {
   for (const char* text : {"lab2", "lab-2.example.org", "10.0.0.7", "10.0.0.7:7412", "lab2:1", "lab2:65535"})
@@ -48,5 +47,4 @@ TEST(Interfaces, AreGivenByNameOrAddress) {
   EXPECT_THROW(addresses_of_interfaces({"lo", "wlan9"}), std::runtime_error);
 }
 
-}  // namespace
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::comms::host_address_test

@@ -12,8 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::comms {
-namespace {
+namespace swiftlet::comms::opened_destinations_test {
 
 namespace transport = eprosima::fastdds::rtps;
 
@@ -80,5 +79,4 @@ TEST(OpenedDestinations, GetWhatIsSentToAll) {
   EXPECT_EQ(other.received(), 1);
 }
 
-}  // namespace
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::comms::opened_destinations_test

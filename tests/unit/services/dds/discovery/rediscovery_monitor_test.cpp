@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::comms {
-namespace {
+namespace swiftlet::comms::rediscovery_monitor_test {
 
 using namespace std::chrono_literals;
 
@@ -63,5 +62,16 @@ TEST_F(RediscoveryMonitorTest, StopsWaitingForALostOrDepartedPeer) {
   }
 }
 
-}  // namespace
-}  // namespace swiftlet::comms
+// A process that is started again is another peer.
+TEST_F(RediscoveryMonitorTest, ForgetsPeersThatNeverReturn) {
+  for (int peer = 2; peer < 5000; ++peer) {
+    rediscovery_.came(peer, start_);
+    rediscovery_.has(peer, Peers::kWriter);
+    rediscovery_.lost(peer);
+  }
+  EXPECT_LE(rediscovery_.size(), Peers::kMostLost + 1);
+  rediscovery_.came(4999, start_);
+  EXPECT_TRUE(failed_after(1min)) << "one of the last ones that were lost";
+}
+
+}  // namespace swiftlet::comms::rediscovery_monitor_test

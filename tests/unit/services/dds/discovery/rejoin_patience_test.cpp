@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::comms {
-namespace {
+namespace swiftlet::comms::rejoin_patience_test {
 
 using namespace std::chrono_literals;
 
@@ -36,5 +35,4 @@ TEST(RejoinPatience, DiffersBetweenProcessesAfterTheFirst) {
   EXPECT_EQ(patience.at(kStart), 3000ms);
 }
 
-}  // namespace
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::comms::rejoin_patience_test

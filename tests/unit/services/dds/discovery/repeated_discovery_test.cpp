@@ -4,8 +4,7 @@
 
 #include "tests/support/rtps_message.hpp"
 
-namespace swiftlet::comms {
-namespace {
+namespace swiftlet::comms::repeated_discovery_test {
 
 using tests::ByteWriter;
 using tests::RtpsMessage;
@@ -64,5 +63,4 @@ TEST(RepeatedDiscovery, TellsWhatIsAnnouncedFromWhen) {
   EXPECT_NE(digest_of(1, tests::kAlice), digest_of(1, tests::kBob));
 }
 
-}  // namespace
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::comms::repeated_discovery_test

@@ -5,8 +5,7 @@
 #include "swiftlet/services/dds/datagram/participant_admission.hpp"
 #include "tests/support/rtps_message.hpp"
 
-namespace swiftlet::comms {
-namespace {
+namespace swiftlet::comms::spaced_changes_test {
 
 using tests::ByteWriter;
 using tests::RtpsMessage;
@@ -156,5 +155,4 @@ TEST_F(TooEarly, ABoundedNumberOfChangesIsKept) {
   EXPECT_EQ(of_all, EarlyChanges::kMost);
 }
 
-}  // namespace
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::comms::spaced_changes_test

@@ -16,8 +16,7 @@
 #include "swiftlet/services/dds/node.hpp"
 #include "tests/support/eventually.hpp"
 
-namespace swiftlet::comms::tests {
-namespace {
+namespace swiftlet::comms::qos_conflicts_test {
 
 namespace dds = eprosima::fastdds::dds;
 using swiftlet::tests::eventually;
@@ -199,5 +198,4 @@ TEST_F(QosConflictLog, OmitsEndpointsThatMatch) {
   EXPECT_EQ(count(lines_.items(), {"rt/kl1/imu"}), 0) << all_lines();
 }
 
-}  // namespace
-}  // namespace swiftlet::comms::tests
+}  // namespace swiftlet::comms::qos_conflicts_test

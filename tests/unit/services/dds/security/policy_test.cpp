@@ -10,16 +10,16 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/services/messages/topic_roles.hpp"
+#include "tests/support/paths.hpp"
 
-namespace swiftlet::comms {
-namespace {
+namespace swiftlet::comms::policy_test {
 
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 // "| `imu` | `Imu` | vehicle -> control | ..." of idl/README.md, which a test compares with topics.hpp.
 std::map<std::string, std::string> documented_writers() {
   std::map<std::string, std::string> writers;
-  std::ifstream file(SWIFTLET_SOURCE_DIR "/idl/README.md");
+  std::ifstream file(tests::in_source("idl/README.md"));
   const std::regex row(R"(^\| `(\w+)` \| `\w+` \| (.*) -> .*)");
   for (std::string line; std::getline(file, line);) {
     std::smatch match;
@@ -55,5 +55,4 @@ TEST(Permissions, AllowARoleItsTopicsOfItsVehicles) {
   EXPECT_FALSE(holds(permissions_document("observer", "CN=observer,O=Swiftlet", {"kl1"}), "<publish>"));
 }
 
-}  // namespace
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::comms::policy_test

@@ -11,8 +11,7 @@
 #include "tests/support/log_text.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::comms {
-namespace {
+namespace swiftlet::comms::refused_peers_test {
 
 class RefusedPeersTest : public testing::Test {
  protected:
@@ -73,5 +72,4 @@ TEST_F(RefusedPeersTest, ReasonsAreKnownAfterAProfileWasLoaded) {
   EXPECT_EQ(lines(), "refused late: its certificate has expired\n");
 }
 
-}  // namespace
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::comms::refused_peers_test

@@ -1,0 +1,1 @@
+// Empty source file of the target that precompiles light_headers.hpp.

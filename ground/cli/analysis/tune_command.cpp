@@ -1,0 +1,18 @@
+// `swiftlet tune`: control settings before a flight.
+#include <vector>
+
+#include "swiftlet/ground/cli/analysis/tune_commands.hpp"
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/command_line/programs.hpp"
+
+namespace swiftlet::ground {
+
+Command add_tune_command(runtime::CommandLine root) {
+  const runtime::CommandLine tune = root.add_subcommand("tune", purpose_of("tune"));
+  tune.require_subcommand(1, 1);
+  tune.footer("example: swiftlet tune plot motor_lag paper");
+  const std::vector<Command> commands = {add_tune_plot_command(tune), add_tune_delay_command(tune)};
+  return {tune, [commands] { return run_given(commands); }};
+}
+
+}  // namespace swiftlet::ground

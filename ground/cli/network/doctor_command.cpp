@@ -1,0 +1,13 @@
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/command_line/programs.hpp"
+
+namespace swiftlet::ground {
+
+Command add_doctor_command(runtime::CommandLine root) {
+  const runtime::CommandLine doctor = root.add_subcommand("doctor", purpose_of("doctor"));
+  doctor.require_subcommand(1, 1);
+  const Command network = add_doctor_network_command(doctor);
+  return {doctor, network.run};
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,15 @@
+// swiftlet-network: the commands of `swiftlet` about networks.
+#include <vector>
+
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/command_line/programs.hpp"
+#include "swiftlet/services/runtime/version.hpp"
+
+int main(int argc, char** argv) {
+  using namespace swiftlet;
+  return ground::run_commands(argc, argv, runtime::version_text(), [](runtime::CommandLine root) {
+    return std::vector<ground::Command>{ground::add_doctor_command(root),
+                                        ground::add_discovery_server_command(root),
+                                        ground::add_keys_command(root)};
+  });
+}

@@ -1,0 +1,13 @@
+// swiftlet-view: `swiftlet view`.
+#include <vector>
+
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/command_line/programs.hpp"
+#include "swiftlet/services/runtime/version.hpp"
+
+int main(int argc, char** argv) {
+  using namespace swiftlet;
+  return ground::run_commands(argc, argv, runtime::version_text(), [](runtime::CommandLine root) {
+    return std::vector<ground::Command>{ground::add_view_command(root, runtime::version_text())};
+  });
+}

@@ -1,0 +1,42 @@
+// Keeps the vehicles of a fleet apart in a flight in real time: hears their estimates, asks the monitor
+// (ground/fleet/fleet_monitor.hpp), and pauses, resumes or moves missions.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "swiftlet/ground/client/client.hpp"
+#include "swiftlet/ground/fleet/fleet_monitor.hpp"
+#include "swiftlet/ground/fleet/order_sender.hpp"
+#include "swiftlet/ground/terminal/progress.hpp"
+#include "swiftlet/services/dds/periodic_task.hpp"
+
+namespace swiftlet::ground {
+
+// Begins when a mission runs, and ends when it is destroyed. A mission that another tool has paused is left
+// paused. Each vehicle is asked from a thread of its own: one that does not answer delays no other.
+class FleetWatch {
+ public:
+  struct Watched {
+    Client* client = nullptr;      // outlives this object
+    Progress* progress = nullptr;  // likewise
+  };
+
+  // vehicles: in the order of the monitor's. gives_up: true from when the flight is abandoned, and all are
+  // landed: nothing else is sent from then on. Called from several threads.
+  FleetWatch(FleetMonitor monitor, std::vector<Watched> vehicles, std::function<bool()> gives_up);
+
+ private:
+  void step();
+
+  FleetMonitor monitor_;
+  std::vector<Watched> vehicles_;
+  const std::function<bool()> gives_up_;
+  std::deque<OrderSender> senders_;
+  std::optional<Clock::time_point> start_;
+  comms::PeriodicTask task_;  // last: uses all members above
+};
+
+}  // namespace swiftlet::ground

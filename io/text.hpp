@@ -1,0 +1,30 @@
+// Takes texts apart and puts them together.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace swiftlet::runtime {
+
+// The text without the blanks at both ends.
+inline std::string_view trimmed(std::string_view text, std::string_view blanks = " \t") {
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+inline std::string joined(const std::vector<std::string>& texts, std::string_view between) {
+  std::string out;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    if (i > 0) out += between;
+    out += texts[i];
+  }
+  return out;
+}
+
+// No control character. Each byte of a UTF-8 character is printable.
+inline bool is_printable(char c) { return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f; }
+
+}  // namespace swiftlet::runtime

@@ -1,0 +1,9 @@
+// swiftlet-control: the flight controllers.
+#pragma once
+
+namespace swiftlet::services {
+
+// The whole program, apart from main.cpp so that the compiler reads the headers once for it and its parts. Returns the exit code.
+int run_control(int argc, char** argv);
+
+}  // namespace swiftlet::services

@@ -1,0 +1,68 @@
+// Which orders of the fleet's monitor are sent. The test stands in for the control service.
+#include "swiftlet/ground/fleet/order_sender.hpp"
+
+#include <atomic>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/support/private_domain.hpp"
+
+namespace swiftlet::ground::order_sender_test {
+
+using tests::eventually;
+using tests::settings_of;
+
+class NoProgress final : public Progress {
+ public:
+  void update(int, const std::string&) override {}
+  void say(const std::string&) override {}
+};
+
+// GIVEN an order that waits in the sender WHEN the flight is abandoned THEN it is not sent, and cannot end the landing.
+TEST(OrderSender, SendsNothingOnceTheFlightIsAbandoned) {
+  const comms::DomainLock lock;
+  comms::Node control(settings_of("control", lock));
+  tests::Inbox<comms::msg::Command> commands;
+  auto acks = control.publish(comms::topics::kCommandAck);
+  auto missions = control.publish(comms::topics::kMissionStatus);
+  const comms::Subscription subscription = control.subscribe<comms::msg::Command>(
+      comms::topics::kCommand, [&](const comms::msg::Command& command) {
+        commands.put(command);
+        comms::msg::CommandAck ack;
+        ack.client(command.client());
+        ack.id(command.id());
+        ack.accepted(true);
+        acks.publish(ack);
+      });
+  Client client(settings_of("ground", lock));
+  ASSERT_TRUE(eventually([&] {
+    comms::msg::MissionStatus running;
+    running.state(comms::msg::MissionStatus_Constants::RUNNING);
+    missions.publish(running);
+    return client.view().mission.seen();
+  }));
+
+  std::atomic<bool> is_abandoned{true};
+  std::atomic<int> asked{0};
+  NoProgress progress;
+  OrderSender sender(client, progress, [&] {
+    const bool gives_up = is_abandoned;
+    ++asked;
+    return gives_up;
+  });
+  const Order pause{Order::Kind::kPause, Eigen::Vector3d::Zero(), 1};
+  sender.give(pause, "kl2");
+  ASSERT_TRUE(eventually([&] { return asked > 0; }));
+  is_abandoned = false;
+  sender.give(pause, "kl2");
+  ASSERT_TRUE(commands.wait_for_count(1));
+  EXPECT_EQ(commands.items().front().kind(), comms::msg::Command_Constants::MISSION_PAUSE);
+  // Requests are numbered in order: this is the first one that was made.
+  const Result next = client.command(comms::msg::Command(), tests::kStuck);
+  EXPECT_EQ(next.key.id, commands.items().front().id() + 1);
+}
+
+}  // namespace swiftlet::ground::order_sender_test
