@@ -400,6 +400,11 @@ bool Client::send(control::Setpoint setpoint) {
   return setpoints_.matched() > 0 && setpoints_.publish(comms::to_message(setpoint));
 }
 
+void Client::await_setpoint_reader(Clock::time_point deadline, const Cancelled& cancelled) const {
+  while (setpoints_.matched() == 0 && Clock::now() < deadline && !cancelled())
+    wait(kPollPeriod, [&cancelled](const View&) { return cancelled(); });
+}
+
 std::string Client::where() const {
   std::vector<std::string> names;
   for (const auto& [name, count] : view().peers) {

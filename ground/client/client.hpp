@@ -113,6 +113,8 @@ class Client {
   // Publishes one setpoint of a stream; setpoints are not answered. Fills in stamp and sequence. Returns
   // false if no controller subscribes.
   bool send(control::Setpoint setpoint);
+  // Returns when a controller subscribes to setpoints, at the deadline, or when cancelled.
+  void await_setpoint_reader(Clock::time_point deadline, const Cancelled& cancelled) const;
   // kind: one of Command_Constants::MISSION_*. mission_id: 0 means the mission that the vehicle has.
   Result mission_command(std::uint8_t kind, std::uint64_t mission_id, std::chrono::milliseconds timeout,
                          const Cancelled& cancelled = {});

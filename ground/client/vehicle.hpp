@@ -109,8 +109,9 @@ class Vehicle {
   Vehicle(const Vehicle&) = delete;
   Vehicle& operator=(const Vehicle&) = delete;
 
-  // Waits for the vehicle's control_status. Accepted when it arrives; else the reason says what was found in
-  // the domain. Not required before requests: they wait for the controller themselves, within their time-out.
+  // Waits for the vehicle's control_status, and until its controller reads setpoints. Accepted when both are
+  // there, or the first at the end of the time; else the reason says what was found in the domain. Not required
+  // before requests: they wait for the controller themselves, within their time-out.
   Result connect(std::chrono::milliseconds timeout = kAnswerTimeout) const;
 
   // The vehicle's name in the domain.
