@@ -62,6 +62,10 @@ bool may_be_clear(std::uint8_t kind) {
          (kind >= kSecureBody && kind <= kSecureRtpsPrefix);
 }
 
+const char* check_writer(const EntityId& entity) {
+  return is_writer(entity) ? nullptr : "submessage of a writer that is none (9.3.1.2)";
+}
+
 // Checks one datagram. All check functions return the broken rule, or nullptr.
 class DatagramCheck {
  public:
@@ -91,7 +95,6 @@ class DatagramCheck {
   const char* check_payload(Submessage& submessage, const ListContext& context, bool names_key);
   const char* check_data_frag(Submessage& submessage);
   const char* check_fragments(ByteReader& body, std::uint64_t& payload_bytes);
-  const char* note(const EntityId& writer, std::uint32_t number, std::uint32_t gap_end = 0);
 
   const std::uint8_t* begin_;
   const DatagramLimits& limits_;
@@ -178,21 +181,6 @@ const char* DatagramCheck::check_body(Submessage& submessage) {
   }
 }
 
-const char* DatagramCheck::note(const EntityId& writer, std::uint32_t number, std::uint32_t gap_end) {
-  if (!is_writer(writer)) return "submessage of a writer that is none (9.3.1.2)";
-  auto* const end = result_.writers.begin() + result_.writer_count;
-  auto* const known = std::find_if(result_.writers.begin(), end,
-                                   [&](const NumberedWriter& other) { return other.entity == writer; });
-  if (known != end) {
-    known->number = std::max(known->number, number);
-    known->gap_end = std::max(known->gap_end, gap_end);
-    return nullptr;
-  }
-  if (result_.writer_count == CheckedDatagram::kMostWriters) return "submessages of more than 32 writers";
-  result_.writers[result_.writer_count++] = {writer, number, gap_end};
-  return nullptr;
-}
-
 // All zeros leave the destination as it is in Fast DDS.
 const char* DatagramCheck::check_destination(ByteReader body) {
   GuidPrefix destination{};
@@ -222,7 +210,7 @@ const char* DatagramCheck::check_heartbeat(ByteReader body) {
   if (!first.in_range || !last.in_range) return "HEARTBEAT with a sequence number out of range (8.3.5.5)";
   if (first.value == 0 || last.value + 1 < first.value)
     return "HEARTBEAT that ends before it begins (8.3.8.6.3)";
-  return note(writer, last.value);
+  return check_writer(writer);
 }
 
 const char* DatagramCheck::check_gap(ByteReader body) {
@@ -237,7 +225,9 @@ const char* DatagramCheck::check_gap(ByteReader body) {
   if (start.value == 0 || base.value < start.value) return "GAP that ends before it begins (8.3.8.4.3)";
   if (base.value - start.value > (is_builtin(writer) ? kLongestBuiltinGap : kLongestGap))
     return "GAP of more than 256 samples, or of discovery 65,536 (8.3.8.4)";
-  return note(writer, base.value, base.value + numbers);
+  if (result_.gap_count == CheckedDatagram::kMostGaps) return "more than 32 GAP";
+  result_.gaps[result_.gap_count++] = {writer, base.value + numbers};
+  return check_writer(writer);
 }
 
 const char* DatagramCheck::check_nack_frag(ByteReader body) {
@@ -283,7 +273,7 @@ const char* DatagramCheck::check_data(Submessage& submessage) {
     if (const char* const fault = check_inline_qos(body, context, names_key)) return fault;
   }
   if (const char* const fault = check_payload(submessage, context, names_key)) return fault;
-  return note(writer, number.value);
+  return check_writer(writer);
 }
 
 const char* DatagramCheck::check_payload(Submessage& submessage, const ListContext& context, bool names_key) {
@@ -296,14 +286,12 @@ const char* DatagramCheck::check_payload(Submessage& submessage, const ListConte
   if (payload.rest() < 4) return "payload shorter than its encapsulation (10.2)";
   if (of_discovery) {
     HiddenParameters hidden;
-    std::uint64_t digest = 0xcbf29ce484222325U;
     const bool key_only = submessage.has(kKeyFlag);
     Announced announced;
-    if (const char* const fault =
-            check_discovery_payload(payload, context, key_only, hidden, digest, announced))
+    if (const char* const fault = check_discovery_payload(payload, context, key_only, hidden, announced))
       return fault;
     if (context.topic == BuiltinTopic::kParticipant && !key_only && !context.relays) {
-      result_.announcement_digest = digest;
+      result_.announces_itself = true;
       result_.announced = announced;
     }
     if (result_.hidden_count + hidden.count > CheckedDatagram::kMostHidden)
@@ -336,7 +324,7 @@ const char* DatagramCheck::check_data_frag(Submessage& submessage) {
   }
   result_.fragment = true;
   if (body.rest() < payload_bytes) return "DATA_FRAG with less data than its fragments have (8.3.8.3.3)";
-  return note(writer, number.value);
+  return check_writer(writer);
 }
 
 const char* DatagramCheck::check_fragments(ByteReader& body, std::uint64_t& payload_bytes) {

@@ -23,11 +23,10 @@ struct DatagramLimits {
   std::uint32_t largest_sample_bytes = 1 << 20;  // of a sample sent in fragments
 };
 
-// A writer that a datagram names, with the highest sequence number that the datagram gives it.
-struct NumberedWriter {
-  EntityId entity{};
-  std::uint32_t number = 0;
-  std::uint32_t gap_end = 0;  // the highest number of its gaps; 0: none
+// Samples of a writer that are irrelevant to a reader.
+struct Gap {
+  EntityId writer{};
+  std::uint32_t end = 0;  // the highest number
 };
 
 // Fragments of a sample that a NACK_FRAG asks for.
@@ -47,15 +46,14 @@ struct CheckedDatagram {
   // Bytes to hand to the middleware: less than received if the datagram ends with a submessage that it must not see.
   std::size_t length = 0;
   bool about_participant = false;  // holds a DATA in which a participant announces itself, or says goodbye
-  // Of its lease and built-in endpoints in an announcement; 0 for others, and if another announces it.
-  std::uint64_t announcement_digest = 0;
-  Announced announced;  // in that announcement; in the datagram that was checked
+  bool announces_itself = false;   // holds an announcement of its source
+  Announced announced;             // in that announcement; in the datagram that was checked
   // An announcement of a participant that this process ignores.
   bool is_ignored = false;
 
-  static constexpr std::size_t kMostWriters = 32;
-  std::array<NumberedWriter, kMostWriters> writers{};
-  std::size_t writer_count = 0;
+  static constexpr std::size_t kMostGaps = 32;
+  std::array<Gap, kMostGaps> gaps{};
+  std::size_t gap_count = 0;
 
   static constexpr std::size_t kMostRequests = 8;
   std::array<FragmentRequest, kMostRequests> requests{};

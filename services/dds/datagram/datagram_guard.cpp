@@ -22,7 +22,6 @@ Now Now::read() {
 
 DatagramGuard::DatagramGuard(const runtime::NetworkKeys& keys, const DatagramLimits& limits)
     : limits_(limits),
-      sequences_(limits.discovery_servers),
       replies_(limits.discovery_servers ? kLongestBuiltinGap : kGapsAhead) {
   if (keys.empty()) return;
   sealer_.emplace(keys);
@@ -41,32 +40,23 @@ CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size,
     if (checked.fault == kSentTwice) return checked;
   }
   if (checked.fault == nullptr) checked = check_datagram(data, opener_ ? size - kSealBytes : size, limits_);
-  if (checked.fault == nullptr) checked.fault = fault_of(checked, sender, now);
+  if (checked.fault == nullptr && !opener_) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    checked.fault = replies_.fault_of(checked);
+  }
   if (checked.fault != nullptr) {
     refuse(sender, checked.fault);
-  } else if (limits_.security && checked.about_participant && !checked.is_ignored) {
-    note_announcement(checked, now);
+    return checked;
   }
+  if (checked.announces_itself) checked.is_ignored = ignores(checked, now);
+  if (limits_.security && checked.about_participant && !checked.is_ignored) note_announcement(checked, now);
   return checked;
 }
 
-const char* DatagramGuard::fault_of(CheckedDatagram& checked, const SenderAddress& sender, const Now& now) {
+bool DatagramGuard::ignores(const CheckedDatagram& checked, const Now& now) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const std::size_t changeable = opener_ ? 0 : checked.writer_count;  // nobody changes what is sealed
-  for (std::size_t i = 0; i < changeable; ++i) {
-    const NumberedWriter& writer = checked.writers[i];
-    if (!sequences_.admit(checked.source, writer.entity, writer.number, now.steady_ns))
-      return "sequence number that the writer cannot have reached (8.3.5.5)";
-  }
-  if (const char* const fault = replies_.fault_of(checked)) return fault;
-  if (!checked.about_participant) return nullptr;
-  const std::uint64_t digest = checked.announcement_digest;
-  const ParticipantNews news{digest, checked.announced.discovery_port,
-                             digest != 0 && concerns_us(checked.announced)};
-  const Admission admission = participants_.admit(checked.source, news, sender, now.steady_ns);
-  if (admission.fault != nullptr) return admission.fault;
-  checked.is_ignored = digest != 0 && !admission.has_joined;
-  return nullptr;
+  const Announced& said = checked.announced;
+  return !participants_.announced(checked.source, said.discovery_port, concerns_us(said), now.steady_ns);
 }
 
 bool DatagramGuard::concerns_us(const Announced& said) const {
@@ -81,7 +71,7 @@ void DatagramGuard::ignore_apart_from(const std::vector<std::uint8_t>& own_user_
 
 void DatagramGuard::note_announcement(const CheckedDatagram& checked, const Now& now) {
   const std::lock_guard<std::mutex> lock(announcements_mutex_);
-  if (checked.announcement_digest == 0) {
+  if (!checked.announces_itself) {
     announcements_.erase(checked.source);
     return;
   }

@@ -11,10 +11,9 @@
 
 #include "swiftlet/services/dds/datagram/check.hpp"
 #include "swiftlet/services/dds/datagram/datagram_seal.hpp"
-#include "swiftlet/services/dds/datagram/participant_admission.hpp"
+#include "swiftlet/services/dds/datagram/heard_participants.hpp"
 #include "swiftlet/services/dds/datagram/refusal_log.hpp"
 #include "swiftlet/services/dds/datagram/reply_check.hpp"
-#include "swiftlet/services/dds/datagram/sequence_window.hpp"
 
 namespace swiftlet::comms {
 
@@ -66,7 +65,7 @@ class DatagramGuard {
   // Turns a datagram of the middleware into a sealed one. Requires seals().
   void seal(std::vector<std::uint8_t>& datagram, const Now& now);
 
-  // Notes what the replies to a datagram have to agree with. data: as the middleware sends it, or its beginning.
+  // Notes what the replies to a datagram have to agree with. Not needed with keys: who has one is trusted. data: as the middleware sends it, or its beginning.
   void note_sent(const std::uint8_t* data, std::size_t size);
 
   RefusalLog& refusals() { return refusals_; }
@@ -77,8 +76,8 @@ class DatagramGuard {
   std::mutex& changes_mutex() { return changes_mutex_; }
 
  private:
-  // Sets is_ignored.
-  const char* fault_of(CheckedDatagram& checked, const SenderAddress& sender, const Now& now);
+  // Returns whether this process ignores the participant that announces itself.
+  bool ignores(const CheckedDatagram& checked, const Now& now);
   bool concerns_us(const Announced& said) const;
 
   void note_announcement(const CheckedDatagram& checked, const Now& now);
@@ -89,9 +88,8 @@ class DatagramGuard {
   std::mutex changes_mutex_;
   std::mutex mutex_;  // guards what follows; all threads that receive take it, for each datagram
   std::optional<DatagramOpener> opener_;
-  SequenceWindow sequences_;
   ReplyCheck replies_;
-  ParticipantAdmission participants_;
+  HeardParticipants participants_;
   std::string own_user_data_;  // empty: nobody is ignored
   std::size_t expected_ = 0;
   std::int64_t expected_until_ns_ = 0;

@@ -42,9 +42,11 @@ class GuardedTransport final : public ChainedTransport {
   bool OpenOutputChannel(transport::SendResourceList& channels, const rtps::Locator_t& locator) override;
 
   bool send_through(rtps::SenderResource& below, const OutgoingDatagram& datagram, const Destination& to) {
-    const OutgoingDatagram::Piece first = datagram.first_piece();
-    guard_->note_sent(first.bytes, first.size);
-    if (!guard_->seals()) return comms::send(below, datagram, to);
+    if (!guard_->seals()) {
+      const OutgoingDatagram::Piece first = datagram.first_piece();
+      guard_->note_sent(first.bytes, first.size);
+      return comms::send(below, datagram, to);
+    }
     // Allocates when a thread sends for the first time.
     thread_local std::vector<rtps::octet> sent(1 << 16);
     datagram.copy_to(sent);

@@ -194,18 +194,9 @@ const char* check_value(const ParameterRule& rule, ByteReader value, const ListC
 struct Parameter {
   std::uint16_t id = kSentinel;
   const std::uint8_t* begin = nullptr;
-  std::size_t size = 0;  // with its header
   const ParameterRule* rule = nullptr;
   ByteReader value{nullptr, 0, true};
 };
-
-// The lease of a participant and its built-in endpoints. Locators change with the interfaces of its host.
-bool never_changes(std::uint16_t id) { return id == 0x0002 || id == 0x0058; }
-
-// FNV-1a.
-void add_to(std::uint64_t& digest, const Parameter& parameter) {
-  for (std::size_t i = 0; i < parameter.size; ++i) digest = (digest ^ parameter.begin[i]) * 0x100000001b3U;
-}
 
 // Calls found(parameter) for each parameter with a rule. Leaves `list` behind the sentinel.
 template <class Found>
@@ -225,7 +216,6 @@ const char* check_list(ByteReader& list, const ListContext& context, const Found
     if (rule == std::end(kRules)) continue;
     if (const char* const fault = check_value(*rule, value, context)) return fault;
     parameter.rule = rule;
-    parameter.size = std::size_t{4} + length;
     parameter.value = value;
     if (const char* const fault = found(parameter)) return fault;
   }
@@ -242,7 +232,7 @@ const char* check_inline_qos(ByteReader& body, const ListContext& context, bool&
 }
 
 const char* check_discovery_payload(ByteReader payload, const ListContext& context, bool key_only,
-                                    HiddenParameters& hidden, std::uint64_t& digest, Announced& announced) {
+                                    HiddenParameters& hidden, Announced& announced) {
   const std::uint8_t* const encapsulation = payload.take(4);  // 10.2: PL_CDR_BE or PL_CDR_LE, and two options
   if (encapsulation == nullptr || encapsulation[0] != 0 || (encapsulation[1] != 2 && encapsulation[1] != 3))
     return "discovery data that is not a parameter list (9.6.3)";
@@ -251,7 +241,6 @@ const char* check_discovery_payload(ByteReader payload, const ListContext& conte
   const std::uint16_t key = context.topic == BuiltinTopic::kParticipant ? 0x0050 : 0x005a;
   const char* const fault = check_list(list, context, [&](const Parameter& parameter) -> const char* {
     names_key = names_key || parameter.id == key || (key_only && parameter.id == kKeyHash);
-    if (never_changes(parameter.id)) add_to(digest, parameter);
     ByteReader value = parameter.value;
     if (parameter.id == kEntityName) {
       announced.name_size = value.u32();

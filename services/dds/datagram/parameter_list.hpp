@@ -43,9 +43,8 @@ struct ListContext {
 // Leaves `body` behind the list. names_key: set to true if it holds a key of the topic.
 const char* check_inline_qos(ByteReader& body, const ListContext& context, bool& names_key);
 // Of the topics kParticipant and kEndpoint. key_only: the payload names what is gone, and holds no more.
-// digest: of the parameters that a participant never changes.
 const char* check_discovery_payload(ByteReader payload, const ListContext& context, bool key_only,
-                                    HiddenParameters& hidden, std::uint64_t& digest, Announced& announced);
+                                    HiddenParameters& hidden, Announced& announced);
 // Of the topic kLiveliness.
 const char* check_liveliness_payload(ByteReader payload, const ListContext& context);
 // Of the topic kHandshake: ParticipantGenericMessage of DDS Security 1.1, 7.4.4.

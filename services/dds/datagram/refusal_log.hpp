@@ -7,9 +7,10 @@
 #include <cstdint>
 #include <mutex>
 
-#include "swiftlet/services/dds/datagram/participant_admission.hpp"
-
 namespace swiftlet::comms {
+
+// Of a host: an IPv4 or IPv6 address as in a locator.
+using SenderAddress = std::array<std::uint8_t, 16>;
 
 // The shortest time between two log lines about a sender.
 constexpr std::chrono::seconds kRefusalLogPeriod{10};

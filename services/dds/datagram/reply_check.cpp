@@ -66,18 +66,17 @@ std::uint32_t ReplyCheck::acknowledged(const GuidPrefix& participant, const Enti
 const char* ReplyCheck::fault_of(const CheckedDatagram& received) const {
   for (std::size_t i = 0; i < received.request_count; ++i) {
     const FragmentRequest& request = received.requests[i];
-    const bool names_other = request.destination != GuidPrefix{} && request.destination != own_;
-    if (names_other && own_ != GuidPrefix{}) continue;
+    if (request.destination != GuidPrefix{} && request.destination != own_) continue;
     const auto samples = fragments_.find(request.writer);
     if (samples == fragments_.end()) return "NACK_FRAG of a writer without fragments (8.3.8.12)";
     const auto sample = samples->second.find(request.number);
     if (sample == samples->second.end() || request.last > sample->second)
       return "NACK_FRAG of fragments that were not sent (8.3.8.12)";
   }
-  for (std::size_t i = 0; i < received.writer_count; ++i) {
-    const NumberedWriter& writer = received.writers[i];
-    const std::uint32_t ahead = is_builtin(writer.entity) ? gaps_ahead_ : kGapsAhead;
-    if (writer.gap_end > ahead && writer.gap_end - ahead > acknowledged(received.source, writer.entity))
+  for (std::size_t i = 0; i < received.gap_count; ++i) {
+    const Gap& gap = received.gaps[i];
+    const std::uint32_t ahead = is_builtin(gap.writer) ? gaps_ahead_ : kGapsAhead;
+    if (gap.end > ahead && gap.end - ahead > acknowledged(received.source, gap.writer))
       return "GAP far beyond what was acknowledged (8.3.8.4)";
   }
   return nullptr;

@@ -21,7 +21,7 @@ class ReplyCheck {
   explicit ReplyCheck(std::uint32_t gaps_ahead);
 
   // own: whose requests are checked, and those that name no participant. The middleware ignores requests to others, such as
-  // one that had this port before. All zeros, as at the start: all are checked.
+  // one that had this port before. All zeros, as at the start: this participant has no writers yet.
   void set_participant(const GuidPrefix& own) { own_ = own; }
 
   // Whether a message that is sent holds acknowledgements or fragments.

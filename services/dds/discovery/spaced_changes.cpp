@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "swiftlet/io/byte_reader.hpp"
-#include "swiftlet/services/dds/datagram/participant_admission.hpp"
+#include "swiftlet/services/dds/datagram/heard_participants.hpp"
 #include "swiftlet/services/dds/datagram/submessage.hpp"
 
 namespace swiftlet::comms {

@@ -80,7 +80,7 @@ TEST(Datagram, OfOrdinaryTrafficIsValid) {
   EXPECT_EQ(fault_of(RtpsMessage().add(0x7f, 0, ByteWriter().zeros(8))), "") << "unknown kinds are skipped";
 }
 
-TEST(Datagram, ReportsItsSourceAndTheNumbersOfItsWriters) {
+TEST(Datagram, ReportsItsSourceAndItsGaps) {
   const CheckedDatagram checked = check(RtpsMessage(kBob)
                                             .add(0x15, 4, payload(data_fields(kUserReader, kUserWriter, 7)))
                                             .add(0x07, 0, heartbeat(0, 3, 9))
@@ -88,11 +88,12 @@ TEST(Datagram, ReportsItsSourceAndTheNumbersOfItsWriters) {
   ASSERT_EQ(checked.fault, nullptr);
   EXPECT_EQ(checked.source, kBob);
   EXPECT_FALSE(checked.about_participant);
-  ASSERT_EQ(checked.writer_count, 2U);
-  EXPECT_EQ(checked.writers[0].entity, kUserWriter);
-  EXPECT_EQ(checked.writers[0].number, 9U);
-  EXPECT_EQ(checked.writers[1].number, 4U);
-  EXPECT_TRUE(check(announcement(kAlice, participant_parameters(kAlice))).about_participant);
+  ASSERT_EQ(checked.gap_count, 1U);
+  EXPECT_EQ(checked.gaps[0].writer, kSedpWriter);
+  EXPECT_EQ(checked.gaps[0].end, 4U);
+  const CheckedDatagram announced = check(announcement(kAlice, participant_parameters(kAlice)));
+  EXPECT_TRUE(announced.about_participant);
+  EXPECT_TRUE(announced.announces_itself);
 }
 
 TEST(Datagram, NeedsAHeaderOfThisProtocolAndASource) {

@@ -1,7 +1,6 @@
 #include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 
 #include <algorithm>
-#include <array>
 #include <random>
 #include <string>
 #include <utility>
@@ -17,7 +16,6 @@ using namespace swiftlet::tests;
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr SenderAddress kHost{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 10, 0, 0, 1};
-constexpr SenderAddress kOtherHost{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 10, 0, 0, 2};
 
 RtpsMessage sample(std::uint32_t number, const GuidPrefix& source = kAlice) {
   return RtpsMessage(source).add(0x15, 4, data_fields(kUserReader, kUserWriter, number).u32(0x0100).u32(0));
@@ -39,165 +37,20 @@ RtpsMessage newcomer(std::uint32_t number) {
   return announcement(prefix, participant_parameters(prefix));
 }
 
-TEST(DatagramGuard, RefusesNumbersThatAWriterCannotHaveReached) {
+// What jumps, repeats and loss of a network do to numbers is the middleware's to judge; and hosts may announce as many
+// participants as they like.
+TEST(DatagramGuard, RefusesNoNumberAndNoNewcomer) {
   DatagramGuard guard;
-  std::int64_t now_ns = kSecond_ns;
-  for (std::uint32_t number = 1000; number < 1100; ++number, now_ns += 2'000'000)
-    EXPECT_TRUE(admits(guard, sample(number), now_ns));
-  EXPECT_FALSE(admits(guard, sample(1100 + (1U << 20U)), now_ns)) << "a changed bit";
-  EXPECT_TRUE(admits(guard, sample(1100), now_ns)) << "and the stream goes on";
-  EXPECT_TRUE(admits(guard, sample(1050), now_ns)) << "sent again";
-  EXPECT_TRUE(admits(guard, sample(1100 + 5000), now_ns + 5 * kSecond_ns))
-      << "after 5 s without contact, at 1 kHz";
-  EXPECT_TRUE(admits(guard, sample(7, kBob), now_ns)) << "another writer";
-  EXPECT_EQ(guard.refusals().total(), 1U);
-}
-
-TEST(DatagramGuard, FollowsAWriterThatIsReallyAhead) {
-  DatagramGuard guard;
-  for (std::uint32_t number = 1; number <= 20; ++number)
-    EXPECT_TRUE(admits(guard, sample(number), number * kSecond_ns));
-  for (std::uint32_t number = 1001; number < 1004; ++number)
-    EXPECT_FALSE(admits(guard, sample(number), 21 * kSecond_ns)) << number;
-  EXPECT_TRUE(admits(guard, sample(1004), 21 * kSecond_ns));
-  EXPECT_TRUE(admits(guard, sample(1005), 21 * kSecond_ns));
-}
-
-// A process of many vehicles announces their endpoints at once, long after it was met.
-TEST(SequenceWindow, LetsAnnouncementsOfEndpointsComeInBursts) {
-  SequenceWindow window;
-  const GuidPrefix participant{1};
-  const EntityId announcements{0x00, 0x00, 0x03, 0xc2};
-  const EntityId samples{0x00, 0x00, 0x03, 0x03};
-  for (const EntityId& writer : {announcements, samples}) {
-    for (std::uint32_t number = 1; number <= 5; ++number)
-      EXPECT_TRUE(window.admit(participant, writer, number, number * kSecond_ns));
-  }
-  EXPECT_TRUE(window.admit(participant, announcements, 900, 6 * kSecond_ns));
-  EXPECT_FALSE(window.admit(participant, announcements, 1U << 20U, 6 * kSecond_ns));
-  EXPECT_FALSE(window.admit(participant, samples, 900, 6 * kSecond_ns));
-}
-
-// It numbers what it tells all of its clients.
-TEST(SequenceWindow, LetsADiscoveryServerSkipWhatConcernsOthers) {
-  constexpr bool kServersAreUsed = true;
-  SequenceWindow window(kServersAreUsed);
-  const GuidPrefix server{0x44, 0x53, 0x00, 0x5f, 0x45, 0x50, 0x52, 0x4f, 0x53, 0x49, 0x4d, 0x41};
-  const EntityId announcements{0x00, 0x00, 0x03, 0xc2};
-  EXPECT_TRUE(window.admit(server, announcements, 5, kSecond_ns));
-  EXPECT_TRUE(window.admit(server, announcements, 50'000, kSecond_ns));
-  EXPECT_FALSE(window.admit(server, announcements, 1U << 20U, kSecond_ns));
-  SequenceWindow without_servers;
-  EXPECT_TRUE(without_servers.admit(server, announcements, 5, kSecond_ns));
-  EXPECT_FALSE(without_servers.admit(server, announcements, 50'000, kSecond_ns))
-      << "anybody may take such a prefix";
-}
-
-// A receiver that was held up for 0.3 s reads what its socket kept, 100 samples of a writer at 1 kHz, and then the newest.
-TEST(SequenceWindow, AdmitsWhatFollowsABacklogThatOverflowed) {
-  SequenceWindow window;
-  const GuidPrefix participant{1};
-  const EntityId writer{0x00, 0x00, 0x03, 0x03};
-  std::uint32_t number = 0;
-  std::int64_t now_ns = 0;
-  const auto receive = [&](int samples, std::int64_t period_ns) {
-    for (int i = 0; i < samples; ++i, now_ns += period_ns) {
-      if (!window.admit(participant, writer, ++number, now_ns)) return false;
-    }
-    return true;
-  };
-  ASSERT_TRUE(receive(4000, kSecond_ns / 1000));
-  for (int stall = 0; stall < 5; ++stall) {
-    now_ns += 3 * kSecond_ns / 10;
-    ASSERT_TRUE(receive(100, 5000)) << "the backlog after stall " << stall;
-    number += 200;
-    ASSERT_TRUE(receive(1, 5000)) << "after stall " << stall;
-    EXPECT_FALSE(window.admit(participant, writer, number + 200, now_ns)) << "is ahead of its time";
-    ASSERT_TRUE(receive(3000, kSecond_ns / 1000));
-    EXPECT_FALSE(window.admit(participant, writer, number + 32, now_ns)) << "caught up, and ahead again";
-  }
-}
-
-// On a busy computer a reader runs for moments only: then it reads what its socket kept, the first 160 datagrams of three
-// writers. What came later is lost.
-TEST(SequenceWindow, AdmitsAllThatAStarvedReaderHears) {
-  struct Sender {
-    std::int64_t period_ns;
-    std::int64_t sent = 0;
-  };
-  struct Datagram {
-    EntityId writer;
-    std::uint32_t number;
-  };
-  constexpr std::size_t kSocketPlaces = 160;
-  std::mt19937 random(20);
-  std::exponential_distribution<double> stall_s(5.0);
-  for (int flight = 0; flight < 20; ++flight) {
-    SequenceWindow window;
-    std::array<Sender, 3> senders{{{2'000'000}, {10'000'000}, {100'000'000}}};
-    std::int64_t now_ns = 0;
-    const auto read_after = [&](std::int64_t pause_ns) {
-      std::vector<Datagram> socket;
-      for (const std::int64_t end_ns = now_ns + pause_ns; now_ns < end_ns; now_ns += 1'000'000) {
-        for (std::uint8_t i = 0; i < senders.size(); ++i) {
-          if (senders[i].sent * senders[i].period_ns > now_ns) continue;
-          const auto number = static_cast<std::uint32_t>(++senders[i].sent);
-          if (socket.size() < kSocketPlaces) socket.push_back({{0, 0, i, 3}, number});
-        }
-      }
-      for (std::size_t i = 0; i < socket.size(); ++i) {
-        ASSERT_TRUE(
-            window.admit(kAlice, socket[i].writer, socket[i].number, now_ns + static_cast<std::int64_t>(i)))
-            << "flight " << flight << ", number " << socket[i].number << " of writer "
-            << int{socket[i].writer[2]} << " at " << now_ns;
-      }
-    };
-    while (now_ns < 3 * kSecond_ns) read_after(1'000'000);
-    while (now_ns < 60 * kSecond_ns && !HasFatalFailure())
-      read_after(static_cast<std::int64_t>(1e9 * std::min(stall_s(random), 1.5)));
-  }
-}
-
-// From 500 to 10 Hz.
-TEST(SequenceWindow, HoldsAWriterThatBecameSlowerToItsNewRate) {
-  SequenceWindow window;
-  std::uint32_t number = 0;
-  std::int64_t now_ns = 0;
-  for (; now_ns < 3 * kSecond_ns; now_ns += kSecond_ns / 500)
-    ASSERT_TRUE(window.admit(kAlice, kUserWriter, ++number, now_ns));
-  for (; now_ns < 6 * kSecond_ns; now_ns += kSecond_ns / 10)
-    ASSERT_TRUE(window.admit(kAlice, kUserWriter, ++number, now_ns));
-  EXPECT_FALSE(window.admit(kAlice, kUserWriter, number + 32, now_ns));
-}
-
-TEST(DatagramGuard, RemembersABusyWriterAmongManyForgedOnes) {
-  DatagramGuard guard;
-  std::int64_t now_ns = kSecond_ns;
-  for (std::uint32_t i = 1; i < 100'000; ++i, now_ns += 100'000) {
-    EXPECT_TRUE(admits(guard, sample(1, numbered_participant(i)), now_ns));
-    if (i % 20 == 0) {
-      EXPECT_TRUE(admits(guard, sample(i / 20), now_ns));
-    }
-  }
-  EXPECT_FALSE(admits(guard, sample(1U << 30U), now_ns));
-}
-
-TEST(DatagramGuard, HoldsAParticipantToWhatItAnnounced) {
-  DatagramGuard guard;
-  const RtpsMessage real = announcement(kAlice, participant_parameters(kAlice));
-  const RtpsMessage other = announcement(kAlice, participant_parameters(kAlice).parameter(0x0002, lease(1)));
-  const RtpsMessage renamed =
-      announcement(kAlice, participant_parameters(kAlice).parameter(0x0062, ByteWriter().string("control")));
-  EXPECT_TRUE(admits(guard, real, kSecond_ns));
-  for (int attempt = 0; attempt < 10; ++attempt) {
-    EXPECT_FALSE(admits(guard, other, kSecond_ns)) << "another lease";
-    EXPECT_TRUE(admits(guard, real, kSecond_ns));
-  }
-  EXPECT_TRUE(admits(guard, renamed, kSecond_ns)) << "reached as before";
-  EXPECT_FALSE(admits(guard, other, kSecond_ns));
-  EXPECT_FALSE(admits(guard, other, kSecond_ns));
-  EXPECT_TRUE(admits(guard, other, kSecond_ns)) << "which it repeats";
-  EXPECT_FALSE(admits(guard, real, kSecond_ns));
+  for (const std::uint32_t number : {1000U, 7U, 1000U, 1U << 20U, 1001U})
+    EXPECT_TRUE(admits(guard, sample(number), kSecond_ns)) << number;
+  const Now now{kSecond_ns, kSecond_ns};
+  for (std::uint32_t i = 1; i <= 2 * kMostParticipants; ++i)
+    ASSERT_TRUE(admits(guard, newcomer(i), kSecond_ns)) << i;
+  EXPECT_EQ(guard.participants_heard(now), kMostParticipants);
+  EXPECT_TRUE(
+      admits(guard, announcement(kAlice, participant_parameters(kAlice).parameter(0x0002, lease(1))), kSecond_ns))
+      << "with another lease than before";
+  EXPECT_EQ(guard.refusals().total(), 0U);
 }
 
 TEST(DatagramGuard, KnowsWithSecurityWhatParticipantsSaidAboutThemselves) {
@@ -281,28 +134,6 @@ TEST(DatagramGuard, CountsTheParticipantsThatItExpects) {
   hear(guard, kAlice, "", kSecond_ns);
   EXPECT_EQ(heard(kSecond_ns), 40U);
   EXPECT_EQ(heard(60 * kSecond_ns), 0U) << "all silent for long";
-}
-
-TEST(DatagramGuard, BoundsTheParticipantsThatAHostAnnounces) {
-  DatagramGuard guard;
-  std::uint32_t admitted = 0;
-  for (std::uint32_t i = 1; i <= 10'000; ++i) admitted += admits(guard, newcomer(i), kSecond_ns) ? 1U : 0U;
-  EXPECT_EQ(admitted, 256U);
-  EXPECT_TRUE(admits(guard, newcomer(256), kSecond_ns)) << "that is known already";
-  EXPECT_TRUE(admits(guard, newcomer(20'000), kSecond_ns, kOtherHost));
-  EXPECT_TRUE(admits(guard, newcomer(20'001), 2 * kSecond_ns)) << "later";
-}
-
-TEST(DatagramGuard, BoundsTheParticipantsOfAllHostsTogether) {
-  DatagramGuard guard;
-  std::uint32_t admitted = 0;
-  for (std::uint32_t i = 1; i <= 10'000; ++i) {
-    SenderAddress host = kHost;
-    host[14] = static_cast<std::uint8_t>(i >> 8U);
-    host[15] = static_cast<std::uint8_t>(i);
-    admitted += admits(guard, newcomer(i), kSecond_ns, host) ? 1U : 0U;
-  }
-  EXPECT_EQ(admitted, kMostParticipants);
 }
 
 // What a receiver with these keys says of a sealed datagram, "" if it accepts it.

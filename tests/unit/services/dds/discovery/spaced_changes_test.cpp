@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/services/dds/datagram/participant_admission.hpp"
+#include "swiftlet/services/dds/datagram/heard_participants.hpp"
 #include "tests/support/rtps_message.hpp"
 
 namespace swiftlet::comms::spaced_changes_test {
