@@ -20,14 +20,8 @@ void add_host(const std::string& ipv4, const DiscoveryPorts& ports, std::uint32_
   for (std::uint32_t i = 0; i < count; ++i) peers.push_back(udp_locator(ipv4, ports.first + i * ports.gap));
 }
 
-bool is_own(const std::string& ipv4) {
-  const std::vector<Interface> own = interfaces_up();
-  return std::any_of(own.begin(), own.end(), [&](const Interface& it) { return it.address == ipv4; });
-}
-
 // Fast DDS 2.9 fails an assertion if a server of this host has another address than that of the loopback interface.
-void add_servers(const std::string& list, bool hears_of_all, rtps::DiscoverySettings& discovery,
-                 eprosima::fastdds::rtps::UDPv4TransportDescriptor& udp) {
+void add_servers(const std::string& list, bool hears_of_all, rtps::DiscoverySettings& discovery) {
   if (const std::string fault = fault_of_discovery_servers(list); !fault.empty())
     throw runtime::ConfigError("discovery server " + fault);
   discovery.discoveryProtocol =
@@ -35,8 +29,7 @@ void add_servers(const std::string& list, bool hears_of_all, rtps::DiscoverySett
   for (const DiscoveryServerAddress& server : parse_discovery_servers(list)) {
     std::vector<rtps::Locator_t> addresses;
     for (const std::string& address : ipv4_addresses_of(server.address.host)) {
-      addresses.push_back(udp_locator(is_own(address) ? kLoopback : address, server.address.port));
-      if (is_own(address) && !udp.interfaceWhiteList.empty()) udp.interfaceWhiteList.emplace_back(kLoopback);
+      addresses.push_back(udp_locator(is_own_address(address) ? kLoopback : address, server.address.port));
     }
     add_discovery_server(discovery, server.number, addresses);
   }
@@ -71,7 +64,12 @@ void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
                  eprosima::fastdds::rtps::UDPv4TransportDescriptor& udp) {
   const NetworkSettings& network = settings.network;
   const std::vector<std::string> own_addresses = addresses_of_interfaces(network.interfaces);
-  if (!own_addresses.empty()) udp.interfaceWhiteList = own_addresses;
+  if (!own_addresses.empty()) {
+    udp.interfaceWhiteList = own_addresses;
+    // The processes of this host reach each other whatever becomes of the interfaces.
+    if (std::count(own_addresses.begin(), own_addresses.end(), kLoopback) == 0)
+      udp.interfaceWhiteList.emplace_back(kLoopback);
+  }
   if (network.uses_multicast()) return;
 
   auto& builtin = qos.wire_protocol().builtin;
@@ -79,11 +77,8 @@ void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
   // Instead of the multicast address, only this: the first free port of the domain.
   builtin.metatrafficUnicastLocatorList = own_locators(settings, ports.first);
   if (network.peers.empty())
-    return add_servers(network.discovery_servers, settings.hears_of_all, builtin.discovery_config, udp);
-  // The processes of this host.
-  if (own_addresses.empty()) add_host(kLoopback, ports, announced_ports, builtin.initialPeersList);
-  for (const std::string& address : own_addresses)
-    add_host(address, ports, announced_ports, builtin.initialPeersList);
+    return add_servers(network.discovery_servers, settings.hears_of_all, builtin.discovery_config);
+  add_host(kLoopback, ports, announced_ports, builtin.initialPeersList);  // the processes of this host
   for (const std::string& peer : network.peers) {
     if (const std::string fault = fault_of_host_address(peer); !fault.empty())
       throw runtime::ConfigError("peer " + fault);

@@ -10,6 +10,8 @@
 #include <unistd.h>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/runtime/log.hpp"
@@ -59,6 +61,11 @@ double random_share() {
   return std::uniform_real_distribution<double>(0.0, 1.0)(random);
 }
 
+std::string text_of(Ipv4 address) {
+  return fmt::format("{}.{}.{}.{}", address >> 24U, address >> 16U & 0xffU, address >> 8U & 0xffU,
+                     address & 0xffU);
+}
+
 std::string named(const std::string& name, const rtps::GuidPrefix_t& participant) {
   std::ostringstream text;
   text << "'" << name << "' (" << participant << ")";
@@ -102,6 +109,7 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
     {
       const std::lock_guard<std::mutex> session_lock(session_mutex_);
       announce_when_due();
+      follow_addresses();
     }
     guard_->refusals().write_due(Clock::now());
     const std::lock_guard<std::mutex> session_lock(session_mutex_);
@@ -158,6 +166,17 @@ void Participant::Impl::announce_when_due() {
   if (session_ == nullptr || !announcement_changed_ || session_->next_announcement() > Clock::now()) return;
   session_->announce(announcement_);
   announcement_changed_ = false;
+}
+
+void Participant::Impl::follow_addresses() {
+  for (const MovedHosts::Move& move : guard_->take_moves())
+    runtime::log_warning("what is for {} is sent to {} now, from where its host is heard",
+                         text_of(move.announced), text_of(move.heard_at));
+  if (settings.on_loopback()) return;
+  const auto change = addresses_.poll(settings.network);
+  if (!change) return;
+  runtime::log_warning("{}", *change);
+  if (session_ != nullptr) session_->announce(announcement_);
 }
 
 void Participant::Impl::add(Endpoint* endpoint) {

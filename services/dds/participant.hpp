@@ -17,6 +17,7 @@
 #include <fastdds/dds/subscriber/DataReader.hpp>
 
 #include "swiftlet/services/dds/datagram/datagram_guard.hpp"
+#include "swiftlet/services/dds/discovery/address_watch.hpp"
 #include "swiftlet/services/dds/discovery/announcement.hpp"
 #include "swiftlet/services/dds/discovery/rediscovery_monitor.hpp"
 #include "swiftlet/services/dds/discovery/rejoin_patience.hpp"
@@ -84,6 +85,7 @@ struct Participant::Impl final : public DiscoveryListener {
   void leave();              // requires session_mutex_
   void end_session();        // requires session_mutex_; waits until what it announced last is that long ago
   void announce_when_due();  // a change of announcement_; requires session_mutex_
+  void follow_addresses();   // of this host and of others; requires session_mutex_
 
   void on_participant(const Guid& guid, const std::string& name,
                       const std::vector<std::uint8_t>& user_data) override;
@@ -153,6 +155,7 @@ struct Participant::Impl final : public DiscoveryListener {
   PeerMonitor rediscovery_;
   RejoinPatience patience_;
 
+  AddressWatch addresses_;
   std::optional<RefusedPeers> refused_peers_;  // with security
   std::atomic<bool> away_{false};              // the last rejoin failed
   std::optional<PeriodicTask> periodic_task_;

@@ -286,9 +286,11 @@ const char* DatagramCheck::check_payload(Submessage& submessage, const ListConte
   if (payload.rest() < 4) return "payload shorter than its encapsulation (10.2)";
   if (of_discovery) {
     HiddenParameters hidden;
+    LoopbackAddresses loopback;
     const bool key_only = submessage.has(kKeyFlag);
     Announced announced;
-    if (const char* const fault = check_discovery_payload(payload, context, key_only, hidden, announced))
+    if (const char* const fault =
+            check_discovery_payload(payload, context, key_only, hidden, loopback, announced))
       return fault;
     if (context.topic == BuiltinTopic::kParticipant && !key_only && !context.relays) {
       result_.announces_itself = true;
@@ -298,6 +300,10 @@ const char* DatagramCheck::check_payload(Submessage& submessage, const ListConte
       return "discovery data with more than 8 type descriptions (9.6.3.2)";
     for (std::size_t i = 0; i < hidden.count; ++i)
       result_.hidden[result_.hidden_count++] = static_cast<std::size_t>(hidden.at[i] - begin_);
+    for (std::size_t i = 0; i < loopback.count; ++i) {
+      if (result_.loopback_count == CheckedDatagram::kMostLoopback || context.relays) break;
+      result_.loopback[result_.loopback_count++] = static_cast<std::size_t>(loopback.at[i] - begin_);
+    }
   }
   if (context.topic == BuiltinTopic::kHandshake) return check_handshake_payload(payload);
   if (context.topic == BuiltinTopic::kLiveliness) return check_liveliness_payload(payload, context);
@@ -364,6 +370,13 @@ void hide_parameters(const CheckedDatagram& checked, std::uint8_t* copy) {
   for (std::size_t i = 0; i < checked.hidden_count; ++i) {
     copy[checked.hidden[i]] = 0;
     copy[checked.hidden[i] + 1] = 0;
+  }
+}
+
+void name_source(const CheckedDatagram& checked, Ipv4 address, std::uint8_t* copy) {
+  for (std::size_t i = 0; i < checked.loopback_count; ++i) {
+    for (unsigned byte = 0; byte < 4; ++byte)
+      copy[checked.loopback[i] + byte] = static_cast<std::uint8_t>(address >> (24U - 8U * byte));
   }
 }
 

@@ -65,6 +65,11 @@ struct CheckedDatagram {
   static constexpr std::size_t kMostHidden = 8;
   std::array<std::size_t, kMostHidden> hidden{};
   std::size_t hidden_count = 0;
+
+  // Where addresses of the loopback interface begin at which its source receives: see name_source().
+  static constexpr std::size_t kMostLoopback = LoopbackAddresses::kMost;
+  std::array<std::size_t, kMostLoopback> loopback{};
+  std::size_t loopback_count = 0;
 };
 
 // Checks the header, the submessages with their elements, and the parameter lists of discovery.
@@ -75,5 +80,9 @@ void remove_statistics(std::vector<std::uint8_t>& message);
 
 // Turns the hidden parameters into padding, which receivers skip (9.6.3.2). copy: of the datagram that was checked.
 void hide_parameters(const CheckedDatagram& checked, std::uint8_t* copy);
+
+// Puts the address from which the datagram came in place of those of the loopback interface: a process that joined while its host
+// had no network announces no other. copy: of the datagram that was checked.
+void name_source(const CheckedDatagram& checked, Ipv4 address, std::uint8_t* copy);
 
 }  // namespace swiftlet::comms

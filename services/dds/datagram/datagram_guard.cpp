@@ -21,8 +21,7 @@ Now Now::read() {
 }
 
 DatagramGuard::DatagramGuard(const runtime::NetworkKeys& keys, const DatagramLimits& limits)
-    : limits_(limits),
-      replies_(limits.discovery_servers ? kLongestBuiltinGap : kGapsAhead) {
+    : limits_(limits), replies_(limits.discovery_servers ? kLongestBuiltinGap : kGapsAhead) {
   if (keys.empty()) return;
   sealer_.emplace(keys);
   opener_.emplace(keys);
@@ -48,14 +47,15 @@ CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size,
     refuse(sender, checked.fault);
     return checked;
   }
-  if (checked.announces_itself) checked.is_ignored = ignores(checked, now);
+  if (checked.announces_itself) checked.is_ignored = ignores(checked, sender, now);
   if (limits_.security && checked.about_participant && !checked.is_ignored) note_announcement(checked, now);
   return checked;
 }
 
-bool DatagramGuard::ignores(const CheckedDatagram& checked, const Now& now) {
+bool DatagramGuard::ignores(const CheckedDatagram& checked, const SenderAddress& sender, const Now& now) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const Announced& said = checked.announced;
+  moved_hosts_.heard(said, ipv4_of(sender), now.steady_ns);
   return !participants_.announced(checked.source, said.discovery_port, concerns_us(said), now.steady_ns);
 }
 
@@ -119,6 +119,11 @@ void DatagramGuard::expect_participants(std::size_t count, const Now& now) {
 std::vector<Joined> DatagramGuard::participants_joined(const Now& now) {
   const std::lock_guard<std::mutex> lock(mutex_);
   return participants_.joined(now.steady_ns);
+}
+
+std::vector<MovedHosts::Move> DatagramGuard::take_moves() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return moved_hosts_.take_news();
 }
 
 void DatagramGuard::note_sent(const std::uint8_t* data, std::size_t size) {

@@ -12,8 +12,10 @@
 #include "swiftlet/services/dds/datagram/check.hpp"
 #include "swiftlet/services/dds/datagram/datagram_seal.hpp"
 #include "swiftlet/services/dds/datagram/heard_participants.hpp"
+#include "swiftlet/services/dds/datagram/moved_hosts.hpp"
 #include "swiftlet/services/dds/datagram/refusal_log.hpp"
 #include "swiftlet/services/dds/datagram/reply_check.hpp"
+#include "swiftlet/services/dds/discovery/interfaces.hpp"
 
 namespace swiftlet::comms {
 
@@ -70,14 +72,18 @@ class DatagramGuard {
 
   RefusalLog& refusals() { return refusals_; }
 
+  // Where others are reached now, for the threads that send.
+  const MovedHosts& moved_hosts() const { return moved_hosts_; }
+  std::vector<MovedHosts::Move> take_moves();
+
   // Held while the middleware takes in what a discovery server sent, and while its participant announces a change: Fast DDS
   // takes two locks in one order for the former (PDPClient::assignRemoteEndpoints), and in the other one for the latter
   // (RTPSParticipantImpl::update_attributes), and both threads would wait for each other.
   std::mutex& changes_mutex() { return changes_mutex_; }
 
  private:
-  // Returns whether this process ignores the participant that announces itself.
-  bool ignores(const CheckedDatagram& checked, const Now& now);
+  // Notes an announcement. Returns whether this process ignores the participant.
+  bool ignores(const CheckedDatagram& checked, const SenderAddress& sender, const Now& now);
   bool concerns_us(const Announced& said) const;
 
   void note_announcement(const CheckedDatagram& checked, const Now& now);
@@ -89,6 +95,7 @@ class DatagramGuard {
   std::mutex mutex_;  // guards what follows; all threads that receive take it, for each datagram
   std::optional<DatagramOpener> opener_;
   ReplyCheck replies_;
+  MovedHosts moved_hosts_{is_own_address};
   HeardParticipants participants_;
   std::string own_user_data_;  // empty: nobody is ignored
   std::size_t expected_ = 0;

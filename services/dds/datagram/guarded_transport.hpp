@@ -10,8 +10,8 @@ namespace swiftlet::comms {
 
 using TransportDescriptor = std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface>;
 
-// A descriptor of the transport with such a check in front.
+// A descriptor of the transport with such a check in front. opens_places: sends to places for which no channel was opened, too.
 TransportDescriptor guarded(const eprosima::fastdds::rtps::UDPv4TransportDescriptor& udp,
-                            std::shared_ptr<DatagramGuard> guard);
+                            std::shared_ptr<DatagramGuard> guard, bool opens_places = false);
 
 }  // namespace swiftlet::comms

@@ -10,6 +10,8 @@ namespace {
 constexpr std::uint16_t kSentinel = 0x0001;
 constexpr std::uint16_t kKeyHash = 0x0070;
 constexpr std::uint16_t kUserData = 0x002c;
+constexpr std::uint16_t kEndpointLocator = 0x002f;
+constexpr std::uint16_t kSamplesLocator = 0x0031;
 constexpr std::uint16_t kDiscoveryLocator = 0x0032;
 constexpr std::uint16_t kEntityName = 0x0062;
 constexpr std::uint32_t kUdpV4 = 1;       // kind of a locator
@@ -222,6 +224,25 @@ const char* check_list(ByteReader& list, const ListContext& context, const Found
   return "parameter list of more than 256 parameters (9.4.2.11)";
 }
 
+bool is_unicast_locator(std::uint16_t id) {
+  return id == kEndpointLocator || id == kSamplesLocator || id == kDiscoveryLocator;
+}
+
+// value: of a locator (9.3.2.4), behind its kind: the port, and an address whose last four bytes are those of IPv4.
+void note_locator(std::uint16_t id, ByteReader value, LoopbackAddresses& loopback, Announced& announced) {
+  const std::uint32_t port = value.u32();
+  value.skip(12);
+  const std::uint8_t* const at = value.take(4);
+  if (at == nullptr) return;
+  const Ipv4 address = ByteReader(at, 4, false).u32();
+  if (id == kDiscoveryLocator) announced.discovery_port = port;
+  if (is_loopback(address)) {
+    if (loopback.count < LoopbackAddresses::kMost) loopback.at[loopback.count++] = at;
+  } else if (id == kSamplesLocator && announced.address_count < announced.addresses.size()) {
+    announced.addresses[announced.address_count++] = address;
+  }
+}
+
 }  // namespace
 
 const char* check_inline_qos(ByteReader& body, const ListContext& context, bool& names_key) {
@@ -232,7 +253,8 @@ const char* check_inline_qos(ByteReader& body, const ListContext& context, bool&
 }
 
 const char* check_discovery_payload(ByteReader payload, const ListContext& context, bool key_only,
-                                    HiddenParameters& hidden, Announced& announced) {
+                                    HiddenParameters& hidden, LoopbackAddresses& loopback,
+                                    Announced& announced) {
   const std::uint8_t* const encapsulation = payload.take(4);  // 10.2: PL_CDR_BE or PL_CDR_LE, and two options
   if (encapsulation == nullptr || encapsulation[0] != 0 || (encapsulation[1] != 2 && encapsulation[1] != 3))
     return "discovery data that is not a parameter list (9.6.3)";
@@ -248,8 +270,8 @@ const char* check_discovery_payload(ByteReader payload, const ListContext& conte
     } else if (parameter.id == kUserData) {
       announced.user_data_size = value.u32();
       announced.user_data = value.take(announced.user_data_size);
-    } else if (parameter.id == kDiscoveryLocator && value.u32() == kUdpV4) {
-      announced.discovery_port = value.u32();
+    } else if (is_unicast_locator(parameter.id) && value.u32() == kUdpV4) {
+      note_locator(parameter.id, value, loopback, announced);
     }
     if (parameter.rule->shape != Shape::kHidden) return nullptr;
     if (hidden.count == HiddenParameters::kMost)

@@ -21,6 +21,17 @@ struct HiddenParameters {
   std::size_t count = 0;
 };
 
+using Ipv4 = std::uint32_t;  // 127.0.0.1 is 0x7f000001
+constexpr bool is_loopback(Ipv4 address) { return address >> 24U == 127; }
+
+// Where the addresses of the loopback interface stand at which a process without a network, or an endpoint of it, says that it
+// receives.
+struct LoopbackAddresses {
+  static constexpr std::size_t kMost = 8;  // further ones are not noted
+  std::array<const std::uint8_t*, kMost> at{};
+  std::size_t count = 0;
+};
+
 // What a participant announces about itself; null if it does not announce it.
 struct Announced {
   const std::uint8_t* name = nullptr;
@@ -28,6 +39,9 @@ struct Announced {
   const std::uint8_t* user_data = nullptr;
   std::size_t user_data_size = 0;
   std::uint32_t discovery_port = 0;  // where it receives discovery by UDP; 0: it does not say
+  // At which it receives samples, but for those of the loopback interface; further ones are not noted.
+  std::array<Ipv4, 8> addresses{};
+  std::size_t address_count = 0;
 };
 
 // Of the DATA that holds the list.
@@ -44,7 +58,8 @@ struct ListContext {
 const char* check_inline_qos(ByteReader& body, const ListContext& context, bool& names_key);
 // Of the topics kParticipant and kEndpoint. key_only: the payload names what is gone, and holds no more.
 const char* check_discovery_payload(ByteReader payload, const ListContext& context, bool key_only,
-                                    HiddenParameters& hidden, Announced& announced);
+                                    HiddenParameters& hidden, LoopbackAddresses& loopback,
+                                    Announced& announced);
 // Of the topic kLiveliness.
 const char* check_liveliness_payload(ByteReader payload, const ListContext& context);
 // Of the topic kHandshake: ParticipantGenericMessage of DDS Security 1.1, 7.4.4.

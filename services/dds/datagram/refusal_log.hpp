@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <mutex>
 
@@ -11,6 +12,12 @@ namespace swiftlet::comms {
 
 // Of a host: an IPv4 or IPv6 address as in a locator.
 using SenderAddress = std::array<std::uint8_t, 16>;
+// The part of it that is an IPv4 address: 127.0.0.1 is 0x7f000001.
+inline std::uint32_t ipv4_of(const SenderAddress& address) {
+  std::uint32_t ipv4 = 0;
+  for (std::size_t i = 12; i < address.size(); ++i) ipv4 = ipv4 << 8U | address[i];
+  return ipv4;
+}
 
 // The shortest time between two log lines about a sender.
 constexpr std::chrono::seconds kRefusalLogPeriod{10};

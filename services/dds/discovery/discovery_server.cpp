@@ -19,7 +19,6 @@
 #include "swiftlet/services/dds/datagram/guarded_transport.hpp"
 #include "swiftlet/services/dds/discovery/announcement.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
-#include "swiftlet/services/dds/discovery/opened_destinations.hpp"
 #include "swiftlet/services/dds/discovery/spaced_changes.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/fast_dds_library.hpp"
@@ -74,7 +73,7 @@ dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings,
   if (!settings.interfaces.empty() || !in_a_network)
     udp.interfaceWhiteList.emplace_back(kLoopback);  // for clients of this host
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(space_changes(send_to_opened(guarded(udp, guard)), open));
+  qos.transport().user_transports.push_back(space_changes(guarded(udp, guard, true), open));
   qos.allocation().participants = {0, kMostParticipants, 1};
   return qos;
 }

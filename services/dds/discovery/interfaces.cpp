@@ -1,5 +1,6 @@
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
 
+#include <algorithm>
 #include <arpa/inet.h>
 #include <cstring>
 #include <ifaddrs.h>
@@ -40,6 +41,18 @@ std::vector<Interface> interfaces_up() {
                      (it->ifa_flags & IFF_MULTICAST) != 0U, mtu_of(it->ifa_name)});
   }
   return found;
+}
+
+bool is_own_address(const std::string& ipv4) {
+  const std::vector<Interface> own = interfaces_up();
+  return std::any_of(own.begin(), own.end(), [&](const Interface& it) { return it.address == ipv4; });
+}
+
+bool is_own_address(std::uint32_t ipv4) {
+  const in_addr address{::htonl(ipv4)};
+  char text[INET_ADDRSTRLEN] = {};
+  ::inet_ntop(AF_INET, &address, text, sizeof text);
+  return is_own_address(std::string(text));
 }
 
 std::string interfaces_text(bool localhost_only) {

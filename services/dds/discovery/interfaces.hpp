@@ -1,6 +1,7 @@
 // The network interfaces that a node uses.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,10 @@ struct Interface {
   int mtu_bytes = 0;  // 0: unknown
 };
 std::vector<Interface> interfaces_up();
+
+// Whether one of them has the address. 127.0.0.1 is 0x7f000001.
+bool is_own_address(std::uint32_t ipv4);
+bool is_own_address(const std::string& ipv4);
 
 // The interfaces with an IPv4 address that are up: "lo (127.0.0.1), eth0 (192.168.1.4)". Only the loopback
 // interface if localhost_only.

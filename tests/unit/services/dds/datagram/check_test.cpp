@@ -1,5 +1,6 @@
 #include "swiftlet/services/dds/datagram/check.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -94,6 +95,33 @@ TEST(Datagram, ReportsItsSourceAndItsGaps) {
   const CheckedDatagram announced = check(announcement(kAlice, participant_parameters(kAlice)));
   EXPECT_TRUE(announced.about_participant);
   EXPECT_TRUE(announced.announces_itself);
+}
+
+// A process that joined while its host had no network announces the loopback interface, which is that of who hears it.
+TEST(Datagram, OfAHostWithoutNetworkIsGivenTheAddressOfItsSender) {
+  const auto locator = [](const Bytes& address) {
+    return ByteWriter().u32(1).u32(7411).zeros(12).bytes(address);
+  };
+  const Bytes here{127, 0, 0, 1}, there{10, 0, 0, 7};
+  ByteWriter parameters = participant_parameters(kAlice);
+  parameters.parameter(0x0031, locator(here))
+      .parameter(0x0032, locator(here))
+      .parameter(0x0032, locator(there));
+  const RtpsMessage announced = announcement(kAlice, parameters);
+  const CheckedDatagram checked = check(announced);
+  ASSERT_EQ(checked.fault, nullptr);
+  EXPECT_EQ(checked.loopback_count, 2U);
+  EXPECT_EQ(checked.announced.address_count, 0U);
+  Bytes copy = announced.bytes();
+  name_source(checked, 0x0a000063, copy.data());
+  EXPECT_EQ(std::search(copy.begin(), copy.end(), here.begin(), here.end()), copy.end());
+  EXPECT_EQ(std::search(copy.begin(), copy.end(), there.begin(), there.end()) == copy.end(), false);
+  const CheckedDatagram again = check_datagram(copy.data(), copy.size(), DatagramLimits());
+  ASSERT_EQ(again.announced.address_count, 1U);
+  EXPECT_EQ(again.announced.addresses[0], 0x0a000063U);
+
+  const RtpsMessage endpoint = endpoint_data(endpoint_parameters().parameter(0x002f, locator(here)));
+  EXPECT_EQ(check(endpoint).loopback_count, 1U);
 }
 
 TEST(Datagram, NeedsAHeaderOfThisProtocolAndASource) {

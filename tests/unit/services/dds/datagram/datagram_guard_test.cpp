@@ -47,8 +47,8 @@ TEST(DatagramGuard, RefusesNoNumberAndNoNewcomer) {
   for (std::uint32_t i = 1; i <= 2 * kMostParticipants; ++i)
     ASSERT_TRUE(admits(guard, newcomer(i), kSecond_ns)) << i;
   EXPECT_EQ(guard.participants_heard(now), kMostParticipants);
-  EXPECT_TRUE(
-      admits(guard, announcement(kAlice, participant_parameters(kAlice).parameter(0x0002, lease(1))), kSecond_ns))
+  EXPECT_TRUE(admits(guard, announcement(kAlice, participant_parameters(kAlice).parameter(0x0002, lease(1))),
+                     kSecond_ns))
       << "with another lease than before";
   EXPECT_EQ(guard.refusals().total(), 0U);
 }

@@ -1,0 +1,115 @@
+#include "swiftlet/services/dds/datagram/guarded_transport.hpp"
+
+#include <arpa/inet.h>
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <netinet/in.h>
+#include <stdexcept>
+#include <sys/socket.h>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/rtps_message.hpp"
+
+namespace swiftlet::comms::guarded_transport_test {
+
+namespace transport = eprosima::fastdds::rtps;
+
+// A socket of the loopback interface.
+class Receiver {
+ public:
+  Receiver() {
+    address_.sin_family = AF_INET;
+    address_.sin_addr.s_addr = ::htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address_;
+    auto* const address = reinterpret_cast<sockaddr*>(&address_);
+    if (::bind(socket_, address, size) != 0 || ::getsockname(socket_, address, &size) != 0)
+      throw std::runtime_error("no socket");
+  }
+  ~Receiver() { ::close(socket_); }
+  Receiver(const Receiver&) = delete;
+  Receiver& operator=(const Receiver&) = delete;
+
+  rtps::Locator_t locator() const {
+    rtps::Locator_t locator;
+    rtps::IPLocator::createLocator(LOCATOR_KIND_UDPv4, "127.0.0.1", ::ntohs(address_.sin_port), locator);
+    return locator;
+  }
+  // What has come over the loopback interface, which loses and delays nothing.
+  int received() const {
+    int count = 0;
+    std::array<char, 256> bytes{};
+    while (::recv(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT) >= 0) ++count;
+    return count;
+  }
+
+ private:
+  const int socket_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address_{};
+};
+
+// A chain of transports, and a channel that it opened for one place.
+class Chain {
+ public:
+  Chain(std::shared_ptr<DatagramGuard> guard, bool opens_places, const rtps::Locator_t& first) {
+    transport::UDPv4TransportDescriptor udp;
+    udp.interfaceWhiteList = {"127.0.0.1"};
+    chain_.reset(guarded(udp, std::move(guard), opens_places)->create_transport());
+    if (!chain_->init() || !open(first)) throw std::runtime_error("no transport");
+  }
+  bool open(const rtps::Locator_t& place) { return chain_->OpenOutputChannel(channels_, place); }
+  std::size_t channels() const { return channels_.size(); }
+  void send(std::vector<rtps::Locator_t> places) {
+    const std::vector<rtps::octet> datagram(100);
+    for (auto& channel : channels_) {
+      rtps::Locators first(places.begin());
+      rtps::Locators last(places.end());
+      comms::send(*channel, datagram,
+                  {&first, &last, std::chrono::steady_clock::now() + std::chrono::seconds(1)});
+    }
+  }
+
+ private:
+  std::unique_ptr<transport::TransportInterface> chain_;
+  transport::SendResourceList channels_;
+};
+
+// Fast DDS fails an assertion for a place for which no channel was opened.
+TEST(GuardedTransport, OpensThePlacesToWhichItSends) {
+  const Receiver first, other;
+  Chain chain(std::make_shared<DatagramGuard>(), true, first.locator());
+  chain.send({first.locator(), other.locator()});
+  EXPECT_EQ(first.received(), 1);
+  EXPECT_EQ(other.received(), 1);
+  ASSERT_TRUE(chain.open(other.locator()));
+  EXPECT_EQ(chain.channels(), 1U) << "sent twice otherwise";
+  chain.send({first.locator(), other.locator()});
+  EXPECT_EQ(first.received(), 1);
+  EXPECT_EQ(other.received(), 1);
+}
+
+TEST(GuardedTransport, SendsToWhereAHostIsHeardNow) {
+  const Receiver receiver;
+  rtps::Locator_t before = receiver.locator();
+  rtps::IPLocator::setIPv4(before, "10.1.2.3");
+  auto guard = std::make_shared<DatagramGuard>();
+  Chain chain(guard, false, before);
+  tests::ByteWriter parameters = tests::participant_parameters(tests::kAlice);
+  parameters.parameter(
+      0x0031, tests::ByteWriter().u32(1).u32(before.port).zeros(12).bytes(tests::Bytes{10, 1, 2, 3}));
+  const tests::Bytes announcement = tests::announcement(tests::kAlice, parameters).bytes();
+  const SenderAddress loopback{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 127, 0, 0, 1};
+  for (const std::int64_t now_ns : {std::int64_t{1'000'000'000}, std::int64_t{2'500'000'000}})
+    EXPECT_EQ(guard->admit(announcement.data(), announcement.size(), loopback, 7410, {now_ns, now_ns}).fault,
+              nullptr);
+  chain.send({before});
+  EXPECT_EQ(receiver.received(), 1);
+}
+
+}  // namespace swiftlet::comms::guarded_transport_test
