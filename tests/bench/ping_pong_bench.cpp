@@ -51,6 +51,9 @@ namespace dds = eprosima::fastdds::dds;
 using comms::msg::ActuatorCommand;
 using comms::msg::Imu;
 
+constexpr int kBackToBack = 0;  // in place of a rate
+constexpr double kBackToBackSamples = 10'000.0;  // for each second
+
 struct Options {
   double seconds = 5.0;
   std::vector<int> rates_hz{500, 1000};
@@ -273,11 +276,30 @@ class RoundTrips {
                       100ms);  // answers that are still missing are lost
   }
 
+  // Sends each sample when the one before is answered, from the thread that receives the answer.
+  void back_to_back(const std::function<void(std::uint64_t)>& send) {
+    const auto is_heard = [&] {
+      send(written_.size());
+      return heard_.load();
+    };
+    if (!tests::eventually(is_heard)) throw std::runtime_error("the other process does not answer");
+    next_ = send;
+    written_[1] = runtime::monotonic_ns();
+    send(1);
+    if (!tests::eventually([this] { return answers_ == count(); }))
+      throw std::runtime_error("a sample was not answered");
+  }
+
   // Called by the receiving thread.
   void answered(std::uint64_t sequence) {
     const std::int64_t now_ns = runtime::monotonic_ns();
+    heard_ = true;
     if (sequence >= written_.size()) return;
     times_.record(now_ns - written_[sequence].load());
+    if (next_ && sequence < count()) {
+      written_[sequence + 1] = now_ns;
+      next_(sequence + 1);
+    }
     ++answers_;
   }
 
@@ -287,7 +309,9 @@ class RoundTrips {
  private:
   std::vector<std::atomic<std::int64_t>> written_;
   runtime::LatencyHistogram times_;
+  std::atomic<bool> heard_{false};
   std::atomic<std::uint64_t> answers_{0};
+  std::function<void(std::uint64_t)> next_;  // empty: paced
 };
 
 void over_udp(const Options& options, int rate_hz, RoundTrips& trips) {
@@ -303,10 +327,11 @@ void over_udp(const Options& options, int rate_hz, RoundTrips& trips) {
   if (!tests::eventually([&] { return pair.matched(); }))
     throw std::runtime_error("the other process was not found");
   Imu imu;
-  trips.pace(options, rate_hz, [&](std::uint64_t sequence) {
+  const auto send = [&](std::uint64_t sequence) {
     imu.sequence_number(sequence);
     pair.send(imu);
-  });
+  };
+  rate_hz == kBackToBack ? trips.back_to_back(send) : trips.pace(options, rate_hz, send);
 }
 
 void over_secure_udp(Options options, int rate_hz, RoundTrips& trips) {
@@ -339,7 +364,8 @@ void over_socket(const Options& options, int rate_hz, RoundTrips& trips) {
 }
 
 nlohmann::ordered_json measure(const Options& options, const std::string& name, int rate_hz) {
-  RoundTrips trips(static_cast<std::uint64_t>(options.seconds * rate_hz));
+  RoundTrips trips(
+      static_cast<std::uint64_t>(options.seconds * (rate_hz == kBackToBack ? kBackToBackSamples : rate_hz)));
   if (name == kSocket) over_socket(options, rate_hz, trips);
   if (name == kSecureUdp) over_secure_udp(options, rate_hz, trips);
   if (name == kUdp) over_udp(options, rate_hz, trips);
@@ -380,7 +406,7 @@ void run(Options options) {
 
 void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--seconds", options.seconds, "duration of each measurement, s").range(0.1, 3600.0);
-  app.add_option("--rate", options.rates_hz, "samples per second; may be repeated").range(1, 10'000);
+  app.add_option("--rate", options.rates_hz, "samples per second, 0 (DDS only): each when the one before is answered; may be repeated").range(0, 10'000);
   app.add_option("--transport", options.transports, "only these transports; may be repeated")
       .one_of({kUdp, kSecureUdp, kSocket});
   app.add_flag("--json", options.json, "print JSON");

@@ -373,6 +373,36 @@ void jitter(Table& table, const Options& options) {
   }
 }
 
+// The time of a step, from a longer and a shorter flight: without start and end, which take a second together.
+void lockstep_steps(Table& table, const fs::path& folder) {
+  int flights = 0;
+  const auto fly = [&](int hover_s) {
+    const fs::path record = folder / ("hover" + std::to_string(++flights));
+    const fs::path mission = folder / ("hover" + std::to_string(hover_s) + ".yaml");
+    std::ofstream(mission) << "name: hover\nframe: ned\ntolerance_m: 0.1\nitems:\n"
+                              "  - {kind: takeoff, height_m: 1.0, speed_m_s: 0.5, hold_s: "
+                           << hover_s << "}\n  - {kind: land, speed_m_s: 0.5}\n";
+    return json::parse(output_of(program("swiftlet").string() + " fly " + mission.string() +
+                                 " --clock lockstep --json --record " + record.string()));
+  };
+  std::vector<double> steps_us;
+  std::vector<double> bare_us;
+  for (int i = 0; i < 3; ++i) {
+    const json shorter = fly(10);
+    const json longer = fly(170);
+    steps_us.push_back(1e6 * (longer.at("wall_s").get<double>() - shorter.at("wall_s").get<double>()) /
+                       (longer.at("cycles").get<double>() - shorter.at("cycles").get<double>()));
+    const json bare = json::parse(output_of(program("ping_pong_bench").string() +
+                                            " --json --no-realtime --seconds 1 --rate 0 --transport udp"));
+    bare_us.push_back(bare[0].at("p50_us").get<double>());
+  }
+  std::sort(steps_us.begin(), steps_us.end());
+  std::sort(bare_us.begin(), bare_us.end());
+  table.add({"a step, median of 3", steps_us[1], "us", "bare Fast DDS ping-pong, back to back", bare_us[1],
+             "at most 1.25"});
+  table.add({"simulated over wall time, without start and end", 2000.0 / steps_us[1], "x", "", 0.0, ""});
+}
+
 void simulated_time(Table& table) {
   const json plant = benchmarks("plant_step_bench", ".*");
   const json inner = benchmarks("inner_loop_bench", ".*");
@@ -392,6 +422,7 @@ void simulated_time(Table& table) {
   table.section("(d) lockstep, separate processes, 500 Hz control");
   table.add({"square, simulated over wall time, median of 3", factors[1], "x",
              "plant and controller steps alone", 2e6 / (2.0 * plant_ns + inner_ns), "at least 20"});
+  lockstep_steps(table, folder.path());
 
   table.section("(e) closed loop in one process, 1 kHz control, all sensor models");
   for (const auto& [name, entry] : loop.items()) {
