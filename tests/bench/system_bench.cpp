@@ -19,6 +19,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/client/client.hpp"
+#include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/runtime/child_process.hpp"
 #include "swiftlet/services/runtime/process.hpp"
@@ -27,6 +28,7 @@
 #include "tests/bench/process_usage.hpp"
 #include "tests/bench/table.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/refusals.hpp"
 #include "tests/support/stall_witness.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -99,6 +101,7 @@ struct FleetFigures {
   std::array<double, 3> cpu_percent{};  // of one core, by kProcesses
   std::array<double, 3> memory_mib{};
   double stalls_percent = 0.0;  // of the cycles: a core of this computer stood still
+  std::uint64_t refused = 0;    // datagrams, all of which are of these processes
 };
 
 // Vehicles in one domain, served by one process of each role.
@@ -121,7 +124,8 @@ class Fleet {
                                    std::to_string(rotor_speed_rate_hz), "--start", "-1", "-1", "--spacing",
                                    "0.35", "--per-row", "6"});
       const std::string full = std::string("swiftlet-") + name;
-      processes_.emplace_back(ground::ProcessSettings{full, program(full), words, folder / full});
+      logs_.push_back(folder / full);
+      processes_.emplace_back(ground::ProcessSettings{full, program(full), words, logs_.back()});
     }
   }
 
@@ -191,6 +195,12 @@ class Fleet {
   bool has_ended() {
     return std::any_of(processes_.begin(), processes_.end(),
                        [](ground::ChildProcess& process) { return process.poll().has_value(); });
+  }
+
+  std::uint64_t refused() const {
+    std::uint64_t refused = 0;
+    for (const fs::path& log : logs_) refused += tests::refused_datagrams(runtime::read_text_file(log));
+    return refused;
   }
 
   std::array<Usage, 3> usage() const {
@@ -287,6 +297,7 @@ class Fleet {
     return settings;
   }();
   std::vector<std::string> names_;
+  std::vector<fs::path> logs_;
   std::vector<ground::ChildProcess> processes_;
   std::optional<comms::Participant> counting_;
   std::vector<std::unique_ptr<Counters>> counters_;
@@ -317,6 +328,7 @@ FleetFigures hover(int vehicles, int rate_hz, bool realtime, double seconds, boo
   const std::array<Usage, 3> after = fleet.usage();
   const double measured_s = std::chrono::duration<double>(ground::Clock::now() - start).count();
   figures.vehicles = fleet.end();
+  figures.refused = fleet.refused();
   for (std::size_t k = 0; k < kProcesses.size(); ++k) {
     figures.cpu_percent[k] = 100.0 * (after[k].cpu_s - before[k].cpu_s) / measured_s;
     figures.memory_mib[k] = after[k].memory_mib;
@@ -516,6 +528,7 @@ void fleet(Table& table, const Options& options, int vehicles, bool realtime, co
   table.add({name + ": answers after a period, worst", worst_overdue, "%", "the messages alone",
              bare.at("overdue_percent").get<double>(), ""});
   table.add({name + ": steps late by half a period, worst", worst_late, "%", "", 0.0, ""});
+  table.add({name + ": datagrams refused", static_cast<double>(flown.refused), "", "", 0.0, "none"});
   table.add({name + ": CPU of all processes", cpu, "% core", "the messages alone",
              bare.at("cpu_percent").get<double>(), ""});
 }

@@ -61,7 +61,8 @@ double ask(const NetworkFlight& flight, const std::vector<std::string>& words, s
 }  // namespace
 
 bool LossResult::good() const {
-  return upload_s >= 0.0 && clear_s >= 0.0 && flight.completed && flight.rms_m < kLargestRms_m;
+  return upload_s >= 0.0 && clear_s >= 0.0 && flight.completed && flight.rms_m < kLargestRms_m &&
+         flight.refused == 0;
 }
 
 LossResult fly_with_losses(const LossSettings& settings, const std::filesystem::path& folder) {

@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/support/refusals.hpp"
+
 namespace swiftlet::soak {
 namespace {
 
@@ -63,6 +65,8 @@ NetworkFlight::Result NetworkFlight::fly(const std::string& mission) const {
   result.rms_m = number("rms_3d_m");
   result.peak_m = number("peak_3d_m");
   result.longest_gap_s = number("longest_gap_s");
+  result.refused = tests::refused_datagrams(log());
+  if (result.refused > 0) result.fault += std::to_string(result.refused) + " datagrams refused";
   return result;
 }
 

@@ -24,6 +24,7 @@ class NetworkFlight {
     double rms_m = 0.0;  // of the true position from the reference
     double peak_m = 0.0;
     double longest_gap_s = 0.0;  // of the telemetry on the ground
+    std::uint64_t refused = 0;   // datagrams, all of which are of its own processes
   };
 
   // The hosts; nothing runs yet. Programs write their output into the folder. Throws std::runtime_error if the hosts

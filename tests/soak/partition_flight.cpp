@@ -15,6 +15,7 @@
 #include "swiftlet/ground/client/controllers.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/network/network_relay.hpp"
+#include "tests/support/refusals.hpp"
 #include "tests/support/stall_witness.hpp"
 
 namespace swiftlet::soak {
@@ -306,6 +307,8 @@ std::string fault_of(const Partition& partition, const Cut& cut, const CutResult
                                         : result.metrics.final_distance_m) > cut.within_m)
     return fmt::format("expected: within {} m", cut.within_m);
   if (!result.healed) return "some do not hear each other again";
+  if (const auto refused = tests::refused_datagrams(result.log); refused > 0)
+    return fmt::format("{} datagrams of own processes refused", refused);
   if (!result.had_priority) return "the real-time priority was not granted";
   if (!result.priority_kept) return "the real-time priority was lost";
   return "";
