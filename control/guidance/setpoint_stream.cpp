@@ -18,9 +18,24 @@ constexpr double kLeastPeriod_s = 0.1;  // shortest blend, for faster streams
 constexpr int kAttempts = 16;           // attempts to blend, each with more time
 constexpr double kStretch = 1.25;
 constexpr double kRoundingError = 1e-5;
-constexpr double kReaction_s = 0.15;         // delay until the thrust acts against the motion
-constexpr double kPastTimeout_s = 0.1;       // coasting outlasts the stream's time-out
-constexpr double kQuinticPeak = 15.0 / 8.0;  // peak over mean of a rest-to-rest quintic's rate
+constexpr double kReaction_s = 0.15;    // delay until the thrust acts against the motion
+constexpr double kPastTimeout_s = 0.1;  // coasting outlasts the stream's time-out
+// Of the distance of a blend's yaw rate from its limit, kept free: it may be higher between the looks at it.
+constexpr double kBetweenLooks = 0.05;
+
+// Where in its time a blend's yaw rate is held to the limit, dense at both ends.
+struct Look {
+  double s;
+  double bump;  // s^2 (1 - s)^2
+};
+const std::array<Look, 63> kYawRateLooks = [] {
+  std::array<Look, 63> looks{};
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const double s = 0.5 - 0.5 * std::cos(M_PI * static_cast<double>(i + 1) / 64.0);
+    looks[i] = {s, s * s * (1.0 - s) * (1.0 - s)};
+  }
+  return looks;
+}();
 
 // The setpoint extrapolated to duration_s after it arrived: at constant acceleration until the next is due,
 // then at constant velocity.
@@ -33,16 +48,6 @@ Reference carried_on(const Setpoint& to, double duration_s, double period_s) {
                      0.5 * accelerated_s * accelerated_s * to.acceleration_ned + rest_s * end.velocity_ned;
   if (rest_s <= 0.0) end.acceleration_ned = to.acceleration_ned;
   return end;
-}
-
-// Sets the yaw and yaw rate of the blend's end.
-void turn(const Limits& limits, const Reference& from, const Setpoint& to, double duration_s,
-          Reference& end) {
-  const double with_rate = to.yaw_rate * duration_s;
-  const double missing = to.yaw_free ? 0.0 : std::remainder(to.yaw_rad - from.yaw_rad, 2.0 * M_PI);
-  const double reach = std::max(limits.max_yaw_rate - std::abs(to.yaw_rate), 0.0) * duration_s / kQuinticPeak;
-  end.yaw_rad = from.yaw_rad + with_rate + std::clamp(missing, -reach, reach);
-  end.yaw_rate = to.yaw_rate;
 }
 
 // The integral of a polynomial that starts at `start`.
@@ -76,13 +81,56 @@ Polynomial acceleration_blend(double a, double j, double acceleration, double t)
   return {a, j, (3.0 * da - dj) / (t * t), (-2.0 * da + dj) / (t * t * t)};
 }
 
+// A quintic's rate without its part that turns: with bend s^2 (1 - s)^2 more, where s = t / duration, it turns by
+// bend * duration / 30 more, with the same rates and accelerations at both ends.
+struct YawRate {
+  Polynomial plain;
+  // So far it can be bent within the limit; none if least_bend is greater.
+  double least_bend = -std::numeric_limits<double>::infinity();
+  double greatest_bend = std::numeric_limits<double>::infinity();
+
+  bool is_within() const { return least_bend <= greatest_bend; }
+};
+
+YawRate yaw_rate(double from_rate, double from_acceleration, double to_rate, double t, double most) {
+  YawRate result{acceleration_blend(from_rate, from_acceleration, to_rate, t)};
+  const Polynomial& plain = result.plain;
+  for (const auto& [s, bump] : kYawRateLooks) {
+    const double rate = plain[0] + s * t * (plain[1] + s * t * (plain[2] + s * t * plain[3]));
+    const double below = most - rate;
+    const double above = -most - rate;
+    result.greatest_bend = std::min(result.greatest_bend, (below - kBetweenLooks * std::abs(below)) / bump);
+    result.least_bend = std::max(result.least_bend, (above + kBetweenLooks * std::abs(above)) / bump);
+  }
+  return result;
+}
+
+// Yaw from the present one to that of the setpoint, as far as the limit of the yaw rate allows within the time. Its rate is
+// continuous, and its acceleration too, unless the limit would then be exceeded: a long blend cannot bend as fast as the short
+// one that it replaces.
+Polynomial turn(const Limits& limits, const Reference& from, const Setpoint& to, double t) {
+  const double most = std::max({limits.max_yaw_rate, std::abs(from.yaw_rate), std::abs(to.yaw_rate)});
+  YawRate rate = yaw_rate(from.yaw_rate, from.yaw_acceleration, to.yaw_rate, t, most);
+  if (!rate.is_within()) rate = yaw_rate(from.yaw_rate, 0.0, to.yaw_rate, t, most);
+  double bend = 0.0;
+  if (!to.yaw_free) {
+    double turned = 0.0;  // without a bend
+    for (int i = 3; i >= 0; --i) turned = t * (turned + rate.plain[static_cast<std::size_t>(i)] / (i + 1));
+    const double missing = std::remainder(to.yaw_rad + to.yaw_rate * t - from.yaw_rad, 2.0 * M_PI);
+    bend = 30.0 * (missing - turned) / t;
+  }
+  if (rate.is_within()) bend = std::clamp(bend, rate.least_bend, rate.greatest_bend);
+  Polynomial bent = rate.plain;
+  bent[2] += bend / (t * t);
+  bent[3] -= 2.0 * bend / (t * t * t);
+  bent[4] += bend / (t * t * t * t);
+  return integral(from.yaw_rad, bent);
+}
+
 PolynomialSegment blend_in(const Limits& limits, const Reference& from, const Setpoint& to, double duration_s,
                            double period_s) {
-  Reference end = carried_on(to, duration_s, period_s);
-  turn(limits, from, to, duration_s, end);
-  PolynomialSegment segment = join(from, end, duration_s);
-  segment.yaw =
-      quintic(from.yaw_rad, from.yaw_rate, from.yaw_acceleration, end.yaw_rad, end.yaw_rate, duration_s);
+  PolynomialSegment segment = join(from, carried_on(to, duration_s, period_s), duration_s);
+  segment.yaw = turn(limits, from, to, duration_s);
   if (to.kind == SetpointKind::kPosition) return segment;
   const std::array<Polynomial*, 3> axes = {&segment.x, &segment.y, &segment.z};
   for (int i = 0; i < 3; ++i) {
@@ -121,7 +169,11 @@ PolynomialSegment blend(const Limits& limits, const Reference& from, const Setpo
   if (std::isfinite(least)) return gentlest;
   // From outside the fence, or above the speed limit: brakes to rest as fast as allowed.
   const BrakingManoeuvre stop = inside_fence(limits, from, brake_reference(limits, from));
-  return join_to_rest(from, stop.place_ned, from.yaw_rad, stop.duration_s);
+  PolynomialSegment rest = join_to_rest(from, stop.place_ned, from.yaw_rad, stop.duration_s);
+  Setpoint unturned;
+  unturned.yaw_free = true;
+  rest.yaw = turn(limits, from, unturned, stop.duration_s);
+  return rest;
 }
 
 Reference after_blend(const PolynomialSegment& blend, double after_s) {

@@ -51,7 +51,7 @@ namespace dds = eprosima::fastdds::dds;
 using comms::msg::ActuatorCommand;
 using comms::msg::Imu;
 
-constexpr int kBackToBack = 0;  // in place of a rate
+constexpr int kBackToBack = 0;                   // in place of a rate
 constexpr double kBackToBackSamples = 10'000.0;  // for each second
 
 struct Options {
@@ -406,7 +406,9 @@ void run(Options options) {
 
 void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--seconds", options.seconds, "duration of each measurement, s").range(0.1, 3600.0);
-  app.add_option("--rate", options.rates_hz, "samples per second, 0 (DDS only): each when the one before is answered; may be repeated").range(0, 10'000);
+  app.add_option("--rate", options.rates_hz,
+                 "samples per second, 0 (DDS only): each when the one before is answered; may be repeated")
+      .range(0, 10'000);
   app.add_option("--transport", options.transports, "only these transports; may be repeated")
       .one_of({kUdp, kSecureUdp, kSocket});
   app.add_flag("--json", options.json, "print JSON");

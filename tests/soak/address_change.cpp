@@ -45,7 +45,8 @@ class Hosts {
     const bool said = tests::eventually([&] { return tests::contains(log(), change_.says); });
     result.log = log();
     if (result.fault.empty() && !said) result.fault = std::string("nobody says '") + change_.says + "'";
-    if (result.fault.empty() && tests::refused_datagrams(result.log) > 0) result.fault = "datagrams were refused";
+    if (result.fault.empty() && tests::refused_datagrams(result.log) > 0)
+      result.fault = "datagrams were refused";
     if (result.fault.empty() && tests::contains(result.log, "no actuator command"))
       result.fault = "the vehicle had no commands for 0.5 s";
     return result;

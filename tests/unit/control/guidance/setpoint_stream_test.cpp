@@ -1,7 +1,10 @@
 // Streams of setpoints: each kind, at every rate, within limits and fence.
 #include "swiftlet/control/guidance/setpoint_stream.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -36,12 +39,19 @@ class Stream : public testing::Test, protected SupervisedFlight {
         << "at " << 1e-9 * static_cast<double>(inputs_.stamp_ns);
     ASSERT_LE(now.acceleration_ned.norm(), allowed_acceleration_ + kRounding);
     ASSERT_LE(now.velocity_ned.norm(), limits_.max_speed + kRounding);
-    ASSERT_LE(std::abs(now.yaw_rate), limits_.max_yaw_rate + kRounding);
+    ASSERT_NO_FATAL_FAILURE(check_promises());
+    before_ = now;
+  }
+  void check_promises() const {
+    const Reference& now = control_setpoint_.reference;
+    // Braking begins with the acceleration that it finds.
+    ASSERT_LE(now.velocity_ned.norm(), limits_.max_speed + std::pow(limits_.max_reference_acceleration, 2) /
+                                                               (2.0 * limits_.max_reference_jerk));
+    ASSERT_LE(std::abs(now.yaw_rate), limits_.max_yaw_rate * (1.0 + 3e-4));
     for (int i = 0; i < 3; ++i) {
       ASSERT_GE(now.position_ned[i], limits_.fence_min_ned[i]);
       ASSERT_LE(now.position_ned[i], limits_.fence_max_ned[i]);
     }
-    before_ = now;
   }
   // Streams for a duration, with the setpoint of time t each 1/rate_hz.
   template <class Setpoints>
@@ -182,6 +192,80 @@ TEST_P(Rates, TurnsToAHeadingWithinTheYawRate) {
   const double before = control_setpoint_.reference.yaw_rad;
   ASSERT_NO_FATAL_FAILURE(stream(2.0, GetParam(), [&](double) { return setpoint; }));
   EXPECT_NEAR(control_setpoint_.reference.yaw_rad - before, -1.0, 0.3);
+}
+
+// Yaw rates and headings at random, each a valid setpoint, of which some arrive late or not at all.
+TEST_P(Rates, TurnsWithinTheYawRateWhateverIsStreamed) {
+  std::mt19937 random(45);
+  std::uniform_real_distribution<double> share(-1.0, 1.0);
+  for (int flight = 0; flight < 40; ++flight) {
+    Setpoint setpoint = of_kind(flight % 2 == 0 ? SetpointKind::kPosition : SetpointKind::kVelocity);
+    setpoint.position_ned = {0, 0, -1};
+    const double lost = flight % 3 == 0 ? 0.3 : 0.0;
+    const auto next = [&](double) {
+      if (0.5 * (share(random) + 1.0) < lost) return setpoint;
+      const double extreme = share(random) > 0.0 ? 1.0 : std::abs(share(random));
+      setpoint.yaw_rate = std::copysign(extreme * limits_.max_yaw_rate, share(random));
+      setpoint.yaw_free = share(random) > 0.0;
+      setpoint.yaw_rad = 4.0 * share(random);
+      return setpoint;
+    };
+    ASSERT_NO_FATAL_FAILURE(stream(6.0, GetParam(), next)) << "flight " << flight;
+    EXPECT_TRUE(last_.accepted) << last_.reason;
+    setpoint.yaw_rate = 0.0;
+    setpoint.yaw_free = true;
+    ASSERT_NO_FATAL_FAILURE(stream(1.0, 100.0, [&](double) { return setpoint; }));
+  }
+}
+
+// Any kinds, within their limits or not, of which some are lost. What is refused changes nothing.
+TEST_P(Rates, KeepsTheLimitsWhateverIsStreamed) {
+  std::mt19937 random(46);
+  std::uniform_real_distribution<double> share(-1.0, 1.0);
+  const auto vector = [&](double most) -> Vector3d {
+    return most * Vector3d(share(random), share(random), share(random));
+  };
+  const std::array<SetpointKind, 3> kinds{SetpointKind::kPosition, SetpointKind::kVelocity,
+                                          SetpointKind::kAcceleration};
+  int accepted = 0;
+  for (int flight = 0; flight < 12; ++flight) {
+    const double lost = flight % 3 == 0 ? 0.3 : 0.0;
+    const bool mixes = flight % 2 == 0;
+    Setpoint setpoint = of_kind(kinds[static_cast<std::size_t>(flight / 2) % 3]);
+    setpoint.position_ned = {0, 0, -1};
+    const auto next = [&](double) {
+      accepted += last_.accepted ? 1 : 0;
+      if (0.5 * (share(random) + 1.0) < lost) return setpoint;
+      if (mixes) setpoint.kind = kinds[random() % 3];
+      setpoint.position_ned = 0.5 * control_setpoint_.reference.position_ned + vector(0.5);
+      setpoint.position_ned.z() -= 0.5;
+      setpoint.velocity_ned = vector(0.7 * limits_.max_speed);
+      setpoint.acceleration_ned = vector(0.7 * limits_.max_reference_acceleration);
+      setpoint.yaw_rate = share(random) * limits_.max_yaw_rate;
+      setpoint.yaw_free = share(random) > 0.0;
+      setpoint.yaw_rad = 4.0 * share(random);
+      return setpoint;
+    };
+    const auto period = static_cast<int>(std::lround(1.0 / GetParam() / kStep_s));
+    for (int i = 0; i < 3000; ++i) {
+      if (i % period == 0) last_ = supervisor_.setpoint(next(i * kStep_s), inputs_);
+      step();
+      ASSERT_NO_FATAL_FAILURE(check_promises()) << "flight " << flight;
+    }
+  }
+  EXPECT_GT(accepted, 30);
+}
+
+// Both ways as fast as allowed, which a path to the heading after the time would overshoot.
+TEST_P(Rates, ReversesWithinTheYawRate) {
+  Setpoint setpoint = of_kind(SetpointKind::kPosition);
+  setpoint.position_ned = {0, 0, -1};
+  const auto next = [&](double t) {
+    setpoint.yaw_rate = static_cast<int>(t) % 2 == 0 ? 1.4 : -1.4;
+    return setpoint;
+  };
+  ASSERT_NO_FATAL_FAILURE(stream(8.0, GetParam(), next));
+  EXPECT_TRUE(last_.accepted) << last_.reason;
 }
 
 INSTANTIATE_TEST_SUITE_P(Hz, Rates, testing::Values(2.0, 5.0, 20.0, 100.0, 500.0));
