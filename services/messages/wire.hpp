@@ -51,10 +51,10 @@ class Check {
     if (ok() && !std::isfinite(value)) fail("%s is %g, must be finite", field, value);
     return *this;
   }
-  template <std::size_t kSize>
-  Check& finite(const char* field, const std::array<double, kSize>& values) {
+  template <class Number, std::size_t kSize>
+  Check& finite(const char* field, const std::array<Number, kSize>& values) {
     for (std::size_t i = 0; ok() && i < kSize; ++i) {
-      if (!std::isfinite(values[i])) fail("%s[%zu] is %g, must be finite", field, i, values[i]);
+      if (!std::isfinite(values[i])) fail("%s[%zu] is %g, must be finite", field, i, double{values[i]});
     }
     return *this;
   }

@@ -156,7 +156,9 @@ TEST_F(StandbyCommandServerTest, ContinuesAMissionKnownFromItsUpload) {
   EXPECT_EQ(state.mode, control::Mode::kMission);
   EXPECT_EQ(state.guidance.mission.id, 2U);
   EXPECT_EQ(state.guidance.phase, active.flight.supervisor.guidance.phase);
-  EXPECT_EQ(state.guidance.path.segment.z, active.flight.supervisor.guidance.path.segment.z);
+  for (std::size_t i = 0; i < control::kPolynomialCoefficients; ++i)
+    EXPECT_FLOAT_EQ(static_cast<float>(state.guidance.path.segment.z[i]),
+                    static_cast<float>(active.flight.supervisor.guidance.path.segment.z[i]));
   EXPECT_TRUE(standby_server_.collect().empty());
 }
 
