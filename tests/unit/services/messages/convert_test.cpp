@@ -96,12 +96,16 @@ TEST(Convert, FlightStateIsTransferredCompletely) {
   EXPECT_EQ(got.guidance.path.end_ns, sent.guidance.path.end_ns);
   for (const double since_s : {0.0, 0.7, 1.9}) {
     const std::int64_t stamp_ns = sent.guidance.path.start_ns + static_cast<std::int64_t>(since_s * 1e9);
-    EXPECT_EQ(got.guidance.path.at(stamp_ns).position_ned, sent.guidance.path.at(stamp_ns).position_ned);
-    EXPECT_EQ(got.guidance.path.at(stamp_ns).yaw_rad, sent.guidance.path.at(stamp_ns).yaw_rad);
+    constexpr double kSinglePrecision = 1e-6;  // of paths
+    EXPECT_TRUE(got.guidance.path.at(stamp_ns).position_ned.isApprox(
+        sent.guidance.path.at(stamp_ns).position_ned, kSinglePrecision));
+    EXPECT_NEAR(got.guidance.path.at(stamp_ns).yaw_rad, sent.guidance.path.at(stamp_ns).yaw_rad,
+                10.0 * kSinglePrecision);
   }
   EXPECT_FALSE(differ_in_state(got.requests, sent.requests));
   for (std::size_t i = 0; i < got.requests.size(); ++i) {
-    EXPECT_EQ(got.requests[i].progress, sent.requests[i].progress);
+    EXPECT_FLOAT_EQ(static_cast<float>(got.requests[i].progress),
+                    static_cast<float>(sent.requests[i].progress));
     EXPECT_EQ(result_of(got.requests[i]), result_of(sent.requests[i]));
   }
   EXPECT_EQ(report.flight.position_integral, controller_report().flight.position_integral);
