@@ -26,8 +26,9 @@ namespace swiftlet::comms {
 // What checks the datagrams of a session with these settings. Throws runtime::ConfigError for a bad key file.
 std::shared_ptr<DatagramGuard> guard_of(const NodeSettings& settings);
 
-// Between two changes that a participant announces to a discovery server, and before it leaves: a server of Fast DDS that
-// has to take in two at once may end (spaced_changes.hpp).
+// Between two changes that a participant announces to a discovery server, and before it leaves: the server of Fast DDS, up to 3.6
+// at least, frees an announcement of which it takes the next one before it has sent it on, then sends it all the same, and fails
+// the assertion "min_seq <= last_seq" (DiscoveryDataBase::update_participant_from_change_ leaves it in pdp_to_send_).
 constexpr std::chrono::milliseconds kAnnouncementSpacing{200};
 
 // A participant with its publisher, subscriber and topics. Its destructor announces to the peers that it

@@ -1,8 +1,15 @@
+#include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 #include <mutex>
-#include <stdexcept>
 #include <string>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <system_error>
+#include <unistd.h>
 #include <utility>
 
 #include <fmt/core.h>
@@ -17,6 +24,8 @@
 
 namespace swiftlet::ground {
 namespace {
+
+constexpr std::chrono::milliseconds kLook{50};  // at the server, whether it has ended
 
 // "10.0.0.1:11811", as other hosts name the server; from its number on with ';' before it.
 std::string option_value(const comms::DiscoveryServerSettings& settings) {
@@ -86,6 +95,35 @@ int serve(const comms::DiscoveryServerSettings& settings) {
   return kDone;
 }
 
+// Runs the server in a child process, and another one when an assertion of Fast DDS has ended it (participant_session.hpp). Called
+// before this process has another thread.
+int keep_serving(const comms::DiscoveryServerSettings& settings) {
+  runtime::StopSignal stop;
+  const pid_t own = ::getpid();
+  while (true) {
+    const pid_t child = ::fork();
+    if (child < 0) throw std::system_error(errno, std::generic_category(), "cannot start a process");
+    if (child == 0) {
+      ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+      return ::getppid() == own ? serve(settings) : kFailed;
+    }
+    int status = 0;
+    while (::waitpid(child, &status, WNOHANG) == 0) {
+      if (!stop.wait_for(kLook)) continue;
+      ::kill(child, SIGTERM);
+      ::waitpid(child, &status, 0);
+      break;
+    }
+    if (WIFEXITED(status)) return WEXITSTATUS(status);
+    if (stop.requested()) return kFailed;
+    std::fprintf(stderr,
+                 "swiftlet: discovery-server: the server was ended by signal %d (%s) and is started again; "
+                 "flights go on, "
+                 "but nobody joins for some seconds\n",
+                 WTERMSIG(status), ::strsignal(WTERMSIG(status)));
+  }
+}
+
 }  // namespace
 
 Command add_discovery_server_command(runtime::CommandLine root) {
@@ -114,7 +152,7 @@ Command add_discovery_server_command(runtime::CommandLine root) {
       "on without it, but nobody joins.\nA server serves one domain: two domains need two, on two ports. "
       "Servers "
       "of ROS 2 (`fastdds discovery`) serve as well.\nexample: swiftlet discovery-server --port 11811");
-  return {app, [settings] { return serve(*settings); }};
+  return {app, [settings] { return keep_serving(*settings); }};
 }
 
 }  // namespace swiftlet::ground

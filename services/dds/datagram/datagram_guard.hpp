@@ -1,6 +1,7 @@
 // Decides which received datagrams the middleware of a participant may parse.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -45,6 +46,9 @@ class DatagramGuard {
   // Counts a refusal; the result then has a fault. port: the local one.
   CheckedDatagram admit(const std::uint8_t* data, std::size_t size, const SenderAddress& sender,
                         std::uint32_t port, const Now& now);
+  // Until then, the transport drops what it receives. By default it listens from the start.
+  void listen(bool listens) { listens_ = listens; }
+  bool listens() const { return listens_; }
   void refuse(const SenderAddress& sender, const char* rule) { refusals_.note(sender, rule); }
 
   // own: of the participant that receives; all zeros: not known yet (reply_check.hpp).
@@ -91,6 +95,7 @@ class DatagramGuard {
   const DatagramLimits limits_;
   std::optional<DatagramSealer> sealer_;
   RefusalLog refusals_;
+  std::atomic<bool> listens_{true};
   std::mutex changes_mutex_;
   std::mutex mutex_;  // guards what follows; all threads that receive take it, for each datagram
   std::optional<DatagramOpener> opener_;

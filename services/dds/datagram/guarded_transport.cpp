@@ -170,6 +170,7 @@ bool GuardedTransport::CloseInputChannel(const rtps::Locator_t& locator) {
 void GuardedTransport::receive(transport::TransportReceiverInterface* next, const rtps::octet* data,
                                std::uint32_t size, const rtps::Locator_t& local,
                                const rtps::Locator_t& remote) {
+  if (!guard_->listens()) return;
   const SenderAddress sender = address_of(remote);
   const CheckedDatagram checked = guard_->admit(data, size, sender, local.port, Now::read());
   if (checked.fault != nullptr || checked.is_ignored) return;

@@ -1,7 +1,6 @@
 #include "swiftlet/services/dds/discovery/discovery_server.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -10,6 +9,7 @@
 #include <netinet/in.h>
 #include <stdexcept>
 #include <sys/socket.h>
+#include <thread>
 #include <unistd.h>
 #include <utility>
 #include <vector>
@@ -19,7 +19,6 @@
 #include "swiftlet/services/dds/datagram/guarded_transport.hpp"
 #include "swiftlet/services/dds/discovery/announcement.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
-#include "swiftlet/services/dds/discovery/spaced_changes.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/fast_dds_library.hpp"
 #include "swiftlet/services/dds/network_qos.hpp"
@@ -35,24 +34,31 @@ using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 
 constexpr const char* kName = "discovery-server";
 constexpr std::chrono::milliseconds kLogPeriod{250};
+constexpr int kPortLooks = 10;  // until a port counts as taken
+constexpr std::chrono::milliseconds kPortPeriod{50};
 
-// Fast DDS does not say why it fails.
-void require_free(int port) {
+// 0: the port is free.
+int error_of_binding(int port) {
   const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));
   const bool bound = ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-  const int error = errno;
+  const int error = bound ? 0 : errno;
   ::close(socket);
-  if (!bound)
-    throw std::runtime_error("cannot listen on UDP port " + std::to_string(port) + ": " +
-                             std::strerror(error));
+  return error;
 }
 
+// Fast DDS does not say why it fails. A server that was killed with its parent gives the port back a moment later.
+void require_free(int port) {
+  for (int look = 0; look < kPortLooks; ++look, std::this_thread::sleep_for(kPortPeriod)) {
+    if (error_of_binding(port) == 0) return;
+  }
+  throw std::runtime_error("cannot listen on UDP port " + std::to_string(port) + ": " +
+                           std::strerror(error_of_binding(port)));
+}
 dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings,
-                                     const std::shared_ptr<DatagramGuard>& guard,
-                                     const std::shared_ptr<const std::atomic<bool>>& open) {
+                                     const std::shared_ptr<DatagramGuard>& guard) {
   dds::DomainParticipantQos qos;
   qos.name(kName);
   auto& protocol = qos.wire_protocol();
@@ -73,7 +79,7 @@ dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings,
   if (!settings.interfaces.empty() || !in_a_network)
     udp.interfaceWhiteList.emplace_back(kLoopback);  // for clients of this host
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(space_changes(guarded(udp, guard, true), open));
+  qos.transport().user_transports.push_back(guarded(udp, guard, true));
   qos.allocation().participants = {0, kMostParticipants, 1};
   return qos;
 }
@@ -111,7 +117,6 @@ struct DiscoveryServer::Impl final : public DiscoveryListener {
   }
 
   const std::shared_ptr<DatagramGuard> guard;
-  const std::shared_ptr<std::atomic<bool>> open = std::make_shared<std::atomic<bool>>(false);
   std::mutex mutex;
   std::map<rtps::GUID_t, std::string> processes;
   std::function<void(const DiscoveryServerEvent&)> on_event;
@@ -129,15 +134,16 @@ DiscoveryServer::DiscoveryServer(const DiscoveryServerSettings& settings,
         "--network-key FILE or --open-network");
   set_up_fast_dds();
   require_free(settings.port);
+  impl_->guard->listen(false);
   impl_->participant = dds::DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<std::uint32_t>(settings.domain), server_qos(settings, impl_->guard, impl_->open),
-      impl_.get(), dds::StatusMask::none());
+      static_cast<std::uint32_t>(settings.domain), server_qos(settings, impl_->guard), impl_.get(),
+      dds::StatusMask::none());
   if (impl_->participant == nullptr)
     throw std::runtime_error("cannot start the discovery server on UDP port " +
                              std::to_string(settings.port));
 }
 
-void DiscoveryServer::serve() { *impl_->open = true; }
+void DiscoveryServer::serve() { impl_->guard->listen(true); }
 
 DiscoveryServer::~DiscoveryServer() {
   impl_->participant->set_listener(nullptr);
