@@ -10,7 +10,7 @@ struct NetworkSettings {
   // Hosts to which it announces itself, "HOST" or "HOST:PORT"; without a port to the first discovery ports of
   // the domain. If there are any, it uses no multicast. Own processes of this host are found without.
   std::vector<std::string> peers{};
-  // It sends and receives on these interfaces only, by name or IPv4 address. Empty: on all.
+  // It sends and receives on these interfaces, by name or IPv4 address, and the loopback interface only. Empty: on all.
   std::vector<std::string> interfaces{};
 
   // The servers that tell it of the others, "HOST[:PORT][;...]" (discovery_servers.hpp). It uses no multicast then. Not

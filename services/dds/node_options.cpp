@@ -91,7 +91,7 @@ void add_network_options(runtime::CommandLine app, NodeSettings& settings) {
         settings.network.peers.clear();
       });
   app.add_option("--interface", settings.network.interfaces,
-                 "Use this network interface only; may be repeated")
+                 "Use this network interface, and that of the loopback, only; may be repeated")
       .repeated()
       .check(fault_of_interface, "NAME|ADDRESS")
       .excludes(localhost_only)

@@ -98,6 +98,7 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
   check(settings);
   if (!settings.security.empty()) refused_peers_.emplace();
   joined_ns_ = Now::read().steady_ns;
+  guard_->set_own_interfaces(interfaces_up());
   guard_->ignore_apart_from(to_user_data(announcement_));
   if (settings.network.discovery_servers.empty()) introduced_at_ = Clock::now();
   const runtime::RealtimeScope scope = realtime();
@@ -108,8 +109,8 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
     end_source_watch_when_due();
     {
       const std::lock_guard<std::mutex> session_lock(session_mutex_);
-      announce_when_due();
       follow_addresses();
+      announce_when_due();
     }
     guard_->refusals().write_due(Clock::now());
     const std::lock_guard<std::mutex> session_lock(session_mutex_);
@@ -172,11 +173,13 @@ void Participant::Impl::follow_addresses() {
   for (const MovedHosts::Move& move : guard_->take_moves())
     runtime::log_warning("what is for {} is sent to {} now, from where its host is heard",
                          text_of(move.announced), text_of(move.heard_at));
+  const std::vector<Interface> own = interfaces_up();
+  guard_->set_own_interfaces(own);
   if (settings.on_loopback()) return;
-  const auto change = addresses_.poll(settings.network);
+  const auto change = addresses_.poll(own, settings.network);
   if (!change) return;
   runtime::log_warning("{}", *change);
-  if (session_ != nullptr) session_->announce(announcement_);
+  announcement_changed_ = true;
 }
 
 void Participant::Impl::add(Endpoint* endpoint) {

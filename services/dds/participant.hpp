@@ -85,7 +85,8 @@ struct Participant::Impl final : public DiscoveryListener {
   void leave();              // requires session_mutex_
   void end_session();        // requires session_mutex_; waits until what it announced last is that long ago
   void announce_when_due();  // a change of announcement_; requires session_mutex_
-  void follow_addresses();   // of this host and of others; requires session_mutex_
+  void
+  follow_addresses();  // of this host, whose changes are to be announced, and of others; requires session_mutex_
 
   void on_participant(const Guid& guid, const std::string& name,
                       const std::vector<std::uint8_t>& user_data) override;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <mutex>
 #include <string_view>
+#include <utility>
 
 #include "swiftlet/services/dds/discovery/announcement.hpp"
 
@@ -121,9 +122,16 @@ std::vector<Joined> DatagramGuard::participants_joined(const Now& now) {
   return participants_.joined(now.steady_ns);
 }
 
-std::vector<MovedHosts::Move> DatagramGuard::take_moves() {
+MovedHosts::News DatagramGuard::take_moves() {
   const std::lock_guard<std::mutex> lock(mutex_);
   return moved_hosts_.take_news();
+}
+
+void DatagramGuard::set_own_interfaces(const std::vector<Interface>& own) {
+  std::vector<Ipv4> addresses;
+  for (const Interface& it : own) addresses.push_back(it.ipv4);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  moved_hosts_.set_own(std::move(addresses));
 }
 
 void DatagramGuard::note_sent(const std::uint8_t* data, std::size_t size) {

@@ -78,7 +78,9 @@ class DatagramGuard {
 
   // Where others are reached now, for the threads that send.
   const MovedHosts& moved_hosts() const { return moved_hosts_; }
-  std::vector<MovedHosts::Move> take_moves();
+  MovedHosts::News take_moves();
+  // Those of this host, with an address.
+  void set_own_interfaces(const std::vector<Interface>& own);
 
   // Held while the middleware takes in what a discovery server sent, and while its participant announces a change: Fast DDS
   // takes two locks in one order for the former (PDPClient::assignRemoteEndpoints), and in the other one for the latter
@@ -100,7 +102,7 @@ class DatagramGuard {
   std::mutex mutex_;  // guards what follows; all threads that receive take it, for each datagram
   std::optional<DatagramOpener> opener_;
   ReplyCheck replies_;
-  MovedHosts moved_hosts_{is_own_address};
+  MovedHosts moved_hosts_;
   HeardParticipants participants_;
   std::string own_user_data_;  // empty: nobody is ignored
   std::size_t expected_ = 0;

@@ -1,12 +1,9 @@
 #include "swiftlet/services/dds/datagram/moved_hosts.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace swiftlet::comms {
 namespace {
-
-constexpr std::size_t kMostNews = 64;
 
 constexpr std::uint64_t pair(Ipv4 announced, Ipv4 used) { return std::uint64_t{announced} << 32U | used; }
 constexpr Ipv4 announced_of(std::uint64_t pair) { return static_cast<Ipv4>(pair >> 32U); }
@@ -22,8 +19,7 @@ void MovedHosts::heard(const Announced& said, Ipv4 source, std::int64_t now_ns) 
     const Ipv4 wanted = is_there ? *address : source;
     if (used_of(host.addresses) != wanted) {
       if (!is_there && now_ns - host.heard_ns < kSilence_ns) continue;
-      // The processes of this host announce themselves over the loopback interface, too.
-      if (is_loopback(source) && is_own_(*address)) continue;
+      if (is_loopback(source) && std::find(own_.begin(), own_.end(), *address) != own_.end()) continue;
       use(host, *address, wanted);
     }
     host.heard_ns = now_ns;
@@ -58,7 +54,5 @@ Ipv4 MovedHosts::now_at(Ipv4 announced) const {
   }
   return announced;
 }
-
-std::vector<MovedHosts::Move> MovedHosts::take_news() { return std::exchange(news_, {}); }
 
 }  // namespace swiftlet::comms

@@ -6,16 +6,19 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
+
+#include <boost/container/static_vector.hpp>
 
 #include "swiftlet/services/dds/datagram/parameter_list.hpp"
 
 namespace swiftlet::comms {
 
-// heard() and take_news() are called by one thread at a time, now_at() and any() by all others meanwhile. Allocates only for news.
+// now_at() and any() are called by all threads, the others by one at a time. Allocates only in set_own().
 class MovedHosts {
  public:
-  // A host that moves has been silent at its old address for so long, s. A recording of an announcement that somebody sends
+  // A host that moves has been silent at its old address for so long. A recording of an announcement that somebody sends
   // while the host is heard thus moves nothing.
   static constexpr std::int64_t kSilence_ns = 1'000'000'000;
 
@@ -24,8 +27,11 @@ class MovedHosts {
     Ipv4 heard_at;  // equal to `announced`: it is back
   };
 
-  // is_own: whether this host has the address now.
-  explicit MovedHosts(bool (*is_own)(Ipv4)) : is_own_(is_own) {}
+  static constexpr std::size_t kMostNews = 16;
+  using News = boost::container::static_vector<Move, kMostNews>;
+
+  // The addresses that this host has now. Its processes announce themselves over the loopback interface, too.
+  void set_own(std::vector<Ipv4> own) { own_.swap(own); }
 
   // A participant that announces these addresses for its samples was heard from `source`. now_ns: of a monotonic clock.
   void heard(const Announced& said, Ipv4 source, std::int64_t now_ns);
@@ -36,7 +42,7 @@ class MovedHosts {
   Ipv4 now_at(Ipv4 announced) const;
 
   // The moves since the last call, but for those to the loopback interface.
-  std::vector<Move> take_news();
+  News take_news() { return std::exchange(news_, {}); }
 
  private:
   struct Host {
@@ -47,10 +53,10 @@ class MovedHosts {
   Host& host(Ipv4 announced);
   void use(Host& host, Ipv4 announced, Ipv4 address);
 
-  bool (*const is_own_)(Ipv4);
+  std::vector<Ipv4> own_;
   std::array<Host, 256> hosts_{};  // the longest silent one is forgotten
   std::atomic<int> moved_{0};
-  std::vector<Move> news_;
+  News news_;
 };
 
 }  // namespace swiftlet::comms

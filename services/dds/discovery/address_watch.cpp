@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
-
 namespace swiftlet::comms {
 namespace {
 
@@ -17,9 +15,10 @@ std::string listed(const std::set<std::string>& addresses) {
 
 }  // namespace
 
-std::optional<std::string> AddressWatch::poll(const NetworkSettings& network) {
+std::optional<std::string> AddressWatch::poll(const std::vector<Interface>& interfaces,
+                                              const NetworkSettings& network) {
   std::set<std::string> now;
-  for (const Interface& it : interfaces_up()) {
+  for (const Interface& it : interfaces) {
     if (!it.is_loopback) now.insert(it.address + " of " + it.name);
   }
   return change(std::move(now), network);

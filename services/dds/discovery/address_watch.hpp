@@ -4,7 +4,9 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
+#include "swiftlet/services/dds/discovery/interfaces.hpp"
 #include "swiftlet/services/dds/network_settings.hpp"
 
 namespace swiftlet::comms {
@@ -14,7 +16,7 @@ class AddressWatch {
  public:
   // A sentence, with what follows from it for a process with these settings, if the addresses of this host have changed since the
   // last call; at the first call, if there are none but those of the loopback interface.
-  std::optional<std::string> poll(const NetworkSettings& network);
+  std::optional<std::string> poll(const std::vector<Interface>& interfaces, const NetworkSettings& network);
   // The same of given addresses, "10.0.0.1 of eth0".
   std::optional<std::string> change(std::set<std::string> now, const NetworkSettings& network);
 

@@ -135,6 +135,7 @@ DiscoveryServer::DiscoveryServer(const DiscoveryServerSettings& settings,
   set_up_fast_dds();
   require_free(settings.port);
   impl_->guard->listen(false);
+  impl_->guard->set_own_interfaces(interfaces_up());
   impl_->participant = dds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(settings.domain), server_qos(settings, impl_->guard), impl_.get(),
       dds::StatusMask::none());

@@ -35,10 +35,10 @@ std::vector<Interface> interfaces_up() {
     if (it->ifa_addr == nullptr || it->ifa_addr->sa_family != AF_INET) continue;
     if ((it->ifa_flags & IFF_UP) == 0U || (it->ifa_flags & IFF_RUNNING) == 0U) continue;
     char address[INET_ADDRSTRLEN] = {};
-    ::inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(it->ifa_addr)->sin_addr, address,
-                sizeof address);
+    const in_addr ipv4 = reinterpret_cast<const sockaddr_in*>(it->ifa_addr)->sin_addr;
+    ::inet_ntop(AF_INET, &ipv4, address, sizeof address);
     found.push_back({it->ifa_name, address, (it->ifa_flags & IFF_LOOPBACK) != 0U,
-                     (it->ifa_flags & IFF_MULTICAST) != 0U, mtu_of(it->ifa_name)});
+                     (it->ifa_flags & IFF_MULTICAST) != 0U, mtu_of(it->ifa_name), ::ntohl(ipv4.s_addr)});
   }
   return found;
 }
@@ -46,13 +46,6 @@ std::vector<Interface> interfaces_up() {
 bool is_own_address(const std::string& ipv4) {
   const std::vector<Interface> own = interfaces_up();
   return std::any_of(own.begin(), own.end(), [&](const Interface& it) { return it.address == ipv4; });
-}
-
-bool is_own_address(std::uint32_t ipv4) {
-  const in_addr address{::htonl(ipv4)};
-  char text[INET_ADDRSTRLEN] = {};
-  ::inet_ntop(AF_INET, &address, text, sizeof text);
-  return is_own_address(std::string(text));
 }
 
 std::string interfaces_text(bool localhost_only) {

@@ -15,12 +15,12 @@ struct Interface {
   std::string address;  // "192.168.1.4"
   bool is_loopback = false;
   bool has_multicast = false;
-  int mtu_bytes = 0;  // 0: unknown
+  int mtu_bytes = 0;       // 0: unknown
+  std::uint32_t ipv4 = 0;  // the address: 127.0.0.1 is 0x7f000001
 };
 std::vector<Interface> interfaces_up();
 
-// Whether one of them has the address. 127.0.0.1 is 0x7f000001.
-bool is_own_address(std::uint32_t ipv4);
+// Whether one of them has the address.
 bool is_own_address(const std::string& ipv4);
 
 // The interfaces with an IPv4 address that are up: "lo (127.0.0.1), eth0 (192.168.1.4)". Only the loopback

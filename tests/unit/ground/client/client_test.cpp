@@ -168,4 +168,23 @@ TEST_F(Requests, ToTakeOffContainTheHeightAsNegativeZ) {
   EXPECT_EQ(received.speed(), 0.4);
 }
 
+// GIVEN a controller that is heard before it reads setpoints WHEN a program connects THEN its first setpoint reaches somebody.
+TEST(Connection, IsThereWhenTheControllerReadsSetpoints) {
+  const DomainLock lock;
+  Control control(lock);
+  Vehicle vehicle(settings_of("ground", lock));
+  ASSERT_TRUE(eventually([&] {
+    control.publish_status(1);
+    return vehicle.connected();
+  }));
+  EXPECT_FALSE(vehicle.send(VelocitySetpoint{Eigen::Vector3d::Zero()}));
+  auto connecting = std::async(std::launch::async, [&] { return vehicle.connect(60s); });
+  EXPECT_EQ(connecting.wait_for(200ms), std::future_status::timeout) << "nobody reads setpoints";
+  comms::Node late(settings_of("late", lock));
+  const comms::Subscription setpoints =
+      late.subscribe<msg::Setpoint>(comms::topics::kSetpoint, [](const auto&) {});
+  EXPECT_TRUE(connecting.get().accepted());
+  EXPECT_TRUE(vehicle.send(VelocitySetpoint{Eigen::Vector3d::Zero()}));
+}
+
 }  // namespace swiftlet::ground::client_test

@@ -20,11 +20,9 @@ Announced at(std::initializer_list<Ipv4> addresses) {
   return said;
 }
 
-// The address of the host of the test.
-bool is_this_host(Ipv4 address) { return address == kHere; }
-
 TEST(MovedHosts, AreReachedWhereTheyAreHeardWhenTheirAddressHasFallenSilent) {
-  MovedHosts hosts(is_this_host);
+  MovedHosts hosts;
+  hosts.set_own({kHere});
   hosts.heard(at({kWired}), kWired, kSecond_ns);
   EXPECT_FALSE(hosts.any());
   hosts.heard(at({kWired}), kNew, kSecond_ns + MovedHosts::kSilence_ns - 1);
@@ -47,7 +45,8 @@ TEST(MovedHosts, AreReachedWhereTheyAreHeardWhenTheirAddressHasFallenSilent) {
 }
 
 TEST(MovedHosts, AreHeardAtAnyOfTheirAddresses) {
-  MovedHosts hosts(is_this_host);
+  MovedHosts hosts;
+  hosts.set_own({kHere});
   const Announced both = at({kWired, kWireless});
   for (std::int64_t now_ns = kSecond_ns; now_ns < 10 * kSecond_ns; now_ns += kSecond_ns / 2) {
     hosts.heard(both, kWireless, now_ns);
@@ -59,7 +58,8 @@ TEST(MovedHosts, AreHeardAtAnyOfTheirAddresses) {
 
 // A process that joined late knows a host only as it is now. What comes over the loopback interface is of this host.
 TEST(MovedHosts, ThatMovedBeforeTheyWereHeardAreReached) {
-  MovedHosts hosts(is_this_host);
+  MovedHosts hosts;
+  hosts.set_own({kHere});
   hosts.heard(at({kWired}), kNew, kSecond_ns);
   EXPECT_EQ(hosts.now_at(kWired), kNew);
   hosts.heard(at({kWireless}), kLoopback, kSecond_ns);
@@ -70,7 +70,8 @@ TEST(MovedHosts, ThatMovedBeforeTheyWereHeardAreReached) {
 }
 
 TEST(MovedHosts, AreForgottenBySilence) {
-  MovedHosts hosts(is_this_host);
+  MovedHosts hosts;
+  hosts.set_own({kHere});
   hosts.heard(at({kWired}), kNew, kSecond_ns);
   for (Ipv4 host = 1; host <= 256; ++host)
     hosts.heard(at({kStranger + host}), kStranger + host, 2 * kSecond_ns + host);
