@@ -125,9 +125,9 @@ Outcome no_vehicle_fault(const SupervisorContext& context) {
 }
 
 constexpr ArmingCheck kChecks[] = {
-    level_accepted, samples_fit_level, no_vehicle_fault, pose_available, pose_accepted,
-    imu_usable,     battery_available, imu_at_rest,      not_turning,    rotors_still,
-    level,          not_moving,        inside_fence};
+    no_vehicle_fault,  level_accepted, samples_fit_level, pose_available, pose_accepted, imu_usable,
+    battery_available, imu_at_rest,    not_turning,       rotors_still,   level,         not_moving,
+    inside_fence};
 
 // Appends "; sentence" if it fits.
 void append(const char* sentence, Outcome& outcome) {

@@ -135,4 +135,13 @@ bool event_of(RequestKind kind, Event& event) {
   return false;
 }
 
+std::optional<RequestKind> kind_of(Event event) {
+  for (int number = 0; number <= static_cast<int>(RequestKind::kSettings); ++number) {
+    const auto kind = static_cast<RequestKind>(number);
+    Event of_kind{};
+    if (event_of(kind, of_kind) && of_kind == event) return kind;
+  }
+  return std::nullopt;
+}
+
 }  // namespace swiftlet::control

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "swiftlet/control/types/request.hpp"
 
@@ -57,6 +58,8 @@ const char* to_string(Event event);  // "battery low", "goto"
 
 // The event of a request. Returns false for a value that is no RequestKind.
 bool event_of(RequestKind kind, Event& event);
+// The reverse; nullopt for an event that is no request, and for setpoints.
+std::optional<RequestKind> kind_of(Event event);
 
 class EventSet {
  public:

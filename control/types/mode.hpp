@@ -24,37 +24,37 @@ enum class Mode : std::uint8_t {
 const char* to_string(Mode mode);
 inline bool rotors_off(Mode mode) { return mode == Mode::kDisarmed || mode == Mode::kStopped; }
 
-// Why a mode was entered.
+// Why a mode was entered. The numbers are those of REASON_* in ControlStatus.
 enum class Reason : std::uint8_t {
   kStarted = 0,
-  kRequested,
-  kTakeOffCompleted,
-  kMissionCompleted,
-  kTrajectoryCompleted,
-  kLanded,
-  kLandedWithoutPosition,
-  kSetpointsCame,
-  kSetpointsStopped,
-  kBatteryLow,
-  kBatteryCritical,
-  kBatterySilent,
-  kOutsideFence,
-  kNoPose,
-  kPoseIsBack,
-  kDescentTimedOut,
-  kTippedOver,
-  kImuUnusable,
-  kImuGap,
-  kGroundLinkLost,
-  kImpact,  // the specific force exceeded failsafe.impact_m_s2: the vehicle hit the ground or a wall
-  kTakeoffInconsistent,     // poses do not follow the take-off: another body, or markers that came off
-  kPoseJumped,              // poses disagreed with the estimate for long, and the estimate was reset to them
-  kPlanUnknown,             // the mission or trajectory is not known here after a failover
-  kEngagedInFlight,         // the controller started while its vehicle was in the air
-  kSetpointsViolatedFence,  // a stream of attitudes or body rates violated the fence
-  kMissionPaused,
-  kVehicleFault,      // the vehicle reported a fault, such as that another flies it
-  kRotorsNotRunning,  // the vehicle did not report that its rotors run, and so did not take off
+  kRequested = 1,
+  kTakeOffCompleted = 2,
+  kMissionCompleted = 3,
+  kTrajectoryCompleted = 4,
+  kLanded = 5,
+  kLandedWithoutPosition = 6,
+  kSetpointsCame = 7,
+  kSetpointsStopped = 8,
+  kBatteryLow = 9,
+  kBatteryCritical = 10,
+  kBatterySilent = 11,
+  kOutsideFence = 12,
+  kNoPose = 13,
+  kPoseIsBack = 14,
+  kDescentTimedOut = 15,
+  kTippedOver = 16,
+  kImuUnusable = 17,
+  kImuGap = 18,
+  kGroundLinkLost = 19,
+  kImpact = 20,  // the specific force exceeded failsafe.impact_m_s2: the vehicle hit the ground or a wall
+  kTakeoffInconsistent = 21,  // poses do not follow the take-off: another body, or markers that came off
+  kPoseJumped = 22,       // poses disagreed with the estimate for long, and the estimate was reset to them
+  kPlanUnknown = 23,      // the mission or trajectory is not known here after a failover
+  kEngagedInFlight = 24,  // the controller started while its vehicle was in the air
+  kSetpointsViolatedFence = 25,  // a stream of attitudes or body rates violated the fence
+  kMissionPaused = 26,
+  kVehicleFault = 27,      // the vehicle reported a fault, such as that another flies it
+  kRotorsNotRunning = 28,  // the vehicle did not report that its rotors run, and so did not take off
 };
 constexpr int kReasonCount = static_cast<int>(Reason::kRotorsNotRunning) + 1;
 const char* to_string(Reason reason);

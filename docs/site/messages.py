@@ -4,7 +4,7 @@ import re
 
 from manual_text import ManualError, plain, table
 
-_TOPIC = re.compile(r'Topic<msg::(\w+)> k\w+\{"(\w+)", Qos::k(\w+)(?:,\s+(\d+))?\};')
+_TOPIC = re.compile(r'Topic<msg::(\w+)> k\w+\{"(\w+)", Qos::k(\w+)\};')
 _CONSTANT = re.compile(r"^const (\w+) (\w+) = ([^;]+);$")
 _FIELD = re.compile(r"^([\w:]+(?:<.*>)?) (\w+)(\[\d+\])?;$")
 
@@ -16,8 +16,8 @@ def words_of(name):
 
 def read_topics(root):
     file = root / "services/messages/topics.hpp"
-    topics = [(name, kind, words_of(profile), f"{ms} ms" if ms else "")
-              for kind, name, profile, ms in _TOPIC.findall(file.read_text())]
+    topics = [(name, kind, words_of(profile))
+              for kind, name, profile in _TOPIC.findall(file.read_text())]
     if not topics:
         raise ManualError(f"{file.relative_to(root)}: no topic found; docs/site/messages.py reads lines such as "
                           'Topic<msg::Imu> kImu{"imu", Qos::kStream};')
@@ -25,12 +25,12 @@ def read_topics(root):
 
 
 def table_of_readme(root):
-    """(name, type, profile, deadline) of each row of the table of topics in idl/README.md."""
+    """(name, type, profile) of each row of the table of topics in idl/README.md."""
     rows = set()
     for line in (root / "idl/README.md").read_text().splitlines():
         cells = [cell.strip().strip("`") for cell in line.strip("|").split("|")]
-        if line.startswith("| `") and len(cells) == 6:
-            rows.add((cells[0], cells[1], cells[4], cells[5]))
+        if line.startswith("| `") and len(cells) == 5:
+            rows.add((cells[0], cells[1], cells[4]))
     return rows
 
 
@@ -39,7 +39,7 @@ def check_readme(root, topics):
     for row in sorted(code ^ document):
         where = "services/messages/topics.hpp" if row in code else "idl/README.md"
         raise ManualError(f"idl/README.md: its table of topics and services/messages/topics.hpp differ: only {where} has "
-                          f"{', '.join(cell or 'no deadline' for cell in row)}")
+                          f"{', '.join(row)}")
 
 
 def read_type(file, root):
@@ -89,12 +89,12 @@ def page(root):
         "This page is generated from the IDL files and from `services/messages/topics.hpp`. "
         "[Topics](../rooms/idl.md) explains rates, profiles and conventions.\n\n"
         "## All topics\n\n",
-        table(["topic", "type", "profile", "deadline"],
-              [(f"`{name}`", f"[{kind}](#{kind.lower()})", profile, deadline) for name, kind, profile, deadline in topics]),
+        table(["topic", "type", "profile"],
+              [(f"`{name}`", f"[{kind}](#{kind.lower()})", profile) for name, kind, profile in topics]),
     ]
     for file in sorted((root / "idl/swiftlet_msgs/msg").glob("*.idl")):
         about, constants, fields = read_type(file, root)
-        used = [f"`{name}`" for name, kind, _, _ in topics if kind == file.stem]
+        used = [f"`{name}`" for name, kind, _ in topics if kind == file.stem]
         out.append(f"\n## {file.stem}\n\n")
         out.append(f"Topic{'s' if len(used) > 1 else ''} {', '.join(used)}. " if used else "Part of other messages. ")
         out.append(plain(about) + "\n\n")

@@ -141,9 +141,7 @@ int fly_vehicles(const FlyOptions& options, const std::vector<std::string>& vehi
     progress.say("live page: " + view->url());
   }
   ProcessGroup processes(ground::processes(fleet, network));
-  comms::NodeSettings own = network;
-  own.deadlines = options.clock != runtime::Clock::kLockstep;
-  const comms::Participant participant(own, vehicles);
+  const comms::Participant participant(network, vehicles);
   std::deque<ProcessFlight> flights;
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     const LaunchConfiguration& plan = plans[i];
@@ -154,8 +152,7 @@ int fly_vehicles(const FlyOptions& options, const std::vector<std::string>& vehi
                  (plan.launch_mode == LaunchMode::kAttached ? "" : " with " + plan.vehicle.name) + ": " +
                  network.vehicle + " in domain " + std::to_string(network.domain) +
                  (network.on_loopback() ? " on this host" : "") + ", record in " + plan.folder.string());
-    own.vehicle = vehicles[i];
-    flights.emplace_back(std::move(plans[i]), own, processes, participant);
+    flights.emplace_back(std::move(plans[i]), network, processes, participant);
   }
   if (flights.size() == 1) {
     flights.front().fly(interrupts, nullptr, progress);

@@ -10,6 +10,7 @@
 #include "swiftlet/ground/client/discovery.hpp"
 #include "swiftlet/services/dds/reach.hpp"
 #include "swiftlet/services/messages/convert.hpp"
+#include "swiftlet/services/messages/wire_version.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -138,11 +139,24 @@ std::optional<msg::RequestStatus> Client::reported_status(const control::Request
   return reported->second;
 }
 
+template <class Message>
+bool Client::refuses(const Message& message, const char* sender) {
+  std::string fault = comms::fault_of_wire_version(message.wire_version(), sender);
+  if (fault.empty()) return false;
+  {
+    const std::lock_guard lock(mutex_);
+    view_.foreign = std::move(fault);
+  }
+  changed_.notify_all();
+  return true;
+}
+
 // Statuses, answers and peer events wake waiting threads.
 void Client::subscribe_statuses() {
   using namespace comms::topics;
   subscriptions_.push_back(
       node_.subscribe<msg::ControlStatus>(kControlStatus, [this](const msg::ControlStatus& status) {
+        if (refuses(status, "control")) return;
         {
           // Each controller counts its own statuses: a count that does not rise is another controller's.
           const std::lock_guard lock(mutex_);
@@ -160,6 +174,7 @@ void Client::subscribe_statuses() {
       }));
   subscriptions_.push_back(
       node_.subscribe<msg::VehicleInfo>(kVehicleInfo, [this](const msg::VehicleInfo& info) {
+        if (refuses(info, "the vehicle")) return;
         keep(&View::vehicle, info);
         advance_after(info.stamp_ns());
         changed_.notify_all();
@@ -416,6 +431,7 @@ std::string Client::where() const {
 }
 
 std::string Client::no_control() const {
+  if (const std::string foreign = view().foreign; !foreign.empty()) return where() + ": " + foreign;
   std::string text = "no control service for " + where();
   // Processes started with --localhost-only are discovered, but exchange data on the loopback interface only.
   const auto peers = view().peers;

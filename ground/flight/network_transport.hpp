@@ -10,7 +10,7 @@
 #include "swiftlet/ground/terminal/progress.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/recording/flight_record.hpp"
-#include "swiftlet/services/dds/clocks/clock_client.hpp"
+#include "swiftlet/services/clocks/clock_client.hpp"
 #include "swiftlet/services/runtime/clock.hpp"
 #include "swiftlet/simulation/mission_runner.hpp"
 

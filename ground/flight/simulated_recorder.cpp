@@ -13,6 +13,7 @@
 #include "swiftlet/services/dds/payload.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/messages/schemas.hpp"
+#include "swiftlet/services/messages/wire_version.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -109,10 +110,10 @@ void SimulatedRecorder::write_sample(const plant::TelemetryPacket& packet,
     write(topics::kMocapPose, comms::to_message(*pose), now_ns);
   }
   const auto write_answered = [&](const auto& topic, auto message) {
-    comms::set_obeyed_command(packet.obeyed, message);
-    message.mocap_sequence_number(pose_sequence_);
-    message.battery_sequence_number(battery_sequence_);
-    message.rotor_speeds_sequence_number(rotor_speeds_sequence_);
+    message.obeyed(comms::to_message(packet.obeyed));
+    message.lockstep().mocap_pose(pose_sequence_);
+    message.lockstep().battery(battery_sequence_);
+    message.lockstep().rotor_speeds(rotor_speeds_sequence_);
     write(topic, message, now_ns);
   };
   if (packet.odometry) {
@@ -186,9 +187,11 @@ void SimulatedRecorder::write_changes() {
 void SimulatedRecorder::write_status(const control::Status& status) {
   status_ns_ = loop_.plant.stamp_ns();
   comms::msg::ControlStatus message;
+  message.wire_version(comms::kWireVersion);
   message.stamp_ns(status_ns_);
   message.sequence_number(++status_sequence_);
   message.mode(static_cast<std::uint8_t>(status.mode));
+  message.reason_code(static_cast<std::uint8_t>(status.reason));
   message.reason() = control::to_string(status.reason);
   message.airborne(status.airborne);
   message.has_pose(status.has_pose);
@@ -214,6 +217,7 @@ void SimulatedRecorder::write_mission(const control::Status& status) {
   message.state(static_cast<std::uint8_t>(status.mission.state));
   message.item_index(static_cast<std::uint32_t>(std::max(status.mission.item_index, 0)));
   message.item_count(static_cast<std::uint32_t>(std::max(status.mission.item_count, 0)));
+  message.reason_code(static_cast<std::uint8_t>(status.reason));
   if (is_over(status.mission.state)) message.reason() = control::to_string(status.reason);
   write(topics::kMissionStatus, message, mission_ns_);
 }

@@ -20,12 +20,6 @@ constexpr auto kFlushPeriod = 500ms;
 constexpr const char* kCounts = "swiftlet/counts";
 constexpr const char* kClocks = "swiftlet/clocks";
 
-// Samples come for each sample of the IMU: each such topic has a socket of its own.
-bool is_fast(comms::Qos qos, const std::string& topic) {
-  return qos == comms::Qos::kOwnedStream || topic == comms::topics::kImu.name ||
-         topic == comms::topics::kVehicleOdometry.name || topic == comms::topics::kRotorSpeeds.name;
-}
-
 std::optional<std::int64_t> stamp_of(const comms::RawSample& sample, int offset) {
   std::int64_t stamp_ns = 0;
   const auto at = static_cast<std::size_t>(offset);
@@ -110,17 +104,16 @@ void FlightRecorder::subscribe(Vehicle& vehicle, const comms::Topic<T>& topic) {
   const std::string name = "/" + vehicle.name + "/" + topic.name;
   std::uint16_t id = 0;
   use_file([&](MessageFile& file) { id = file.add_channel(vehicle.name, topic.name, schema); });
-  const Writers writers = topic.qos == comms::Qos::kOwnedStream ? Writers::kStrongest : Writers::kAll;
   Channel* channel = nullptr;
   {
     const std::lock_guard<std::mutex> lock(channels_mutex_);
     channels_.push_back(std::unique_ptr<Channel>(
-        new Channel{vehicle, topic.name, name, id, schema.stamp_offset, GapCounter(writers)}));
+        new Channel{vehicle, topic.name, name, id, schema.stamp_offset, GapCounter()}));
     channel = channels_.back().get();
   }
   vehicle.subscriptions.push_back(vehicle.node->subscribe_raw<T>(
       topic, [this, channel](const comms::RawSample& sample) { receive(*channel, sample); },
-      is_fast(topic.qos, topic.name) ? comms::Delivery::kOwnThread : comms::Delivery::kShared));
+      topic.qos == comms::Qos::kStream ? comms::Delivery::kSamples : comms::Delivery::kShared));
 }
 
 void FlightRecorder::receive(Channel& channel, const comms::RawSample& sample) {

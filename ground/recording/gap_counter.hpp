@@ -7,22 +7,13 @@
 
 namespace swiftlet::ground {
 
-// Whether the samples of several writers arrive.
-enum class Writers {
-  kAll,
-  kStrongest,  // of an owned stream: those of the others are never delivered, and so not lost
-};
-
 class GapCounter {
  public:
-  explicit GapCounter(Writers writers) : writers_(writers) {}
-
   // Returns how many samples of this writer are missing before this one. Samples before the first are not counted.
   std::uint64_t missing_before(std::uint64_t writer, std::uint64_t sequence_number) {
     const auto known =
         std::find_if(last_.begin(), last_.end(), [&](const Last& last) { return last.writer == writer; });
     if (known == last_.end()) {
-      if (writers_ == Writers::kStrongest) last_.clear();
       last_.push_back({writer, sequence_number});
       return 0;
     }
@@ -38,7 +29,6 @@ class GapCounter {
     std::uint64_t sequence_number;
   };
 
-  Writers writers_;
   std::vector<Last> last_;
 };
 

@@ -100,7 +100,7 @@ bool is_identifier(const std::string& name) {
   };
   const std::size_t dot = name.rfind('.');
   const std::string last = dot == std::string::npos ? name : name.substr(dot + 1);
-  return ends_with("_ns") || ends_with("sequence_number") ||
+  return ends_with("_ns") || ends_with("sequence_number") || name.find("lockstep.") != std::string::npos ||
          std::find(kNames.begin(), kNames.end(), last) != kNames.end();
 }
 

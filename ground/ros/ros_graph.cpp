@@ -177,7 +177,7 @@ class RosGraph::Impl final : public comms::DiscoveryListener {
       announcer = process->second.announcer;
     }
     if (announcer == nullptr) {
-      dds::DataWriterQos qos = comms::writer_qos(comms::Qos::kLatchedLarge, 0, 0);
+      dds::DataWriterQos qos = comms::writer_qos(comms::Qos::kLatchedLarge);
       comms::state_type_hash(qos, ParticipantEntities::kTypeHash);
       announcer = session_.publisher->create_datawriter(topic_, qos);
       if (announcer == nullptr) return runtime::log_error("cannot publish {}", kTopic);

@@ -14,6 +14,9 @@ constexpr double kMassTolerance = 0.1;
 CheckResults check_description(const VehicleRecording& recording, const plant::Vehicle& vehicle) {
   if (!recording.description) return {skipped("vehicle_info.received", "optional, and none arrived")};
   const VehicleDescription& info = *recording.description;
+  if (!info.foreign.empty())
+    return {judged("vehicle_info.wire_version", {0.0, "", "another"}, "that of this program",
+                   info.foreign + ": vehicle_info.wire_version must be WIRE_VERSION of VehicleInfo")};
   CheckResults results = {judged(
       "vehicle_info.rotors", figure(info.rotor_count, "rotors", 0), fmt::format("{}", vehicle.rotor_count()),
       info.rotor_count == vehicle.rotor_count()

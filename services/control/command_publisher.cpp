@@ -14,31 +14,17 @@ std::size_t index(ControlLevel level) { return static_cast<std::size_t>(level); 
 
 }  // namespace
 
-CommandPublisher::CommandPublisher(comms::Node& node, std::uint32_t strength, int rotor_count)
-    : node_(node),
-      strength_(strength),
-      rotor_count_(rotor_count),
-      actuators_(node.publish(topics::kActuatorCommand, strength)) {
+CommandPublisher::CommandPublisher(comms::Node& node, int rotor_count)
+    : node_(node), rotor_count_(rotor_count), actuators_(node.publish(topics::kActuatorCommand)) {
   open_[index(ControlLevel::kActuators)] = true;
 }
 
 void CommandPublisher::open(ControlLevel level) {
   if (open_[index(level)].load(std::memory_order_relaxed)) return;
-  if (level == ControlLevel::kRates) rates_ = node_.publish(topics::kRatesSetpoint, strength_);
-  if (level == ControlLevel::kAttitude) attitude_ = node_.publish(topics::kAttitudeSetpoint, strength_);
-  if (level == ControlLevel::kTrajectory) trajectory_ = node_.publish(topics::kTrajectorySetpoint, strength_);
+  if (level == ControlLevel::kRates) rates_ = node_.publish(topics::kRatesSetpoint);
+  if (level == ControlLevel::kAttitude) attitude_ = node_.publish(topics::kAttitudeSetpoint);
+  if (level == ControlLevel::kTrajectory) trajectory_ = node_.publish(topics::kTrajectorySetpoint);
   open_[index(level)].store(true, std::memory_order_release);
-}
-
-void CommandPublisher::set_strength(std::uint32_t strength) {
-  strength_ = strength;
-  const auto is_open = [this](ControlLevel level) {
-    return open_[index(level)].load(std::memory_order_relaxed);
-  };
-  actuators_.set_strength(strength);
-  if (is_open(ControlLevel::kRates)) rates_.set_strength(strength);
-  if (is_open(ControlLevel::kAttitude)) attitude_.set_strength(strength);
-  if (is_open(ControlLevel::kTrajectory)) trajectory_.set_strength(strength);
 }
 
 void CommandPublisher::publish(const plant::VehicleCommand& command) {

@@ -13,12 +13,11 @@ namespace swiftlet::services {
 
 class CommandPublisher {
  public:
-  // Level actuators is open from the start. strength: ownership strength of the commands, of every level.
-  CommandPublisher(comms::Node& node, std::uint32_t strength, int rotor_count);
+  // Level actuators is open from the start.
+  CommandPublisher(comms::Node& node, int rotor_count);
 
-  // Creates the topic of a level. Call open() and set_strength() from one thread.
+  // Creates the topic of a level. Call from one thread.
   void open(plant::ControlLevel level);
-  void set_strength(std::uint32_t strength);
 
   // While the topic of the command's level is not open, the vehicle's levels are not known: a command of rotors off then
   // goes out at level actuators, others do not. Two threads publish: that of the IMU samples, and while there are none
@@ -33,7 +32,6 @@ class CommandPublisher {
   void publish_as(const plant::TrajectorySetpoint& setpoint);
 
   comms::Node& node_;
-  std::uint32_t strength_;
   const int rotor_count_;
   std::array<std::atomic<bool>, plant::kControlLevelCount> open_{};
   std::atomic_flag in_use_ = ATOMIC_FLAG_INIT;

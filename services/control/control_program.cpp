@@ -84,7 +84,6 @@ void run(const Options& options) {
   comms::NodeSettings network = options.node;
   network.hears_of_all = false;
   network.realtime_priority = settings.realtime.thread_priority();
-  network.deadlines = options.clock == runtime::Clock::kRealtime;
   const comms::Participant participant(network, names);
   std::vector<std::unique_ptr<runtime::HostedVehicle>> vehicles;
   for (const std::string& name : names) {

@@ -5,6 +5,7 @@
 #include <random>
 #include <utility>
 
+#include "swiftlet/services/messages/wire_version.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
@@ -16,13 +17,11 @@ namespace topics = comms::topics;
 using comms::Delivery;
 using namespace std::chrono_literals;
 
-// A controller that stepped down keeps its ownership strength for this long: the vehicle, which listens to
-// the strongest writer, must hear the other controller first.
-constexpr std::int64_t kKeepStrengthNs = 200'000'000;
-
 // Without IMU samples and without an active controller for this long, requests are answered: they are
 // refused, with that reason.
 constexpr std::int64_t kIsolationNs = 1'000'000'000;
+
+constexpr std::int64_t kConditionsPeriodNs = 100'000'000;  // as control_status
 
 // Without an IMU sample for this long, the vehicle's clock is not used: it may have stopped.
 constexpr double kVehicleClockStands_s = 0.5;
@@ -51,12 +50,11 @@ ControlService::ControlService(const plant::Vehicle& vehicle, const control::Con
                  control::observed_rotors(vehicle.motor.time_constant_s, settings)),
       failover_(controller_, failover_priority),
       reports_(node.publish(topics::kControllerState)),
-      commands_(node, failover_.next_term(), vehicle.rotor_count()),
+      commands_(node, vehicle.rotor_count()),
       rotor_count_(vehicle.rotor_count()),
       wanted_level_(level),
-      wanted_strength_(failover_.next_term()),
-      active_heard_ns_(runtime::monotonic_ns()),
-      offered_strength_(failover_.next_term()) {
+      command_term_(failover_.next_term()),
+      active_heard_ns_(runtime::monotonic_ns()) {
   report_.controller = controller_;
   report_.failover_priority = failover_priority;
   report_.rotor_count = vehicle.rotor_count();
@@ -71,7 +69,7 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
   std::function<void(const msg::Battery&)> take_battery;
   std::function<void(const msg::RotorSpeeds&)> take_rotor_speeds;
   // In real time no other topic may delay IMU and poses. In lockstep threads of their own only cost wake-ups.
-  const Delivery delivery = clock == runtime::Clock::kLockstep ? Delivery::kShared : Delivery::kOwnThread;
+  const Delivery delivery = clock == runtime::Clock::kLockstep ? Delivery::kShared : Delivery::kSensors;
   if (clock == runtime::Clock::kLockstep) {
     take_pose = deliver_in_lockstep<msg::MocapPose>(loop_.pose, pose_faults_, Stream::kPose);
     take_battery = deliver_in_lockstep<msg::Battery>(loop_.battery, battery_faults_, Stream::kBattery);
@@ -119,21 +117,19 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
   subscriptions_.push_back(node.subscribe<msg::Command>(
       topics::kCommand, [this](const auto& message) { command_server_.on_command(message); }));
   subscriptions_.push_back(node.subscribe<msg::Mission>(
-      topics::kMission, deliver_to_worker(&CommandServer::on_mission), Delivery::kOwnThread));
+      topics::kMission, deliver_to_worker(&CommandServer::on_mission), Delivery::kPlans));
   subscriptions_.push_back(node.subscribe<msg::Trajectory>(
-      topics::kTrajectory, deliver_to_worker(&CommandServer::on_trajectory), Delivery::kOwnThread));
+      topics::kTrajectory, deliver_to_worker(&CommandServer::on_trajectory), Delivery::kPlans));
   subscriptions_.push_back(node.subscribe<msg::ControlSettings>(
-      topics::kControlSettings, deliver_to_worker(&CommandServer::on_control_settings),
-      Delivery::kOwnThread));
+      topics::kControlSettings, deliver_to_worker(&CommandServer::on_control_settings), Delivery::kPlans));
   if (clock == runtime::Clock::kRealtime) {
     subscriptions_.push_back(node.subscribe<msg::Mission>(
-        topics::kFlownMission, deliver_to_worker(&CommandServer::on_flown_mission), Delivery::kOwnThread));
+        topics::kFlownMission, deliver_to_worker(&CommandServer::on_flown_mission), Delivery::kPlans));
     subscriptions_.push_back(node.subscribe<msg::Trajectory>(
-        topics::kFlownTrajectory, deliver_to_worker(&CommandServer::on_flown_trajectory),
-        Delivery::kOwnThread));
+        topics::kFlownTrajectory, deliver_to_worker(&CommandServer::on_flown_trajectory), Delivery::kPlans));
     subscriptions_.push_back(node.subscribe<msg::ControllerState>(
         topics::kControllerState, [this](const auto& message) { on_controller_state(message); },
-        Delivery::kOwnThread));
+        Delivery::kPlans));
   }
   subscribe_motion(node, topics::kVehicleOdometry, "vehicle_odometry samples",
                    AnsweredSamples::Kind::kOdometry);
@@ -146,8 +142,7 @@ void ControlService::subscribe_motion(comms::Node& node, const comms::Topic<Mess
                                       const char* samples, AnsweredSamples::Kind kind) {
   const bool lockstep = clock_ == runtime::Clock::kLockstep;
   const auto take = [this, kind, lockstep](const Message& message) {
-    const std::unique_lock<std::mutex> lock(step_mutex_, std::try_to_lock);
-    if (!lock.owns_lock() || !answered_samples_.admit(kind, runtime::monotonic_ns())) return;
+    if (!answered_samples_.admit(kind, runtime::monotonic_ns())) return;
     note(imu_arrivals_, message);
     if (lockstep) {
       on_sample_in_lockstep(vehicle_sample(message));
@@ -155,7 +150,7 @@ void ControlService::subscribe_motion(comms::Node& node, const comms::Topic<Mess
       on_sample(vehicle_sample(message));
     }
   };
-  const Delivery delivery = lockstep ? Delivery::kShared : Delivery::kOwnThread;
+  const Delivery delivery = lockstep ? Delivery::kShared : Delivery::kSamples;
   sensors_.push_back({samples, node.subscribe<Message>(topic, take, delivery, comms::kSourceSilence)});
 }
 
@@ -238,9 +233,8 @@ Role ControlService::take_role(const VehicleSample& sample) {
   const bool active = role == Role::kActive;
   command_server_.set_active(active);
   active_.store(active, std::memory_order_relaxed);
-  wanted_strength_.store(active ? failover_.term() : failover_.next_term(), std::memory_order_relaxed);
+  command_term_.store(active ? failover_.term() : failover_.next_term(), std::memory_order_relaxed);
   if (role != before) {
-    if (!active) stepped_down_ns_.store(now_ns, std::memory_order_relaxed);
     const bool flew = sample.obeyed.reported && sample.obeyed.any;
     if (active && flew && !failover_.continues()) loop_.attempt_restart_in_air();
   }
@@ -306,15 +300,18 @@ void ControlService::report(std::int64_t stamp_ns) {
 }
 
 void ControlService::run(const std::atomic<bool>& stop) {
+  std::int64_t conditions_due_ns = 0;
   while (!stop.load(std::memory_order_relaxed)) {
     adopt_levels();
-    update_strength();
     Takeover takeover;
     if (takeover_.take(takeover)) runtime::log_warning("{}", to_string(takeover));
     const StreamAges ages = stream_ages();
     publish_pending_stop(ages);
-    telemetry_.set_realtime(is_realtime());
-    telemetry_.set_streams(ages, source_conflict());
+    telemetry_.set_ages(ages);
+    if (const std::int64_t now_ns = runtime::monotonic_ns(); now_ns >= conditions_due_ns) {
+      telemetry_.set_conditions(is_realtime(), source_conflict());
+      conditions_due_ns = now_ns + kConditionsPeriodNs;
+    }
     telemetry_.publish_due();
     activate_if_isolated();
     wake_.wait_for(50ms);
@@ -322,6 +319,8 @@ void ControlService::run(const std::atomic<bool>& stop) {
 }
 
 void ControlService::on_vehicle_info(const msg::VehicleInfo& message) {
+  const std::string foreign = comms::fault_of_wire_version(message.wire_version(), "the vehicle");
+  if (!foreign.empty()) return refuse_vehicle(foreign);
   const std::uint8_t levels = plant::ControlLevels::from_bits(message.control_levels()).bits();
   if (reported_levels_.exchange(levels, std::memory_order_relaxed) != levels) wake_.post();
   control::VehicleFault fault{};
@@ -332,6 +331,19 @@ void ControlService::on_vehicle_info(const msg::VehicleInfo& message) {
   if (clock_ != runtime::Clock::kLockstep)
     loop_.vehicle_rotors_running.store(message.rotors_running(), std::memory_order_relaxed);
   telemetry_.set_vehicle_fault(fault.data());
+}
+
+// The vehicle accepts commands at no level, and says why: it cannot be armed. One that is known already is flown on: this is another
+// process's message.
+void ControlService::refuse_vehicle(const std::string& why) {
+  const bool known = levels_known_.load(std::memory_order_acquire);
+  if (!refused_vehicle_.exchange(true, std::memory_order_relaxed))
+    runtime::log_error("{}: {}", why, known ? "that vehicle_info is ignored" : "it cannot be armed");
+  if (known) return;
+  control::VehicleFault fault{};
+  std::copy_n(why.c_str(), std::min(why.size(), fault.size() - 1), fault.begin());
+  loop_.vehicle_fault.put(fault);
+  loop_.levels.put({plant::ControlLevels(), wanted_level_});
 }
 
 // Opens the topic of the level before the inner loop commands at it.
@@ -364,7 +376,7 @@ void ControlService::publish_pending_stop(const StreamAges& ages) {
   header.stamp_ns = imu_arrivals_.stamp_ns();
   header.sequence = imu_arrivals_.sequence();
   header.imu_sequence = imu_arrivals_.sequence();
-  header.term = wanted_strength_.load(std::memory_order_relaxed);
+  header.term = command_term_.load(std::memory_order_relaxed);
   commands_.publish(plant::rotors_off(loop_.level(), header, rotor_count_));
 }
 
@@ -394,19 +406,6 @@ std::string ControlService::source_conflict() const {
 
 bool ControlService::is_realtime() const {
   return imu_thread_.is_realtime() && (pose_thread_.is_realtime() || !pose_thread_.has_entered());
-}
-
-// Raises a standby's ownership strength above the active controller's before it sends a command: at a
-// takeover the vehicle listens to its first command.
-void ControlService::update_strength() {
-  const std::uint32_t wanted = wanted_strength_.load(std::memory_order_relaxed);
-  if (wanted == offered_strength_) return;
-  const bool just_overtaken =
-      !active_.load(std::memory_order_relaxed) &&
-      runtime::monotonic_ns() - stepped_down_ns_.load(std::memory_order_relaxed) < kKeepStrengthNs;
-  if (just_overtaken) return;
-  commands_.set_strength(wanted);
-  offered_strength_ = wanted;
 }
 
 void ControlService::activate_if_isolated() {

@@ -36,8 +36,8 @@ namespace swiftlet::services {
 // reports both.
 //
 // Threads: the thread of the IMU subscription runs the inner loop and publishes the command before its
-// callback returns. Poses, missions, trajectories and controller states have a thread each; the other topics
-// share one. run() is the telemetry thread. In lockstep the inner loop runs in the thread that receives the
+// callback returns. Poses and rotor speeds, and missions, trajectories and controller states have one each; the other topics
+// share one: all of these serve every vehicle of the process. run() is the telemetry thread. In lockstep the inner loop runs in the thread that receives the
 // last sample of a step.
 class ControlService {
  public:
@@ -73,7 +73,6 @@ class ControlService {
   void answer(const VehicleSample& sample, Role role);
   void report(std::int64_t stamp_ns);
   void activate_if_isolated();
-  void update_strength();
   bool is_realtime() const;
   template <class Message>
   static void note(Arrivals& arrivals, const Message& message);
@@ -81,6 +80,7 @@ class ControlService {
   std::string source_conflict() const;
   void publish_pending_stop(const StreamAges& ages);
   void on_vehicle_info(const comms::msg::VehicleInfo& message);
+  void refuse_vehicle(const std::string& why);
   void adopt_levels();
   template <class Message>
   std::function<void(const Message&)> deliver_to_worker(void (CommandServer::*take)(const Message&));
@@ -115,21 +115,18 @@ class ControlService {
   const int rotor_count_;
   const std::optional<plant::ControlLevel> wanted_level_;
   std::atomic<std::uint8_t> reported_levels_{
-      0};                                  // by vehicle_info, as ControlLevels::bits(); 0: not known yet
-  std::uint8_t adopted_levels_ = 0;        // used by the thread of run() only
+      0};                            // by vehicle_info, as ControlLevels::bits(); 0: not known yet
+  std::uint8_t adopted_levels_ = 0;  // used by the thread of run() only
+  std::atomic<bool> refused_vehicle_{false};
   std::atomic<bool> levels_known_{false};  // the inner loop has them, or will at its next step
   AnsweredSamples answered_samples_;
-  std::mutex
-      step_mutex_;  // of the threads of IMU samples and of the vehicle's estimates; one of both is refused
   Arrivals imu_arrivals_, pose_arrivals_, battery_arrivals_;
   boost::lockfree::spsc_queue<Heartbeat, boost::lockfree::capacity<64>> heartbeats_;
   runtime::LatestValue<Takeover> takeover_;  // to the thread of run()
   std::atomic<bool> active_{false};
-  std::atomic<std::uint32_t> wanted_strength_;    // DDS ownership strength of the commands
-  std::atomic<std::int64_t> stepped_down_ns_{0};  // monotonic
+  std::atomic<std::uint32_t> command_term_;  // of a command that is sent now; standby: that of its takeover
   std::atomic<std::int64_t> active_heard_ns_{0};  // last of another active one; monotonic
   std::atomic<bool> rival_{false};
-  std::uint32_t offered_strength_;  // used by the thread of run() only
 
   runtime::RealtimeThread imu_thread_, pose_thread_, rotor_speed_thread_;
   runtime::Worker worker_;  // checks plans and designs gains

@@ -7,7 +7,7 @@ namespace {
 
 // A term consists of the count of takeovers (16 bits), the failover priority (10 bits) and six bits of the
 // controller's number. Of two controllers that take over at once, the one of higher priority has the higher
-// term; equal terms are very unlikely. The term is also the DDS ownership strength of the commands.
+// term; equal terms are very unlikely.
 constexpr unsigned kPriorityShift = 6;
 constexpr unsigned kCountShift = 16;
 constexpr std::uint32_t kMaxCount = 0xffff;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "swiftlet/services/messages/convert.hpp"
+#include "swiftlet/services/messages/wire_version.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
@@ -52,18 +53,19 @@ Telemetry::Telemetry(InnerLoop& loop, CommandServer& command_server,
   open();
 }
 
-// Creates the latched publishers anew, without a last sample.
+// Creates the latched publishers anew, without a last sample. Those of long messages follow with the first one: from then on a thread
+// of Fast DDS wakes every millisecond.
 void Telemetry::open() {
   statuses_ = node_.publish(topics::kControlStatus);
   missions_ = node_.publish(topics::kMissionStatus);
-  flown_missions_ = node_.publish(topics::kFlownMission);
-  flown_trajectories_ = node_.publish(topics::kFlownTrajectory);
+  flown_missions_.reset();
+  flown_trajectories_.reset();
   published_mission_ = 0;
   published_trajectory_ = 0;
 }
 
-void Telemetry::set_streams(const StreamAges& ages, const std::string& source_conflict) {
-  ages_ = ages;
+void Telemetry::set_conditions(bool realtime, const std::string& source_conflict) {
+  realtime_ = realtime;
   if (source_conflict_.empty() && !source_conflict.empty()) runtime::log_warning("{}", source_conflict);
   source_conflict_ = source_conflict;
 }
@@ -98,13 +100,15 @@ void Telemetry::publish_plan() {
   const std::uint64_t mission = last_.status.mission.id;
   if (mission != 0 && mission != published_mission_) {
     const comms::msg::Mission message = command_server_.mission(mission);
-    if (message.id() == mission) flown_missions_.publish(message);
+    if (!flown_missions_) flown_missions_ = node_.publish(topics::kFlownMission);
+    if (message.id() == mission) flown_missions_->publish(message);
     published_mission_ = mission;
   }
   const std::uint64_t trajectory = last_.status.mode == control::Mode::kTrajectory ? last_.trajectory_id : 0;
   if (trajectory != 0 && trajectory != published_trajectory_) {
     const comms::msg::Trajectory message = command_server_.trajectory(trajectory);
-    if (message.id() == trajectory) flown_trajectories_.publish(message);
+    if (!flown_trajectories_) flown_trajectories_ = node_.publish(topics::kFlownTrajectory);
+    if (message.id() == trajectory) flown_trajectories_->publish(message);
     published_trajectory_ = trajectory;
   }
 }
@@ -122,7 +126,10 @@ void Telemetry::take(const Snapshot& snapshot) {
   const bool mode_changed = now.mode != before.mode || now.reason != before.reason;
   const bool requests_changed = control::differ_in_state(snapshot.requests, last_.requests);
   const bool mission_changed = differ(now.mission, before.mission);
-  if (mission_changed) mission_end_ = is_over(now.mission.state) ? reason_text(now.reason) : "";
+  if (mission_changed) {
+    mission_end_code_ = static_cast<std::uint8_t>(now.reason);
+    mission_end_ = is_over(now.mission.state) ? reason_text(now.reason) : "";
+  }
   if (mode_changed) runtime::log_info("{}: {}", control::to_string(now.mode), reason_text(now.reason));
   if (now.has_pose != before.has_pose) {
     if (now.has_pose) {
@@ -188,9 +195,11 @@ const DelayMonitor::Report& Telemetry::update_delay() {
 void Telemetry::publish_status() {
   const control::Status& status = last_.status;
   comms::msg::ControlStatus message;
+  message.wire_version(comms::kWireVersion);
   message.stamp_ns(last_.stamp_ns);
   message.sequence_number(++status_count_);
   message.mode(static_cast<std::uint8_t>(status.mode));
+  message.reason_code(static_cast<std::uint8_t>(status.reason));
   message.reason() = reason_text(status.reason);
   message.airborne(status.airborne);
   // The controller's own age of the pose stands still while no IMU sample arrives.
@@ -251,6 +260,7 @@ void Telemetry::publish_mission() {
   message.state(static_cast<std::uint8_t>(mission.state));
   message.item_index(static_cast<std::uint32_t>(std::max(mission.item_index, 0)));
   message.item_count(static_cast<std::uint32_t>(std::max(mission.item_count, 0)));
+  message.reason_code(mission_end_code_);
   message.reason() = mission_end_;
   missions_.publish(message);
   mission_due_ns_ = runtime::monotonic_ns() + kMissionPeriodNs;

@@ -26,11 +26,10 @@ class Telemetry {
   // Publishes what is new or due. Call periodically from one thread.
   void publish_due();
 
-  // Sets whether the flight threads have real-time scheduling.
-  void set_realtime(bool realtime) { realtime_ = realtime; }
-  // Sets what control_status reports of the streams. source_conflict: a sentence or empty; logged when it
-  // begins.
-  void set_streams(const StreamAges& ages, const std::string& source_conflict);
+  // What control_status reports. realtime: whether the flight threads have real-time scheduling. source_conflict: a sentence or
+  // empty; logged when it begins.
+  void set_ages(const StreamAges& ages) { ages_ = ages; }
+  void set_conditions(bool realtime, const std::string& source_conflict);
   // A stop request that is accepted and commanded, but that no IMU sample has let the inner loop evaluate:
   // control_status shows it.
   void set_unconfirmed_stop(const std::optional<control::RequestKey>& stop);
@@ -70,8 +69,9 @@ class Telemetry {
   DelayMonitor delay_monitor_;
 
   Snapshot last_;
-  bool saturated_ = false;   // since the last control_status
-  std::string mission_end_;  // why the last mission ended
+  bool saturated_ = false;             // since the last control_status
+  std::uint8_t mission_end_code_ = 0;  // why the last mission ended
+  std::string mission_end_;
   std::int64_t status_due_ns_ = 0;
   std::int64_t mission_due_ns_ = 0;
   std::uint64_t sampled_count_ = 0;
@@ -84,8 +84,8 @@ class Telemetry {
   comms::Publisher<comms::msg::Reference> references_;
   comms::Publisher<comms::msg::ControlStatus> statuses_;
   comms::Publisher<comms::msg::MissionStatus> missions_;
-  comms::Publisher<comms::msg::Mission> flown_missions_;
-  comms::Publisher<comms::msg::Trajectory> flown_trajectories_;
+  std::optional<comms::Publisher<comms::msg::Mission>> flown_missions_;
+  std::optional<comms::Publisher<comms::msg::Trajectory>> flown_trajectories_;
   comms::Publisher<comms::msg::CommandAck> acks_;
 };
 

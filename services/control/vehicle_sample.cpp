@@ -15,8 +15,8 @@ VehicleSample converted(const Message& message) {
     sample.sequence = message.sequence_number();
     sample.body_rates_frd.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
-  return {sample, comms::obeyed_command(message), message.mocap_sequence_number(),
-          message.battery_sequence_number(), message.rotor_speeds_sequence_number()};
+  return {sample, comms::from_message(message.obeyed()), message.lockstep().mocap_pose(),
+          message.lockstep().battery(), message.lockstep().rotor_speeds()};
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/throttled_warning.hpp"
+#include "swiftlet/services/messages/wire_version.hpp"
 
 namespace swiftlet::comms {
 
@@ -22,7 +23,7 @@ struct ReceivedSample {
 
 // Generated code does not catch all exceptions of the decoder. A byte other than 0 or 1 in a
 // boolean is enough to throw one, and in a middleware thread it would end the process. This class drops such
-// a sample and logs a line. Readers take samples into a ReceivedSample.
+// a sample and logs a line. Readers take samples into a ReceivedSample. Of a message of another wire version only that is set; its payload is dropped too.
 template <class PubSubType>
 class CheckedTypeSupport final : public PubSubType {
  public:
@@ -30,8 +31,12 @@ class CheckedTypeSupport final : public PubSubType {
 
   bool deserialize(PayloadArgument payload, void* data) override {
     Sample& sample = *static_cast<Sample*>(data);
+    const rtps::SerializedPayload_t& bytes = content_of(payload);
+    if constexpr (StatesWireVersion<typename PubSubType::type>::value) {
+      const auto version = wire_version_of(bytes.data, bytes.length);
+      if (version && *version != kWireVersion) return take_foreign(*version, sample);
+    }
     if (sample.raw) {
-      const rtps::SerializedPayload_t& bytes = content_of(payload);
       sample.payload.assign(bytes.data, bytes.data + bytes.length);
       return true;
     }
@@ -45,6 +50,16 @@ class CheckedTypeSupport final : public PubSubType {
   }
 
  private:
+  bool take_foreign(std::uint32_t version, Sample& sample) {
+    if (sample.raw) {
+      note(fault_of_wire_version(version, "its sender").c_str());
+      return false;
+    }
+    sample.message = {};
+    sample.message.wire_version(version);
+    return true;
+  }
+
   void note(const char* what) {
     Fault fault;
     std::snprintf(fault.text, sizeof fault.text, "the payload is not a message of this type: %s", what);

@@ -83,8 +83,11 @@ dds::Topic* topic_in(ParticipantSession& session, const std::string& vehicle, co
 template <class Impl, class T>
 class DdsWriter final : public Writer, private Endpoint {
  public:
-  DdsWriter(std::shared_ptr<Impl> node, std::string vehicle, const Topic<T>& topic, std::uint32_t strength)
-      : node_(std::move(node)), vehicle_(std::move(vehicle)), topic_(topic), strength_(strength) {
+  DdsWriter(std::shared_ptr<Impl> node, std::string vehicle, const Topic<T>& topic)
+      : node_(std::move(node)),
+        vehicle_(std::move(vehicle)),
+        topic_(topic),
+        own_readers_(node_->own_readers(wire_name(vehicle_, topic_.name))) {
     node_->add(this);
   }
   ~DdsWriter() override { node_->remove(this); }
@@ -99,6 +102,7 @@ class DdsWriter final : public Writer, private Endpoint {
     }
     const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
     if (!writer) return false;
+    if (!is_reliable(topic_.qos) && !is_heard(*writer)) return true;
     if (topic_.qos == Qos::kRequest && ++unacknowledged_ > kKeptRequests)
       unacknowledged_ = wait_until_received(kReliableWriteTimeout) ? 1 : kKeptRequests;
     return comms::write(*writer, sample);
@@ -110,17 +114,6 @@ class DdsWriter final : public Writer, private Endpoint {
     return writer && succeeded(writer->wait_for_acknowledgments(duration(timeout)));
   }
 
-  void set_strength(std::uint32_t strength) override {
-    strength_ = strength;
-    const runtime::RealtimeScope scope = node_->realtime();
-    const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
-    if (!writer) return;
-    dds::DataWriterQos qos = writer->get_qos();
-    qos.ownership_strength().value = strength;
-    if (!succeeded(writer->set_qos(qos)))
-      runtime::log_error("the middleware refuses ownership strength {} of {}", strength, topic_.name);
-  }
-
   int matched() const override { return readers().current_count; }
   std::uint64_t changes() const override {
     const dds::PublicationMatchedStatus now = readers();
@@ -129,7 +122,7 @@ class DdsWriter final : public Writer, private Endpoint {
 
  private:
   void join(ParticipantSession& session) override {
-    dds::DataWriterQos qos = writer_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), strength_);
+    dds::DataWriterQos qos = writer_qos(topic_.qos);
     state_type_hash(qos, RosTypeHash<T>::value());
     dds::DataWriter* const writer =
         session.publisher->create_datawriter(topic_in<T>(session, vehicle_, topic_.name), qos);
@@ -149,6 +142,12 @@ class DdsWriter final : public Writer, private Endpoint {
     writer->clear_history(nullptr);
     session.publisher->delete_datawriter(writer);
   }
+  // By another participant.
+  bool is_heard(dds::DataWriter& writer) const {
+    dds::PublicationMatchedStatus status;
+    writer.get_publication_matched_status(status);
+    return status.current_count > own_readers_->load(std::memory_order_relaxed);
+  }
   dds::PublicationMatchedStatus readers() const {
     const runtime::RealtimeScope scope = node_->realtime();
     const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
@@ -160,7 +159,7 @@ class DdsWriter final : public Writer, private Endpoint {
   std::shared_ptr<Impl> node_;
   const std::string vehicle_;
   const Topic<T> topic_;
-  std::atomic<std::uint32_t> strength_;
+  const std::shared_ptr<std::atomic<int>> own_readers_;
   GuardedPointer<dds::DataWriter> writer_;
   std::atomic<std::uint64_t> changes_before_{0};  // in ended sessions
   int unacknowledged_ = 0;                        // at most; requests, with the one that is being written
@@ -182,6 +181,7 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
       : node_(std::move(node)),
         vehicle_(std::move(vehicle)),
         topic_(topic),
+        own_readers_(node_->own_readers(wire_name(vehicle_, topic_.name))),
         delivery_(delivery),
         log_label_(runtime::LogLabel::current()),
         on_fault_(std::move(on_fault)),
@@ -223,17 +223,22 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
 
   void join(ParticipantSession& session) override {
     open(true);
-    dds::DataReaderQos qos = reader_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), delivery_);
+    own_participant_ = session.participant->guid().guidPrefix;
+    dds::DataReaderQos qos = reader_qos(topic_.qos);
     state_type_hash(qos, RosTypeHash<T>::value());
+    session.receive_in(delivery_, qos);
     dds::DataReader* const reader = session.subscriber->create_datareader(
         topic_in<T>(session, vehicle_, topic_.name), qos, this, dds::StatusMask::data_available());
     if (reader == nullptr) throw std::runtime_error(std::string("cannot subscribe to ") + topic_.name);
+    session.note_receiver(delivery_, *reader);
+    ++*own_readers_;
     reader_.give(reader);
   }
   void leave(ParticipantSession& session) override {
     dds::DataReader* const reader = reader_.take();
     if (reader == nullptr) return;
     open(false);
+    --*own_readers_;
     reader->set_listener(nullptr);
     session.subscriber->delete_datareader(reader);
   }
@@ -248,6 +253,7 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
     dds::SampleInfo info;
     while (open_ && !faulty_ && succeeded(reader->take_next_sample(&sample_, &info))) {
       if (!info.valid_data) continue;
+      if (info.sample_identity.writer_guid().guidPrefix == own_participant_) continue;
       if (source_ && !is_from_source(info)) continue;
       deliver(info);
     }
@@ -286,6 +292,7 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
   std::shared_ptr<Impl> node_;
   const std::string vehicle_;
   const Topic<T> topic_;
+  const std::shared_ptr<std::atomic<int>> own_readers_;
   const Delivery delivery_;
   const std::string log_label_;  // of the thread that subscribed
   const std::function<void(const std::string&)> on_fault_;
@@ -297,6 +304,7 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
   RawCallback raw_callback_;
   std::optional<SingleSource<SenderId>> source_;
   ReceivedSample<T> sample_;
+  rtps::GuidPrefix_t own_participant_;
   bool open_ = false;
   bool faulty_ = false;  // the callback threw an exception
 };
@@ -304,9 +312,9 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
 }  // namespace detail
 
 template <class T>
-Publisher<T> Node::publish(const Topic<T>& topic, std::uint32_t strength) {
-  return Publisher<T>(std::make_unique<detail::DdsWriter<Participant::Impl, T>>(participant_.impl_, vehicle_,
-                                                                                topic, strength));
+Publisher<T> Node::publish(const Topic<T>& topic) {
+  return Publisher<T>(
+      std::make_unique<detail::DdsWriter<Participant::Impl, T>>(participant_.impl_, vehicle_, topic));
 }
 
 template <class T>

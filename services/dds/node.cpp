@@ -98,7 +98,7 @@ void Node::on_peer(std::function<void(const PeerEvent&)> callback) {
 void Node::rejoin() { participant_.impl_->rejoin(); }
 
 #define SWIFTLET_INSTANTIATE(Name)                                                                          \
-  template Publisher<msg::Name> Node::publish(const Topic<msg::Name>&, std::uint32_t);                      \
+  template Publisher<msg::Name> Node::publish(const Topic<msg::Name>&);                                     \
   template Subscription Node::subscribe(const Topic<msg::Name>&, std::function<void(const msg::Name&)>,     \
                                         Delivery, std::optional<std::chrono::milliseconds>);                \
   template Subscription Node::subscribe_raw(const Topic<msg::Name>&, std::function<void(const RawSample&)>, \

@@ -34,9 +34,6 @@ struct NodeSettings {
   std::string network_key_file{};
   // Folder with the keys of DDS Security (io/security/security_folder.hpp). Empty: no security.
   std::string security{};
-  // Offer and request the topics' deadlines. False in lockstep, where time may stand still. A reader that
-  // requests a deadline does not match a writer that offers none.
-  bool deadlines = true;
   // Period of its announcements: kFixturePeriod for vehicle and motion capture.
   std::chrono::milliseconds announcement_period = kLivelinessPeriod;
   // SCHED_FIFO priority of all threads that hold locks of the middleware, 0: ordinary. A real-time thread that publishes or
@@ -89,13 +86,15 @@ struct PeerEvent {
   bool said_goodbye = false;  // if not alive: it ended cleanly; else it died or was cut off
 };
 
-// The thread that runs the callback.
+// The thread that runs the callback. Each has a socket of its own, so that no other message delays its samples, and serves all
+// subscriptions of the participant that name it, of any vehicle.
 enum class Delivery {
-  // One thread for all such subscriptions of the node.
-  kShared,
-  // A separate thread with a separate socket: no other message delays a sample.
-  kOwnThread,
+  kShared,  // requests, status, and what else is not named below
+  kSamples,  // what is answered at once: samples of the IMU, the truth at motion capture, commands at the vehicle
+  kSensors,  // poses and rotor speeds
+  kPlans,    // long messages, and what other controllers say of themselves
 };
+constexpr std::size_t kDeliveryCount = 4;
 
 // A sample as it came: its payload is not checked.
 struct RawSample {
@@ -114,7 +113,6 @@ class Writer {
   virtual bool wait_until_received(std::chrono::milliseconds timeout) = 0;
   virtual int matched() const = 0;
   virtual std::uint64_t changes() const = 0;
-  virtual void set_strength(std::uint32_t strength) = 0;
 };
 class Reader {
  public:
@@ -141,8 +139,6 @@ class Publisher {
   int matched() const { return writer_->matched(); }  // number of matched readers
   // Number of matches and unmatches of readers. A sample sent before the last one may not have reached all.
   std::uint64_t changes() const { return writer_->changes(); }
-  // Sets the ownership strength of an owned stream. Takes effect within milliseconds. Thread-safe.
-  void set_strength(std::uint32_t strength) { writer_->set_strength(strength); }
 
  private:
   std::unique_ptr<detail::Writer> writer_;
@@ -210,20 +206,19 @@ class Node {
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
-  // strength: ownership strength of an owned stream; readers receive the strongest live writer. Throws
-  // std::runtime_error.
+  // Throws std::runtime_error.
   template <class T>
-  Publisher<T> publish(const Topic<T>& topic, std::uint32_t strength = 0);
+  Publisher<T> publish(const Topic<T>& topic);
 
   // The callback runs in the thread that received the sample, once per sample, never concurrently. It must
-  // not block. source_silence: if given, the samples of only one process are delivered, that which was heard
+  // not block. What this participant publishes itself is not delivered. source_silence: if given, the samples of only one process are delivered, that which was heard
   // first, until it has been silent for this time. Throws std::runtime_error.
   template <class T>
   Subscription subscribe(const Topic<T>& topic, std::function<void(const T&)> callback,
                          Delivery delivery = Delivery::kShared,
                          std::optional<std::chrono::milliseconds> source_silence = std::nullopt);
 
-  // As subscribe(), for recorders. Requests no deadline of the topic.
+  // As subscribe(), for recorders.
   template <class T>
   Subscription subscribe_raw(const Topic<T>& topic, std::function<void(const RawSample&)> callback,
                              Delivery delivery = Delivery::kShared);

@@ -196,6 +196,13 @@ void Participant::Impl::remove(Endpoint* endpoint) {
   endpoints_.erase(std::remove(endpoints_.begin(), endpoints_.end(), endpoint), endpoints_.end());
 }
 
+std::shared_ptr<std::atomic<int>> Participant::Impl::own_readers(const std::string& wire_name) {
+  const std::lock_guard<std::mutex> lock(session_mutex_);
+  std::shared_ptr<std::atomic<int>>& count = own_readers_[wire_name];
+  if (count == nullptr) count = std::make_shared<std::atomic<int>>(0);
+  return count;
+}
+
 void Participant::Impl::rejoin_if_rediscovery_failed() {
   {
     const std::lock_guard<std::mutex> lock(peers_mutex_);

@@ -51,6 +51,8 @@ struct Participant::Impl final : public DiscoveryListener {
   std::vector<std::string> watched_vehicles() const;
   void add(Endpoint* endpoint);
   void remove(Endpoint* endpoint);
+  // Number of the readers of a topic that this participant has.
+  std::shared_ptr<std::atomic<int>> own_readers(const std::string& wire_name);
   // Leaves the domain and joins it again. Returns false if joining failed this time or the previous time.
   bool rejoin();
 
@@ -63,7 +65,6 @@ struct Participant::Impl final : public DiscoveryListener {
 
   // Of a thread that is about to take locks of the middleware, or those of this class.
   runtime::RealtimeScope realtime() const { return runtime::RealtimeScope(settings.realtime_priority); }
-  int deadline_ms(int of_topic) const { return settings.deadlines ? of_topic : 0; }
 
   const NodeSettings settings;
 
@@ -130,11 +131,12 @@ struct Participant::Impl final : public DiscoveryListener {
   std::string in_use_by(const std::string& vehicle, const std::string& topic, const Peer& source) const;
 
   const std::shared_ptr<DatagramGuard> guard_;
-  std::mutex session_mutex_;  // guards session_, announcement_changed_, endpoints_ and nodes_of_
+  std::mutex session_mutex_;  // guards session_, announcement_changed_, endpoints_, nodes_of_, own_readers_
   std::unique_ptr<ParticipantSession> session_;
   bool announcement_changed_ = false;  // since session_ announced it
   std::vector<Endpoint*> endpoints_;
   std::map<std::string, int> nodes_of_;  // number of the nodes that serve a vehicle
+  std::map<std::string, std::shared_ptr<std::atomic<int>>> own_readers_;  // by wire name
 
   mutable std::mutex peers_mutex_;  // guards all below; locked after session_mutex_
   Announcement announcement_;       // of this process; changed with both mutexes locked

@@ -137,4 +137,24 @@ dds::Topic* ParticipantSession::topic(const std::string& wire_name, const dds::T
   return found;
 }
 
+// kShared: the socket of the participant. The first reader of any other delivery opens a socket, which Fast DDS keeps until the
+// participant ends; those that follow name its addresses.
+void ParticipantSession::receive_in(Delivery delivery, dds::DataReaderQos& qos) const {
+  if (delivery == Delivery::kShared) return;
+  const rtps::LocatorList_t& opened = receivers_[static_cast<std::size_t>(delivery)];
+  if (opened.empty()) {
+    qos.properties().properties().emplace_back("fastdds.unique_network_flows", "");
+  } else {
+    for (const rtps::Locator_t& address : opened) qos.endpoint().unicast_locator_list.push_back(address);
+  }
+}
+
+void ParticipantSession::note_receiver(Delivery delivery, const dds::DataReader& reader) {
+  rtps::LocatorList_t& opened = receivers_[static_cast<std::size_t>(delivery)];
+  if (delivery == Delivery::kShared || !opened.empty()) return;
+  eprosima::fastdds::rtps::LocatorList addresses;
+  if (!succeeded(reader.get_listening_locators(addresses))) return;
+  for (const rtps::Locator_t& address : addresses) opened.push_back(address);
+}
+
 }  // namespace swiftlet::comms

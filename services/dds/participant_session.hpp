@@ -2,6 +2,7 @@
 // rejoining it.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <map>
@@ -19,6 +20,7 @@
 
 #include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 #include "swiftlet/services/dds/discovery/announcement.hpp"
+#include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::comms {
@@ -47,6 +49,11 @@ class ParticipantSession {
   eprosima::fastdds::dds::Topic* topic(const std::string& wire_name,
                                        const eprosima::fastdds::dds::TypeSupport& type);
 
+  // Before a reader is created with this QoS: gives it the socket and the thread of its delivery. After: remembers those of
+  // the first one. Not thread-safe.
+  void receive_in(Delivery delivery, eprosima::fastdds::dds::DataReaderQos& qos) const;
+  void note_receiver(Delivery delivery, const eprosima::fastdds::dds::DataReader& reader);
+
   // Announces a change to the peers. Does not wait until next_announcement().
   void announce(const Announcement& announcement);
   // When the next change may be announced: with a discovery server kAnnouncementSpacing after the last one.
@@ -63,6 +70,7 @@ class ParticipantSession {
   const std::chrono::milliseconds spacing_;
   std::chrono::steady_clock::time_point next_announcement_{};
   std::map<std::string, eprosima::fastdds::dds::Topic*> topics_;
+  std::array<rtps::LocatorList_t, kDeliveryCount> receivers_;  // by Delivery; empty: none yet
 };
 
 // A writer or reader that outlives a session.

@@ -522,6 +522,8 @@ msg::RequestStatus to_message(const control::RequestStatus& in) {
   out.kind(static_cast<std::uint8_t>(in.kind));
   out.state(static_cast<std::uint8_t>(in.state));
   out.progress(in.progress);
+  out.ended_by(kind_of_end(in));
+  if (in.state == control::RequestState::kAborted) out.reason_code(static_cast<std::uint8_t>(in.reason));
   out.result() = control::result_of(in);
   return out;
 }

@@ -43,9 +43,8 @@ struct ControllerReport {
 // Validates in and converts it into out. On a fault, out is unchanged. The functions of samples do not
 // allocate.
 Fault from_message(const msg::Imu& in, plant::ImuSample& out);
-plant::ObeyedCommand obeyed_command(const msg::Imu& in);
+plant::ObeyedCommand from_message(const msg::ObeyedCommand& in);
 Fault from_message(const msg::VehicleOdometry& in, plant::OdometrySample& out);
-plant::ObeyedCommand obeyed_command(const msg::VehicleOdometry& in);
 Fault from_message(const msg::MocapPose& in,
                    plant::PoseSample& out);  // ignores the pose of an untracked sample
 Fault from_message(const msg::Battery& in, plant::BatterySample& out);
@@ -64,9 +63,8 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out);
 Fault from_message(const msg::ControlSettings& in, control::SettingsRequest& out);
 
 msg::Imu to_message(const plant::ImuSample& in);
-void set_obeyed_command(const plant::ObeyedCommand& obeyed, msg::Imu& in);  // into an IMU sample
+msg::ObeyedCommand to_message(const plant::ObeyedCommand& in);
 msg::VehicleOdometry to_message(const plant::OdometrySample& in);
-void set_obeyed_command(const plant::ObeyedCommand& obeyed, msg::VehicleOdometry& in);
 msg::MocapPose to_message(const plant::PoseSample& in);
 msg::Battery to_message(const plant::BatterySample& in);
 msg::RotorSpeeds to_message(const plant::RotorSpeedSample& in);
@@ -88,5 +86,7 @@ msg::Trajectory to_message(const control::Trajectory& in);
 msg::ControlSettings to_message(const control::SettingsRequest& in);
 msg::ControlGains to_message(const control::ControlGains& in);
 msg::RequestStatus to_message(const control::RequestStatus& in);
+// RequestStatus::ended_by, and likewise in ControllerState.
+std::uint8_t kind_of_end(const control::RequestStatus& in);
 
 }  // namespace swiftlet::comms

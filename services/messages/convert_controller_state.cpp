@@ -25,7 +25,99 @@ Floats floats(const control::Polynomial& in) {
   return out;
 }
 
+// What canceled a request, as it is told. An end by something that is no request of a client is told as none.
+control::Event event_of_end(std::uint8_t kind) {
+  using namespace msg::RequestStatus_Constants;
+  if (kind == KIND_SETPOINT) return control::Event::kSetpoint;
+  control::Event event = control::Event::kPlanUnknown;
+  control::event_of(static_cast<control::RequestKind>(kind), event);
+  return event;
+}
+
+// The enumerators go over the wire by these numbers.
+static_assert(static_cast<std::uint8_t>(control::Reason::kStarted) ==
+              msg::ControlStatus_Constants::REASON_STARTED);
+static_assert(static_cast<std::uint8_t>(control::Reason::kRequested) ==
+              msg::ControlStatus_Constants::REASON_REQUESTED);
+static_assert(static_cast<std::uint8_t>(control::Reason::kTakeOffCompleted) ==
+              msg::ControlStatus_Constants::REASON_TAKE_OFF_COMPLETED);
+static_assert(static_cast<std::uint8_t>(control::Reason::kMissionCompleted) ==
+              msg::ControlStatus_Constants::REASON_MISSION_COMPLETED);
+static_assert(static_cast<std::uint8_t>(control::Reason::kTrajectoryCompleted) ==
+              msg::ControlStatus_Constants::REASON_TRAJECTORY_COMPLETED);
+static_assert(static_cast<std::uint8_t>(control::Reason::kLanded) ==
+              msg::ControlStatus_Constants::REASON_LANDED);
+static_assert(static_cast<std::uint8_t>(control::Reason::kLandedWithoutPosition) ==
+              msg::ControlStatus_Constants::REASON_LANDED_WITHOUT_POSITION);
+static_assert(static_cast<std::uint8_t>(control::Reason::kSetpointsCame) ==
+              msg::ControlStatus_Constants::REASON_SETPOINTS_CAME);
+static_assert(static_cast<std::uint8_t>(control::Reason::kSetpointsStopped) ==
+              msg::ControlStatus_Constants::REASON_SETPOINTS_STOPPED);
+static_assert(static_cast<std::uint8_t>(control::Reason::kBatteryLow) ==
+              msg::ControlStatus_Constants::REASON_BATTERY_LOW);
+static_assert(static_cast<std::uint8_t>(control::Reason::kBatteryCritical) ==
+              msg::ControlStatus_Constants::REASON_BATTERY_CRITICAL);
+static_assert(static_cast<std::uint8_t>(control::Reason::kBatterySilent) ==
+              msg::ControlStatus_Constants::REASON_BATTERY_SILENT);
+static_assert(static_cast<std::uint8_t>(control::Reason::kOutsideFence) ==
+              msg::ControlStatus_Constants::REASON_OUTSIDE_FENCE);
+static_assert(static_cast<std::uint8_t>(control::Reason::kNoPose) ==
+              msg::ControlStatus_Constants::REASON_NO_POSE);
+static_assert(static_cast<std::uint8_t>(control::Reason::kPoseIsBack) ==
+              msg::ControlStatus_Constants::REASON_POSE_IS_BACK);
+static_assert(static_cast<std::uint8_t>(control::Reason::kDescentTimedOut) ==
+              msg::ControlStatus_Constants::REASON_DESCENT_TIMED_OUT);
+static_assert(static_cast<std::uint8_t>(control::Reason::kTippedOver) ==
+              msg::ControlStatus_Constants::REASON_TIPPED_OVER);
+static_assert(static_cast<std::uint8_t>(control::Reason::kImuUnusable) ==
+              msg::ControlStatus_Constants::REASON_IMU_UNUSABLE);
+static_assert(static_cast<std::uint8_t>(control::Reason::kImuGap) ==
+              msg::ControlStatus_Constants::REASON_IMU_GAP);
+static_assert(static_cast<std::uint8_t>(control::Reason::kGroundLinkLost) ==
+              msg::ControlStatus_Constants::REASON_GROUND_LINK_LOST);
+static_assert(static_cast<std::uint8_t>(control::Reason::kImpact) ==
+              msg::ControlStatus_Constants::REASON_IMPACT);
+static_assert(static_cast<std::uint8_t>(control::Reason::kTakeoffInconsistent) ==
+              msg::ControlStatus_Constants::REASON_TAKEOFF_INCONSISTENT);
+static_assert(static_cast<std::uint8_t>(control::Reason::kPoseJumped) ==
+              msg::ControlStatus_Constants::REASON_POSE_JUMPED);
+static_assert(static_cast<std::uint8_t>(control::Reason::kPlanUnknown) ==
+              msg::ControlStatus_Constants::REASON_PLAN_UNKNOWN);
+static_assert(static_cast<std::uint8_t>(control::Reason::kEngagedInFlight) ==
+              msg::ControlStatus_Constants::REASON_ENGAGED_IN_FLIGHT);
+static_assert(static_cast<std::uint8_t>(control::Reason::kSetpointsViolatedFence) ==
+              msg::ControlStatus_Constants::REASON_SETPOINTS_VIOLATED_FENCE);
+static_assert(static_cast<std::uint8_t>(control::Reason::kMissionPaused) ==
+              msg::ControlStatus_Constants::REASON_MISSION_PAUSED);
+static_assert(static_cast<std::uint8_t>(control::Reason::kVehicleFault) ==
+              msg::ControlStatus_Constants::REASON_VEHICLE_FAULT);
+static_assert(static_cast<std::uint8_t>(control::Reason::kRotorsNotRunning) ==
+              msg::ControlStatus_Constants::REASON_ROTORS_NOT_RUNNING);
+static_assert(control::kReasonCount == 29);
+static_assert(static_cast<std::uint8_t>(control::Phase::kGround) ==
+              msg::ControllerState_Constants::PHASE_ON_GROUND);
+static_assert(static_cast<std::uint8_t>(control::Phase::kSpoolUp) ==
+              msg::ControllerState_Constants::PHASE_SPOOL_UP);
+static_assert(static_cast<std::uint8_t>(control::Phase::kPath) ==
+              msg::ControllerState_Constants::PHASE_ON_PATH);
+static_assert(static_cast<std::uint8_t>(control::Phase::kSink) ==
+              msg::ControllerState_Constants::PHASE_FINAL_DESCENT);
+static_assert(static_cast<std::uint8_t>(control::MissionPause::kNone) ==
+              msg::ControllerState_Constants::PAUSE_NONE);
+static_assert(static_cast<std::uint8_t>(control::MissionPause::kAway) ==
+              msg::ControllerState_Constants::PAUSE_AWAY);
+static_assert(static_cast<std::uint8_t>(control::MissionPause::kReturning) ==
+              msg::ControllerState_Constants::PAUSE_RETURNING);
+
 }  // namespace
+
+std::uint8_t kind_of_end(const control::RequestStatus& request) {
+  using namespace msg::RequestStatus_Constants;
+  if (request.state != control::RequestState::kCanceled) return KIND_NONE;
+  if (request.ended_by == control::Event::kSetpoint) return KIND_SETPOINT;
+  const auto kind = control::kind_of(request.ended_by);
+  return kind ? static_cast<std::uint8_t>(*kind) : KIND_NONE;
+}
 
 Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
   using namespace msg;
@@ -35,7 +127,7 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
       .at_most("role", in.role(), ControllerState_Constants::ACTIVE)
       .at_most("mode", in.mode(), ControlStatus_Constants::MODE_STOPPED)
       .at_most("reason", in.reason(), control::kReasonCount - 1)
-      .at_most("phase", in.phase(), static_cast<std::uint64_t>(control::Phase::kSink))
+      .at_most("phase", in.phase(), ControllerState_Constants::PHASE_FINAL_DESCENT)
       .at_least("path_duration_s", in.path_duration_s(), 0.0)
       .finite("path_x", in.path_x())
       .finite("path_y", in.path_y())
@@ -49,7 +141,7 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
       .at_most("mission_state", in.mission_state(), MissionStatus_Constants::PAUSED)
       .at_most("item_count", in.item_count(), control::kMaxMissionItems)
       .at_most("item_index", in.item_index(), in.item_count())
-      .at_most("pause", in.pause(), static_cast<std::uint64_t>(control::MissionPause::kReturning))
+      .at_most("pause", in.pause(), ControllerState_Constants::PAUSE_RETURNING)
       .at_least("paused_path_duration_s", in.paused_path_duration_s(), 0.0)
       .finite("paused_path_x", in.paused_path_x())
       .finite("paused_path_y", in.paused_path_y())
@@ -67,7 +159,6 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
       .per_rotor("throttle", in.rotor_count(), in.throttle(), 0.0, 1.0);
   for (std::size_t i = 0; i < control::kRememberedRequests; ++i) {
     check.at_most("request_states", in.request_states()[i], RequestStatus_Constants::ABORTED)
-        .at_most("request_ended_by", in.request_ended_by()[i], control::kEventCount - 1)
         .at_most("request_reasons", in.request_reasons()[i], control::kReasonCount - 1)
         .within("request_progress", in.request_progress()[i], 0.0, 1.0);
   }
@@ -125,7 +216,7 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
     state.requests[i] = {{in.request_clients()[i], in.request_ids()[i]},
                          static_cast<control::RequestKind>(in.request_kinds()[i]),
                          static_cast<control::RequestState>(in.request_states()[i]),
-                         static_cast<control::Event>(in.request_ended_by()[i]),
+                         event_of_end(in.request_ended_by()[i]),
                          static_cast<control::Reason>(in.request_reasons()[i]),
                          in.request_progress()[i]};
   }
@@ -225,7 +316,7 @@ msg::ControllerState to_message(const ControllerReport& in) {
     out.request_ids()[i] = request.key.id;
     out.request_kinds()[i] = static_cast<std::uint8_t>(request.kind);
     out.request_states()[i] = static_cast<std::uint8_t>(request.state);
-    out.request_ended_by()[i] = static_cast<std::uint8_t>(request.ended_by);
+    out.request_ended_by()[i] = kind_of_end(request);
     out.request_reasons()[i] = static_cast<std::uint8_t>(request.reason);
     out.request_progress()[i] = static_cast<float>(request.progress);
   }

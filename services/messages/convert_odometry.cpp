@@ -5,31 +5,22 @@
 #include "swiftlet/services/messages/wire.hpp"
 
 namespace swiftlet::comms {
-namespace {
 
 using namespace wire;
 
-// The report of the last obeyed command, in Imu or VehicleOdometry.
-template <class Message>
-plant::ObeyedCommand read_obeyed(const Message& in) {
-  const bool reported = in.commands() != msg::Imu_Constants::COMMANDS_UNREPORTED;
-  return {reported, in.commands() == msg::Imu_Constants::COMMANDS_OBEYED, in.command_term(),
-          in.command_stamp_ns()};
+plant::ObeyedCommand from_message(const msg::ObeyedCommand& in) {
+  using namespace msg::ObeyedCommand_Constants;
+  return {in.state() != UNREPORTED, in.state() == OBEYED, in.term(), in.stamp_ns()};
 }
 
-template <class Message>
-void write_obeyed(const plant::ObeyedCommand& obeyed, Message& in) {
-  using namespace msg::Imu_Constants;
-  in.commands(!obeyed.reported ? COMMANDS_UNREPORTED : obeyed.any ? COMMANDS_OBEYED : COMMANDS_NONE);
-  in.command_term(obeyed.term);
-  in.command_stamp_ns(obeyed.stamp_ns);
+msg::ObeyedCommand to_message(const plant::ObeyedCommand& in) {
+  using namespace msg::ObeyedCommand_Constants;
+  msg::ObeyedCommand out;
+  out.state(!in.reported ? UNREPORTED : in.any ? OBEYED : NONE);
+  out.term(in.term);
+  out.stamp_ns(in.stamp_ns);
+  return out;
 }
-
-}  // namespace
-
-plant::ObeyedCommand obeyed_command(const msg::Imu& in) { return read_obeyed(in); }
-
-void set_obeyed_command(const plant::ObeyedCommand& obeyed, msg::Imu& in) { write_obeyed(obeyed, in); }
 
 Fault from_message(const msg::VehicleOdometry& in, plant::OdometrySample& out) {
   Check check;
@@ -79,12 +70,6 @@ msg::VehicleOdometry to_message(const plant::OdometrySample& in) {
   out.position_source(in.fuses_mocap ? msg::VehicleOdometry_Constants::POSITION_OF_MOTION_CAPTURE
                                      : msg::VehicleOdometry_Constants::POSITION_OF_OWN_SENSORS);
   return out;
-}
-
-plant::ObeyedCommand obeyed_command(const msg::VehicleOdometry& in) { return read_obeyed(in); }
-
-void set_obeyed_command(const plant::ObeyedCommand& obeyed, msg::VehicleOdometry& in) {
-  write_obeyed(obeyed, in);
 }
 
 }  // namespace swiftlet::comms

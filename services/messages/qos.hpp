@@ -7,7 +7,6 @@ namespace swiftlet::comms {
 
 enum class Qos {
   kStream,        // best effort, keep last 1, volatile, preallocated
-  kOwnedStream,   // stream with exclusive ownership: readers receive the strongest live writer
   kTelemetry,     // best effort, keep last 1, volatile
   kLatched,       // reliable, transient local, keep last 1
   kLatchedLarge,  // latched, for long messages: allocates memory as needed

@@ -41,17 +41,15 @@ struct Topic {
   using Message = T;
   const char* name;
   Qos qos;
-  int deadline_ms = 0;  // of owned streams: silence before readers switch to the next strongest writer
 };
 
 namespace topics {
 inline constexpr Topic<msg::Imu> kImu{"imu", Qos::kStream};
 inline constexpr Topic<msg::VehicleOdometry> kVehicleOdometry{"vehicle_odometry", Qos::kStream};
-inline constexpr Topic<msg::ActuatorCommand> kActuatorCommand{"actuator_command", Qos::kOwnedStream, 50};
-inline constexpr Topic<msg::RatesSetpoint> kRatesSetpoint{"rates_setpoint", Qos::kOwnedStream, 50};
-inline constexpr Topic<msg::AttitudeSetpoint> kAttitudeSetpoint{"attitude_setpoint", Qos::kOwnedStream, 50};
-inline constexpr Topic<msg::TrajectorySetpoint> kTrajectorySetpoint{"trajectory_setpoint", Qos::kOwnedStream,
-                                                                    50};
+inline constexpr Topic<msg::ActuatorCommand> kActuatorCommand{"actuator_command", Qos::kStream};
+inline constexpr Topic<msg::RatesSetpoint> kRatesSetpoint{"rates_setpoint", Qos::kStream};
+inline constexpr Topic<msg::AttitudeSetpoint> kAttitudeSetpoint{"attitude_setpoint", Qos::kStream};
+inline constexpr Topic<msg::TrajectorySetpoint> kTrajectorySetpoint{"trajectory_setpoint", Qos::kStream};
 inline constexpr Topic<msg::ControllerState> kControllerState{"controller_state", Qos::kStream};
 inline constexpr Topic<msg::MocapPose> kMocapPose{"mocap_pose", Qos::kStream};
 inline constexpr Topic<msg::RotorSpeeds> kRotorSpeeds{"rotor_speeds", Qos::kStream};

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "swiftlet/io/mocap/room.hpp"
-#include "swiftlet/services/dds/clocks/clock_client.hpp"
+#include "swiftlet/services/clocks/clock_client.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/mocap/frame_thread.hpp"

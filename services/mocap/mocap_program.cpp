@@ -83,12 +83,10 @@ void check_simulation(const Options& options) {
     throw std::invalid_argument("--frame-clock host: not with --clock lockstep");
 }
 
-comms::NodeSettings network_of(const Options& options, runtime::Clock clock,
-                               const runtime::RealtimeSettings& realtime) {
+comms::NodeSettings network_of(const Options& options, const runtime::RealtimeSettings& realtime) {
   comms::NodeSettings network = options.node;
   network.announcement_period = comms::kFixturePeriod;
   network.hears_of_all = false;
-  network.deadlines = clock == runtime::Clock::kRealtime;
   network.realtime_priority = realtime.thread_priority();
   network.source_of = comms::topics::kMocapPose.name;
   return network;
@@ -105,7 +103,7 @@ void simulate(const Options& options) {
   const runtime::Logging logging("mocap", options.process.log);
   settings.realtime = runtime::prepare_realtime(options.process.realtime, settings.clock);
 
-  const comms::NodeSettings network = network_of(options, settings.clock, settings.realtime);
+  const comms::NodeSettings network = network_of(options, settings.realtime);
   comms::Participant participant(network, names);
   const comms::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
   std::vector<std::unique_ptr<runtime::HostedVehicle>> vehicles;
@@ -152,7 +150,7 @@ void capture(const Options& options) {
       runtime::prepare_realtime(options.process.realtime, runtime::Clock::kRealtime);
   FrameThread frames(mocap::open_source(room), realtime, [&stop] { stop.request(); });
 
-  const comms::NodeSettings network = network_of(options, runtime::Clock::kRealtime, realtime);
+  const comms::NodeSettings network = network_of(options, realtime);
   comms::Participant participant(network, names);
   const comms::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
   std::vector<std::unique_ptr<runtime::HostedVehicle>> vehicles;

@@ -20,7 +20,7 @@ MotionCaptureSimulator::MotionCaptureSimulator(const comms::Participant& partici
   comms::log_peers(node_);
   truth_ = node_.subscribe<comms::msg::GroundTruth>(
       comms::topics::kGroundTruth, [this](const auto& message) { on_truth(message); },
-      comms::Delivery::kOwnThread, comms::kSourceSilence);
+      comms::Delivery::kSamples, comms::kSourceSilence);
 }
 
 void MotionCaptureSimulator::log_end() {

@@ -9,7 +9,7 @@
 #include "swiftlet/plant/simulation/links/mocap_path.hpp"
 #include "swiftlet/plant/simulation/mocap.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
-#include "swiftlet/services/dds/clocks/clock_client.hpp"
+#include "swiftlet/services/clocks/clock_client.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/runtime/clock.hpp"

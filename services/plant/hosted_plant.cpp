@@ -19,11 +19,12 @@ AutopilotLoopSettings autopilot_loop_settings(const PlantSettings& settings) {
 }  // namespace
 
 HostedPlant::HostedPlant(const comms::Participant& participant, const std::string& name,
-                         const PlantSettings& settings)
+                         const PlantSettings& settings, RealtimeLoop& loop)
     : HostedVehicle(name),
       node_(participant, name, [this](const std::string& fault) { fail(fault); }),
       simulated_(settings.vehicle, settings.simulation, settings.seed, settings.initial, node_,
-                 settings.autopilot && settings.autopilot->truth_only) {
+                 settings.autopilot && settings.autopilot->truth_only),
+      realtime_loop_(loop) {
   comms::log_peers(node_);
   if (!settings.autopilot || !settings.autopilot->truth_only)
     reporter_.emplace(node_, settings.vehicle, settings.simulation,
@@ -33,7 +34,7 @@ HostedPlant::HostedPlant(const comms::Participant& participant, const std::strin
                             autopilot_loop_settings(settings), node_);
   } else if (settings.clock == runtime::Clock::kRealtime) {
     const double speed = settings.speed > 0.0 ? settings.speed : 1.0;
-    realtime_loop_.emplace(simulated_, settings.simulation, speed, settings.phase, node_, settings.realtime);
+    realtime_.emplace(simulated_, settings.simulation, speed, node_, settings.realtime);
   } else {
     LockstepSettings lockstep = settings.lockstep;
     lockstep.speed = settings.speed;
@@ -42,8 +43,12 @@ HostedPlant::HostedPlant(const comms::Participant& participant, const std::strin
   }
 }
 
+HostedPlant::~HostedPlant() {
+  if (realtime_) realtime_loop_.remove(*realtime_);
+}
+
 void HostedPlant::run(const std::atomic<bool>& stop) {
-  if (realtime_loop_) realtime_loop_->run(stop);
+  if (realtime_) realtime_loop_.add(*realtime_, [this](const std::string& fault) { fail(fault); });
   if (lockstep_loop_) lockstep_loop_->run(stop);
   if (autopilot_loop_) autopilot_loop_->run(stop);
 }

@@ -25,7 +25,6 @@ struct PlantSettings {
   plant::SimulationSettings simulation;
   runtime::Clock clock = runtime::Clock::kRealtime;
   double speed = 0.0;  // 0: real time, or in lockstep no limit
-  double phase = 0.0;  // of the IMU samples in real time, 0 .. 1
   LockstepSettings lockstep;
   runtime::RealtimeSettings realtime;
   std::uint64_t seed = 1;
@@ -35,8 +34,10 @@ struct PlantSettings {
 
 class HostedPlant final : public runtime::HostedVehicle {
  public:
-  // Throws as Node, LockstepLoop and AutopilotLoop do.
-  HostedPlant(const comms::Participant& participant, const std::string& name, const PlantSettings& settings);
+  // loop: steps the vehicle in real time. Throws as Node, LockstepLoop and AutopilotLoop do.
+  HostedPlant(const comms::Participant& participant, const std::string& name, const PlantSettings& settings,
+              RealtimeLoop& loop);
+  ~HostedPlant() override;
 
   void run(const std::atomic<bool>& stop) override;
   void attend() override;
@@ -47,7 +48,8 @@ class HostedPlant final : public runtime::HostedVehicle {
   std::optional<PlantReporter> reporter_;  // none with truth_only
   SimulatedVehicle simulated_;
   PlantReport last_;
-  std::optional<RealtimeLoop> realtime_loop_;  // last: their subscriptions use all members above
+  RealtimeLoop& realtime_loop_;
+  std::optional<RealtimeVehicle> realtime_;  // last: their subscriptions use all members above
   std::optional<LockstepLoop> lockstep_loop_;
   std::optional<AutopilotLoop> autopilot_loop_;
 };

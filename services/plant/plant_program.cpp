@@ -297,7 +297,6 @@ Eigen::Vector2d place_in_rows(std::size_t i, const Options& options) {
 PlantSettings settings_of(const std::vector<std::string>& names, std::size_t i, const Options& options,
                           PlantSettings settings) {
   settings.seed = options.seed + i;
-  settings.phase = runtime::group_phase(i, names.size());
   if (options.start.size() > 2) {
     settings.initial.position_ned.head<2>() = Eigen::Vector2d(options.start[2 * i], options.start[2 * i + 1]);
   } else {
@@ -322,17 +321,17 @@ void run(const Options& options) {
   network.announcement_period = comms::kFixturePeriod;
   network.hears_of_all = false;
   network.realtime_priority = settings.realtime.thread_priority();
-  network.deadlines = false;  // it tells the active controller by its term, and each deadline wakes a thread
   network.source_of =
       options.autopilot.truth_only ? comms::topics::kGroundTruth.name : comms::topics::kImu.name;
   comms::Participant participant(network, names);
   const comms::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
+  RealtimeLoop loop(settings.realtime);
   std::vector<std::unique_ptr<runtime::HostedVehicle>> vehicles;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string log_label = runtime::log_label_of(names[i], names.size());
     const runtime::LogLabel label(log_label);
     vehicles.push_back(
-        std::make_unique<HostedPlant>(participant, names[i], settings_of(names, i, options, settings)));
+        std::make_unique<HostedPlant>(participant, names[i], settings_of(names, i, options, settings), loop));
   }
   comms::log_reach(network);
   runtime::log_info("ready: {}, vehicle {}, domain {}, clock {}, IMU at {:g} Hz, seed {}{}",

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "swiftlet/services/messages/wire_version.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
@@ -14,6 +15,7 @@ constexpr std::int64_t kTroublePeriodNs = 10'000'000'000;
 comms::msg::VehicleInfo describe(const plant::Vehicle& vehicle, const plant::SimulationSettings& settings,
                                  const std::string& autopilot) {
   comms::msg::VehicleInfo info;
+  info.wire_version(comms::kWireVersion);
   info.name() = vehicle.name;
   info.simulated(true);
   info.autopilot() = autopilot;

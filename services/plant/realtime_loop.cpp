@@ -1,101 +1,53 @@
 #include "swiftlet/services/plant/realtime_loop.hpp"
 
-#include <cmath>
+#include <algorithm>
+#include <exception>
+#include <utility>
 
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
-namespace {
 
-std::int64_t scaled(std::int64_t simulated_ns, double speed) {
-  return std::llround(static_cast<double>(simulated_ns) / speed);
+RealtimeLoop::~RealtimeLoop() {
+  stop_ = true;
+  if (thread_.joinable()) thread_.join();
 }
 
-}  // namespace
-
-RealtimeLoop::RealtimeLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings, double speed,
-                           double phase, comms::Node& node, const runtime::RealtimeSettings& realtime)
-    : vehicle_(vehicle),
-      speed_(speed),
-      phase_(phase),
-      steps_per_sample_(plant::period_ns(settings.imu.rate_hz) / settings.step_ns),
-      sample_period_ns_(scaled(plant::period_ns(settings.imu.rate_hz), speed)),
-      truth_(settings),
-      realtime_(realtime),
-      subscriptions_(subscribe_commands(node, settings.control_levels, comms::Delivery::kOwnThread,
-                                        [this](const ReceivedCommand& received) { on_command(received); })),
-      clock_(node, [this] { return simulated_ns(); }) {
-  if (!vehicle.needs_poses()) return;
-  subscriptions_.push_back(node.subscribe<comms::msg::MocapPose>(
-      comms::topics::kMocapPose, [this](const auto& message) { on_pose(message); },
-      comms::Delivery::kOwnThread));
+void RealtimeLoop::add(RealtimeVehicle& vehicle, std::function<void(const std::string&)> on_fault) {
+  const runtime::RealtimeScope scope(realtime_.thread_priority());
+  const std::lock_guard<std::mutex> lock(mutex_);
+  vehicles_.push_back({&vehicle, std::move(on_fault)});
+  if (!thread_.joinable())
+    thread_ = std::thread([this, period_ns = vehicle.sample_period_ns()] { run(period_ns); });
 }
 
-void RealtimeLoop::run(const std::atomic<bool>& stop) {
+void RealtimeLoop::remove(const RealtimeVehicle& vehicle) {
+  const runtime::RealtimeScope scope(realtime_.thread_priority());
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto is_removed = [&](const Stepped& stepped) { return stepped.vehicle == &vehicle; };
+  vehicles_.erase(std::remove_if(vehicles_.begin(), vehicles_.end(), is_removed), vehicles_.end());
+}
+
+void RealtimeLoop::run(std::int64_t period_ns) {
   if (realtime_.enabled) runtime::make_this_thread_realtime(realtime_);
-  static const std::int64_t origin_ns = runtime::monotonic_ns();
-  const auto phase_ns = std::llround(phase_ * static_cast<double>(sample_period_ns_));
-  runtime::PeriodicTimer timer(sample_period_ns_, sample_period_ns_, origin_ns + phase_ns);
-  set_origin(timer.tick_ns());
-  publish();
-  while (!stop.load(std::memory_order_relaxed)) {
+  runtime::PeriodicTimer timer(period_ns, period_ns);
+  while (!stop_.load(std::memory_order_relaxed)) {
     const std::int64_t slipped_ns = timer.wait();
-    if (slipped_ns > 0) vehicle_.note_slip(slipped_ns);
-    step_to_sample(timer.tick_ns());
-    if (slipped_ns > 0) set_origin(timer.tick_ns());
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (Stepped& stepped : vehicles_) step(stepped, timer.tick_ns(), slipped_ns);
   }
 }
 
-// Makes the steps up to the next IMU sample at once, since each wake-up costs more than a step. Each obeys the commands that
-// had arrived when it was due.
-void RealtimeLoop::step_to_sample(std::int64_t sample_due_ns) {
-  for (std::int64_t left = steps_per_sample_ - 1; left >= 0; --left) {
-    const bool is_last = left == 0;
-    const std::int64_t due_ns = sample_due_ns - sample_period_ns_ * left / steps_per_sample_;
-    obey_due(due_ns, is_last);
-    plant::PoseSample pose;
-    if (pose_.take(pose)) vehicle_.on_pose(pose);
-    vehicle_.step();
-    publish();
-    vehicle_.report();
+void RealtimeLoop::step(Stepped& stepped, std::int64_t tick_ns, std::int64_t slipped_ns) {
+  if (stepped.faulty) return;
+  try {
+    if (stepped.begun) return stepped.vehicle->step_to_sample(tick_ns, slipped_ns);
+    stepped.begun = true;
+    stepped.vehicle->begin(tick_ns);
+  } catch (const std::exception& error) {
+    stepped.faulty = true;
+    stepped.on_fault(error.what());
   }
-}
-
-void RealtimeLoop::obey_due(std::int64_t due_ns, bool is_last) {
-  for (Link& link : links_) {
-    auto& received = link.received;
-    while (received.read_available() > 0 && (is_last || received.front().received_ns <= due_ns)) {
-      vehicle_.obey(received.front());
-      received.pop();
-    }
-  }
-}
-
-void RealtimeLoop::publish() { vehicle_.publish_samples(truth_.due(vehicle_.simulation())); }
-
-// tick_ns: when the last step was due.
-void RealtimeLoop::set_origin(std::int64_t tick_ns) {
-  origin_ns_.store(tick_ns - scaled(vehicle_.simulation().stamp_ns(), speed_), std::memory_order_relaxed);
-}
-
-// The vehicle's clock, also between its steps.
-std::optional<std::int64_t> RealtimeLoop::simulated_ns() const {
-  const std::int64_t origin_ns = origin_ns_.load(std::memory_order_relaxed);
-  if (origin_ns == 0) return std::nullopt;
-  return scaled(runtime::monotonic_ns() - origin_ns, 1.0 / speed_);
-}
-
-// Runs in the subscription's thread.
-void RealtimeLoop::on_command(const ReceivedCommand& received) {
-  Link& link = links_[static_cast<std::size_t>(plant::level_of(received.command))];
-  link.listener.enter(realtime_);
-  link.received.push(received);
-}
-
-void RealtimeLoop::on_pose(const comms::msg::MocapPose& message) {
-  plant::PoseSample pose;
-  if (message.sequence_number() == 0 || comms::from_message(message, pose)) return;
-  pose_.put(pose);
 }
 
 }  // namespace swiftlet::services

@@ -1,62 +1,50 @@
-// Real time: simulated time follows the computer's clock.
+// Steps the simulated vehicles of a process at the computer's pace, one after another in one thread: waking a core takes longer
+// than the steps of a vehicle.
 #pragma once
 
-#include <array>
 #include <atomic>
-#include <cstdint>
-#include <optional>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
 #include <vector>
 
-#include <boost/lockfree/spsc_queue.hpp>
-
-#include "swiftlet/services/dds/clocks/clock_server.hpp"
-#include "swiftlet/services/dds/node.hpp"
-#include "swiftlet/services/plant/simulated_vehicle.hpp"
-#include "swiftlet/services/plant/truth_schedule.hpp"
+#include "swiftlet/services/plant/realtime_vehicle.hpp"
 #include "swiftlet/services/runtime/realtime.hpp"
 
 namespace swiftlet::services {
 
 class RealtimeLoop {
  public:
-  // speed: simulated time per real time, > 0. phase: of the IMU samples, 0 .. 1 of their period after a time that all
-  // loops of the process share: runtime::group_phase() spreads those of several vehicles over it. The vehicle must
-  // outlive the loop.
-  RealtimeLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings, double speed,
-               double phase, comms::Node& node, const runtime::RealtimeSettings& realtime);
+  explicit RealtimeLoop(const runtime::RealtimeSettings& realtime) : realtime_(realtime) {}
+  ~RealtimeLoop();
+  RealtimeLoop(const RealtimeLoop&) = delete;
+  RealtimeLoop& operator=(const RealtimeLoop&) = delete;
 
-  // Steps until `stop`. If it falls behind by more than an IMU period, it delays simulated time by whole periods
-  // instead of catching up: a burst of samples could not be answered.
-  void run(const std::atomic<bool>& stop);
+  // All vehicles have the sample period of the first. on_fault: called in the thread of the loop with the text of an exception; the
+  // vehicle is stepped no more then.
+  void add(RealtimeVehicle& vehicle, std::function<void(const std::string&)> on_fault);
+  // Waits for a running step. No effect if the vehicle was not added.
+  void remove(const RealtimeVehicle& vehicle);
 
  private:
-  void on_command(const ReceivedCommand& received);
-  void on_pose(const comms::msg::MocapPose& message);
-  void step_to_sample(std::int64_t sample_due_ns);
-  void obey_due(std::int64_t due_ns, bool is_last);
-  void publish();
-  void set_origin(std::int64_t tick_ns);
-  std::optional<std::int64_t> simulated_ns() const;
-
-  SimulatedVehicle& vehicle_;
-  double speed_;
-  double phase_;
-  std::int64_t steps_per_sample_;
-  std::int64_t sample_period_ns_;  // of the IMU, computer's clock
-  TruthSchedule truth_;
-  runtime::RealtimeSettings realtime_;
-
-  // Each level's commands come in a thread of their own.
-  struct Link {
-    boost::lockfree::spsc_queue<ReceivedCommand, boost::lockfree::capacity<64>> received;
-    runtime::RealtimeThread listener;
+  struct Stepped {
+    RealtimeVehicle* vehicle;
+    std::function<void(const std::string&)> on_fault;
+    bool begun = false;
+    bool faulty = false;
   };
-  std::array<Link, plant::kControlLevelCount> links_;  // by level
-  runtime::LatestValue<plant::PoseSample> pose_;
-  // The computer's clock at stamp 0, monotonic; 0 before the first step.
-  std::atomic<std::int64_t> origin_ns_{0};
-  std::vector<comms::Subscription> subscriptions_;  // last two: their callbacks use all members above
-  comms::ClockServer clock_;
+
+  // If it falls behind by more than a sample period, it delays simulated time by whole periods instead of catching up: a burst of
+  // samples could not be answered.
+  void run(std::int64_t period_ns);
+  static void step(Stepped& stepped, std::int64_t tick_ns, std::int64_t slipped_ns);
+
+  const runtime::RealtimeSettings realtime_;
+  std::mutex mutex_;  // guards vehicles_; held while they step
+  std::vector<Stepped> vehicles_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
 };
 
 }  // namespace swiftlet::services

@@ -137,10 +137,10 @@ plant::TelemetryPacket SimulatedVehicle::present_samples() const {
 void SimulatedVehicle::prepare_imu(const plant::TelemetryPacket& packet) {
   if (packet.odometry) {
     odometry_message_ = comms::to_message(*packet.odometry);
-    comms::set_obeyed_command(packet.obeyed, odometry_message_);
+    odometry_message_.obeyed(comms::to_message(packet.obeyed));
   } else {
     imu_message_ = comms::to_message(packet.imu);
-    comms::set_obeyed_command(packet.obeyed, imu_message_);
+    imu_message_.obeyed(comms::to_message(packet.obeyed));
   }
   if (report_.rotors_running) answers_.written(packet.imu.sequence, runtime::monotonic_ns());
 }
@@ -190,9 +190,9 @@ void SimulatedVehicle::go_on_in_order() {
 void SimulatedVehicle::publish_imu_in_order(const plant::TelemetryPacket& packet) {
   prepare_imu(packet);
   const auto name_others = [this](auto& message) {
-    message.mocap_sequence_number(mocap_sequence_);
-    message.battery_sequence_number(battery_message_.sequence_number());
-    message.rotor_speeds_sequence_number(rotor_speeds_message_.sequence_number());
+    message.lockstep().mocap_pose(mocap_sequence_);
+    message.lockstep().battery(battery_message_.sequence_number());
+    message.lockstep().rotor_speeds(rotor_speeds_message_.sequence_number());
   };
   name_others(imu_message_);
   name_others(odometry_message_);

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "swiftlet/services/dds/discovery/peer_log.hpp"
+#include "swiftlet/services/messages/wire_version.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
@@ -43,6 +44,7 @@ Px4Bridge::Px4Bridge(const comms::Participant& participant, const std::string& n
   } else {
     vehicle_odometry_ = node_.publish(topics::kVehicleOdometry);
   }
+  info_.wire_version(comms::kWireVersion);
   info_.name() = settings.vehicle.name;
   info_.rotor_count(static_cast<std::uint8_t>(settings.vehicle.rotor_count()));
   info_.mass_kg(settings.vehicle.mass_kg);
@@ -74,7 +76,7 @@ void Px4Bridge::subscribe() {
     vehicle_.on_ack(message);
   }));
   add(node_.subscribe<comms::msg::MocapPose>(
-      topics::kMocapPose, [this](const auto& message) { on_pose(message); }, Delivery::kOwnThread,
+      topics::kMocapPose, [this](const auto& message) { on_pose(message); }, Delivery::kSensors,
       comms::kSourceSilence));
   // Control sends at one level at a time.
   if (settings_.levels.has(plant::ControlLevel::kRates))
@@ -83,25 +85,25 @@ void Px4Bridge::subscribe() {
         [this](const auto& message) {
           on_setpoint<comms::msg::RatesSetpoint, plant::RatesSetpoint>(message);
         },
-        Delivery::kOwnThread));
+        Delivery::kSamples));
   if (settings_.levels.has(plant::ControlLevel::kAttitude))
     add(node_.subscribe<comms::msg::AttitudeSetpoint>(
         topics::kAttitudeSetpoint,
         [this](const auto& message) {
           on_setpoint<comms::msg::AttitudeSetpoint, plant::AttitudeSetpoint>(message);
         },
-        Delivery::kOwnThread));
+        Delivery::kSamples));
   if (settings_.levels.has(plant::ControlLevel::kTrajectory))
     add(node_.subscribe<comms::msg::TrajectorySetpoint>(
         topics::kTrajectorySetpoint,
         [this](const auto& message) {
           on_setpoint<comms::msg::TrajectorySetpoint, plant::TrajectorySetpoint>(message);
         },
-        Delivery::kOwnThread));
+        Delivery::kSamples));
   add(node_.subscribe<msg::VehicleOdometry>(
-      topics_.odometry.get(), [this](const auto& message) { on_odometry(message); }, Delivery::kOwnThread));
+      topics_.odometry.get(), [this](const auto& message) { on_odometry(message); }, Delivery::kSamples));
   add(node_.subscribe<msg::SensorCombined>(
-      topics_.sensors.get(), [this](const auto& message) { on_sensors(message); }, Delivery::kOwnThread));
+      topics_.sensors.get(), [this](const auto& message) { on_sensors(message); }, Delivery::kSamples));
 }
 
 void Px4Bridge::on_sensors(const msg::SensorCombined& message) {

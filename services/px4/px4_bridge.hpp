@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "swiftlet/services/dds/clocks/clock_server.hpp"
+#include "swiftlet/services/clocks/clock_server.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/throttled_warning.hpp"
 #include "swiftlet/services/px4/px4_topics.hpp"

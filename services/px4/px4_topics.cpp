@@ -24,14 +24,14 @@
 
 namespace swiftlet::comms {
 
-#define SWIFTLET_INSTANTIATE(Name)                                                               \
-  template <>                                                                                    \
-  struct PubSubTypeOf<px4::msg::Name> {                                                          \
-    using type = px4::msg::Name##PubSubType;                                                     \
-  };                                                                                             \
-  template Publisher<px4::msg::Name> Node::publish(const Topic<px4::msg::Name>&, std::uint32_t); \
-  template Subscription Node::subscribe(const Topic<px4::msg::Name>&,                            \
-                                        std::function<void(const px4::msg::Name&)>, Delivery,    \
+#define SWIFTLET_INSTANTIATE(Name)                                                            \
+  template <>                                                                                 \
+  struct PubSubTypeOf<px4::msg::Name> {                                                       \
+    using type = px4::msg::Name##PubSubType;                                                  \
+  };                                                                                          \
+  template Publisher<px4::msg::Name> Node::publish(const Topic<px4::msg::Name>&);             \
+  template Subscription Node::subscribe(const Topic<px4::msg::Name>&,                         \
+                                        std::function<void(const px4::msg::Name&)>, Delivery, \
                                         std::optional<std::chrono::milliseconds>);
 SWIFTLET_FOR_EACH_MESSAGE(SWIFTLET_INSTANTIATE)
 #undef SWIFTLET_INSTANTIATE

@@ -42,7 +42,7 @@ std::optional<comms::msg::Imu> Px4Vehicle::on_sensors(const msg::SensorCombined&
   sample.stamp_ns = clock_.to_host(message.timestamp(), now_ns);
   sample.sequence = ++samples_;
   comms::msg::Imu out = comms::to_message(sample);
-  comms::set_obeyed_command(watchdog_.obeyed(), out);
+  out.obeyed(comms::to_message(watchdog_.obeyed()));
   return out;
 }
 
@@ -59,7 +59,7 @@ std::optional<comms::msg::VehicleOdometry> Px4Vehicle::on_odometry(const msg::Ve
   estimate_.sequence = ++samples_;
   estimate_.fuses_mocap = vision_.passed() > 0;
   comms::msg::VehicleOdometry out = comms::to_message(estimate_);
-  comms::set_obeyed_command(watchdog_.obeyed(), out);
+  out.obeyed(comms::to_message(watchdog_.obeyed()));
   return out;
 }
 

@@ -91,12 +91,6 @@ std::string HostedVehicle::failure() const {
   return failure_;
 }
 
-double group_phase(std::size_t i, std::size_t vehicles) {
-  constexpr std::size_t kMostGroups = 4;
-  const std::size_t groups = std::clamp(vehicles, std::size_t{1}, kMostGroups);
-  return static_cast<double>(i % groups) / static_cast<double>(groups);
-}
-
 std::string log_label_of(const std::string& vehicle, std::size_t vehicles) {
   return vehicles > 1 ? vehicle : std::string();
 }

@@ -21,7 +21,7 @@ class HostedVehicle {
   HostedVehicle(const HostedVehicle&) = delete;
   HostedVehicle& operator=(const HostedVehicle&) = delete;
 
-  // Serves the vehicle, in a thread of its own, until `stop`. An exception is a failure.
+  // Serves the vehicle, in a thread of its own, until `stop`, or returns if other threads do. An exception is a failure.
   virtual void run(const std::atomic<bool>& stop) = 0;
   // Work of the main thread, which has normal priority: each period, and once when run() has returned. An exception
   // is a failure.
@@ -45,11 +45,6 @@ class HostedVehicle {
 // and destroyed, the others go on. Throws std::runtime_error at the end if any failed, with the sentences.
 void host(std::vector<std::unique_ptr<HostedVehicle>> vehicles, StopSignal& stop,
           std::chrono::milliseconds period);
-
-// When the i-th of the vehicles does its periodic work: a phase, 0 .. 1 of the period. The vehicles form up to four groups
-// that are spread over it. Those of a group work one after another without a pause, since a wake-up of an idle core takes
-// longer than the work for one vehicle.
-double group_phase(std::size_t i, std::size_t vehicles);
 
 // The label of the log lines of a vehicle: its name where a process serves several, else empty.
 std::string log_label_of(const std::string& vehicle, std::size_t vehicles);

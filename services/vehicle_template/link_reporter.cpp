@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "swiftlet/services/messages/wire_version.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
@@ -30,6 +31,7 @@ LinkReporter::LinkReporter(comms::Node& node, const plant::Vehicle& vehicle, std
     : link_(std::move(link)),
       rotor_count_(vehicle.rotor_count()),
       publisher_(node.publish(comms::topics::kVehicleInfo)) {
+  info_.wire_version(comms::kWireVersion);
   info_.name() = vehicle.name;
   info_.rotor_count(static_cast<std::uint8_t>(rotor_count_));
   info_.mass_kg(vehicle.mass_kg);

@@ -20,7 +20,7 @@
 
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
-#include "swiftlet/services/dds/clocks/clock_server.hpp"
+#include "swiftlet/services/clocks/clock_server.hpp"
 #include "swiftlet/services/dds/discovery/sole_source.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/node_options.hpp"
@@ -64,7 +64,7 @@ class Vehicle final : public runtime::HostedVehicle {
         clock_server_(node_, [this] { return clock_ns(); }),
         commands_(node_.subscribe<comms::msg::ActuatorCommand>(
             comms::topics::kActuatorCommand, [this](const auto& message) { on_command(message); },
-            comms::Delivery::kOwnThread)) {}
+            comms::Delivery::kSamples)) {}
 
   // The thread of the link: everything that the microcontroller sends, and all that is sent to it.
   void run(const std::atomic<bool>& stop) override {
@@ -191,7 +191,6 @@ void run(const Options& options) {
   comms::NodeSettings network = options.node;
   network.hears_of_all = false;
   network.announcement_period = comms::kFixturePeriod;
-  network.deadlines = false;  // the microcontroller tells the active controller by its term
   network.realtime_priority = realtime.thread_priority();
   network.source_of = comms::topics::kImu.name;
   comms::Participant participant(network, {network.vehicle});

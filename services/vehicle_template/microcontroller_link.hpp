@@ -12,7 +12,7 @@
 #include <optional>
 #include <string>
 
-#include "swiftlet/services/dds/clocks/clock_filter.hpp"
+#include "swiftlet/services/clocks/clock_filter.hpp"
 #include "swiftlet/services/microcontroller/protocol/frame.hpp"
 #include "swiftlet/services/microcontroller/protocol/messages.hpp"
 #include "swiftlet/services/vehicle_template/byte_link.hpp"

@@ -15,14 +15,14 @@ std::array<double, 3> widened(const std::array<float, 3>& vector) {
 }  // namespace
 
 comms::msg::Imu to_message(const protocol::Imu& in) {
-  using namespace comms::msg::Imu_Constants;
+  using namespace comms::msg::ObeyedCommand_Constants;
   comms::msg::Imu out;
   out.stamp_ns(protocol::ns_of_us(in.stamp_us));
   out.specific_force_frd(widened(in.specific_force_frd));
   out.body_rates_frd(widened(in.body_rates_frd));
-  out.commands(in.has_command != 0 ? COMMANDS_OBEYED : COMMANDS_NONE);
-  out.command_term(in.command_term);
-  out.command_stamp_ns(protocol::ns_of_us(in.command_stamp_us));
+  out.obeyed().state(in.has_command != 0 ? OBEYED : NONE);
+  out.obeyed().term(in.command_term);
+  out.obeyed().stamp_ns(protocol::ns_of_us(in.command_stamp_us));
   return out;
 }
 

@@ -23,7 +23,6 @@
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/plant/answer_latencies.hpp"
-#include "swiftlet/services/runtime/hosting.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "swiftlet/services/runtime/process.hpp"
@@ -68,10 +67,10 @@ struct Control {
           const runtime::RealtimeSettings& realtime)
       : node(participant, name), commands(node.publish(topics::kActuatorCommand)) {
     poses = node.subscribe<msg::MocapPose>(
-        topics::kMocapPose, [](const auto&) {}, comms::Delivery::kOwnThread);
+        topics::kMocapPose, [](const auto&) {}, comms::Delivery::kSensors);
     rotor_speeds = node.subscribe<msg::RotorSpeeds>(
         topics::kRotorSpeeds, [this, realtime](const auto&) { rotor_speed_thread.enter(realtime); },
-        comms::Delivery::kOwnThread);
+        comms::Delivery::kSensors);
     samples = node.subscribe<msg::Imu>(
         topics::kImu,
         [this, realtime](const msg::Imu& imu) {
@@ -79,7 +78,7 @@ struct Control {
           command.imu_sequence_number(imu.sequence_number());
           commands.publish(command);
         },
-        comms::Delivery::kOwnThread);
+        comms::Delivery::kSamples);
   }
   comms::Node node;
   comms::Publisher<msg::ActuatorCommand> commands;
@@ -100,7 +99,7 @@ struct Mocap {
           pose.sequence_number(sample.sequence_number());
           poses.publish(pose);
         },
-        comms::Delivery::kOwnThread);
+        comms::Delivery::kSamples);
   }
   comms::Node node;
   comms::Publisher<msg::MocapPose> poses;
@@ -112,9 +111,8 @@ struct Mocap {
 // Publishes IMU samples of its vehicle, for every fifth one truth and rotor speeds, and counts late answers.
 class Plant {
  public:
-  // phase: of the samples, 0 .. 1 of their period, as in swiftlet-plant.
   Plant(const comms::Participant& participant, const std::string& name,
-        const runtime::RealtimeSettings& realtime, double phase)
+        const runtime::RealtimeSettings& realtime)
       : node_(participant, name),
         imu_(node_.publish(topics::kImu)),
         truth_(node_.publish(topics::kGroundTruth)),
@@ -126,15 +124,22 @@ class Plant {
           const std::lock_guard<std::mutex> lock(mutex_);
           answers_.answered(command.imu_sequence_number(), runtime::monotonic_ns());
         },
-        comms::Delivery::kOwnThread);
-    thread_ = std::thread([this, realtime, phase] { run(realtime, phase); });
+        comms::Delivery::kSamples);
   }
-  ~Plant() {
-    end_ = true;
-    thread_.join();
+  void publish() {
+    ++sequence_;
+    imu_message_.sequence_number(sequence_);
+    truth_message_.sequence_number(sequence_);
+    rotor_speeds_message_.sequence_number(sequence_);
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      answers_.written(sequence_, runtime::monotonic_ns());
+    }
+    imu_.publish(imu_message_);
+    if (sequence_ % kSamplesPerPose != 0) return;
+    truth_.publish(truth_message_);
+    rotor_speeds_.publish(rotor_speeds_message_);
   }
-  Plant(const Plant&) = delete;
-  Plant& operator=(const Plant&) = delete;
 
   bool connected() const { return imu_.matched() == 1 && truth_.matched() == 1 && commands_.matched() == 1; }
   void reset() {
@@ -152,30 +157,6 @@ class Plant {
   }
 
  private:
-  void run(const runtime::RealtimeSettings& realtime, double phase) {
-    if (realtime.enabled) runtime::make_this_thread_realtime(realtime);
-    static const std::int64_t origin_ns = runtime::monotonic_ns();
-    runtime::PeriodicTimer timer(
-        kPeriodNs, kPeriodNs, origin_ns + static_cast<std::int64_t>(phase * static_cast<double>(kPeriodNs)));
-    msg::Imu imu;
-    msg::GroundTruth truth;
-    msg::RotorSpeeds rotor_speeds;
-    for (std::uint64_t sequence = 1; !end_; ++sequence) {
-      timer.wait();
-      imu.sequence_number(sequence);
-      truth.sequence_number(sequence);
-      rotor_speeds.sequence_number(sequence);
-      {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        answers_.written(sequence, runtime::monotonic_ns());
-      }
-      imu_.publish(imu);
-      if (sequence % kSamplesPerPose != 0) continue;
-      truth_.publish(truth);
-      rotor_speeds_.publish(rotor_speeds);
-    }
-  }
-
   comms::Node node_;
   comms::Publisher<msg::Imu> imu_;
   comms::Publisher<msg::GroundTruth> truth_;
@@ -183,9 +164,11 @@ class Plant {
   std::mutex mutex_;  // guards answers_
   services::AnswerLatencies answers_{kPeriodNs};
   runtime::RealtimeThread receiver_;
-  std::atomic<bool> end_{false};
+  std::uint64_t sequence_ = 0;
+  msg::Imu imu_message_;
+  msg::GroundTruth truth_message_;
+  msg::RotorSpeeds rotor_speeds_message_;
   comms::Subscription commands_;
-  std::thread thread_;
 };
 
 template <class Vehicle>
@@ -196,6 +179,30 @@ std::vector<std::unique_ptr<Vehicle>> serve(const comms::Participant& participan
     all.push_back(std::make_unique<Vehicle>(participant, name, realtime));
   return all;
 }
+
+// Publishes the samples of all vehicles in one thread, as swiftlet-plant does.
+class Stepping {
+ public:
+  Stepping(const std::vector<std::unique_ptr<Plant>>& vehicles, const runtime::RealtimeSettings& realtime)
+      : thread_([this, &vehicles, realtime] {
+          if (realtime.enabled) runtime::make_this_thread_realtime(realtime);
+          runtime::PeriodicTimer timer(kPeriodNs, kPeriodNs);
+          while (!end_) {
+            timer.wait();
+            for (const auto& vehicle : vehicles) vehicle->publish();
+          }
+        }) {}
+  ~Stepping() {
+    end_ = true;
+    thread_.join();
+  }
+  Stepping(const Stepping&) = delete;
+  Stepping& operator=(const Stepping&) = delete;
+
+ private:
+  std::atomic<bool> end_{false};
+  std::thread thread_;
+};
 
 // A child process that serves all vehicles until its end.
 template <class Vehicle>
@@ -246,26 +253,32 @@ void run(const Options& options) {
   const runtime::RealtimeSettings realtime =
       runtime::prepare_realtime(options.process.realtime, runtime::Clock::kRealtime);
   const comms::Participant participant(settings("plant", lock.domain(), realtime), names(options.vehicles));
-  std::vector<std::unique_ptr<Plant>> vehicles;
-  for (const std::string& name : names(options.vehicles)) {
-    const double phase = runtime::group_phase(vehicles.size(), static_cast<std::size_t>(options.vehicles));
-    vehicles.push_back(std::make_unique<Plant>(participant, name, realtime, phase));
-  }
+  const auto vehicles = serve<Plant>(participant, options.vehicles, realtime);
   for (const auto& vehicle : vehicles) {
     if (!tests::eventually([&] { return vehicle->connected(); }))
       throw std::runtime_error("the processes did not discover each other");
   }
-  const auto all_cpu_s = [&] {
-    return usage_of(control.pid()).cpu_s + usage_of(mocap.pid()).cpu_s + usage_of(::getpid()).cpu_s;
+  const Stepping stepping(vehicles, realtime);
+  const auto usage = [&] {
+    Usage all;
+    for (const pid_t pid : {control.pid(), mocap.pid(), ::getpid()}) {
+      const Usage one = usage_of(pid);
+      all.cpu_s += one.cpu_s;
+      all.threads += one.threads;
+      all.switches += one.switches;
+    }
+    return all;
   };
   for (const auto& vehicle : vehicles) vehicle->reset();
   const auto start = std::chrono::steady_clock::now();
-  const double before_s = all_cpu_s();
+  const Usage before = usage();
   const auto window = std::chrono::milliseconds(std::lround(1e3 * options.seconds));
   if (tests::eventually([&] { return control.has_ended() || mocap.has_ended(); }, window, 100ms))
     throw std::runtime_error("a process ended while the messages were measured");
   const double passed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const double cpu_percent = 100.0 * (all_cpu_s() - before_s) / passed_s;
+  const Usage after = usage();
+  const double cpu_percent = 100.0 * (after.cpu_s - before.cpu_s) / passed_s;
+  const double switches_per_s = (after.switches - before.switches) / passed_s;
   double overdue_percent = 0.0;
   double p99_us = 0.0;
   for (const auto& vehicle : vehicles) {
@@ -273,14 +286,15 @@ void run(const Options& options) {
     p99_us = std::max(p99_us, vehicle->p99_us());
   }
   if (options.json) {
-    const nlohmann::ordered_json row{{"vehicles", options.vehicles},
-                                     {"cpu_percent", cpu_percent},
-                                     {"overdue_percent", overdue_percent},
-                                     {"p99_us", p99_us}};
+    const nlohmann::ordered_json row{{"vehicles", options.vehicles},       {"cpu_percent", cpu_percent},
+                                     {"threads", after.threads},           {"switches_per_s", switches_per_s},
+                                     {"overdue_percent", overdue_percent}, {"p99_us", p99_us}};
     std::printf("%s\n", row.dump().c_str());
   } else {
-    std::printf("%d vehicles: %.1f %% of a core, %.3f %% of the answers after a period, p99 %.0f us\n",
-                options.vehicles, cpu_percent, overdue_percent, p99_us);
+    std::printf(
+        "%d vehicles: %.1f %% of a core, %d threads, %.0f context switches/s, %.3f %% of the answers after a "
+        "period, p99 %.0f us\n",
+        options.vehicles, cpu_percent, after.threads, switches_per_s, overdue_percent, p99_us);
   }
 }
 

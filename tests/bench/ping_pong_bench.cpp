@@ -59,7 +59,6 @@ struct Options {
   std::vector<int> rates_hz{500, 1000};
   std::vector<std::string> transports;  // empty: all
   bool json = false;
-  bool no_deadline = false;
   runtime::ProcessOptions process;
   // Options of the echo process.
   int echo_domain = -1;
@@ -104,8 +103,6 @@ class BarePair final : private dds::DataReaderListener {
     settings.domain = domain;
     settings.localhost_only = true;
     settings.security = options.security;
-    const int sent_deadline_ms = options.no_deadline ? 0 : sent.deadline_ms;
-    const int received_deadline_ms = options.no_deadline ? 0 : received.deadline_ms;
     participant_ = require_created(dds::DomainParticipantFactory::get_instance()->create_participant(
                                        static_cast<std::uint32_t>(domain),
                                        comms::participant_qos(settings, kProcesses, guard(settings),
@@ -115,15 +112,13 @@ class BarePair final : private dds::DataReaderListener {
         require_created(participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT), "publisher");
     auto* const subscriber =
         require_created(participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT), "subscriber");
-    writer_ = require_created(publisher->create_datawriter(topic<SentType>(wire_name(sent.name)),
-                                                           comms::writer_qos(sent.qos, sent_deadline_ms, 0)),
-                              "writer");
-    reader_ = require_created(
-        subscriber->create_datareader(
-            topic<ReceivedType>(wire_name(received.name)),
-            comms::reader_qos(received.qos, received_deadline_ms, comms::Delivery::kOwnThread), this,
-            dds::StatusMask::data_available()),
-        "reader");
+    writer_ = require_created(
+        publisher->create_datawriter(topic<SentType>(wire_name(sent.name)), comms::writer_qos(sent.qos)),
+        "writer");
+    reader_ = require_created(subscriber->create_datareader(topic<ReceivedType>(wire_name(received.name)),
+                                                            comms::reader_qos(received.qos), this,
+                                                            dds::StatusMask::data_available()),
+                              "reader");
   }
   ~BarePair() override {
     reader_->set_listener(nullptr);
@@ -219,7 +214,6 @@ class EchoProcess {
     words.insert(words.begin(), "ping_pong_bench");
     words.insert(words.end(), {"--priority", std::to_string(options.process.realtime.priority)});
     if (!options.process.realtime.enabled) words.emplace_back("--no-realtime");
-    if (options.no_deadline) words.emplace_back("--no-deadline");
     std::vector<char*> arguments;
     arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());
@@ -412,7 +406,6 @@ void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--transport", options.transports, "only these transports; may be repeated")
       .one_of({kUdp, kSecureUdp, kSocket});
   app.add_flag("--json", options.json, "print JSON");
-  app.add_flag("--no-deadline", options.no_deadline, "without deadline QoS");
   app.add_option("--echo-domain", options.echo_domain, "").hidden();
   app.add_option("--echo-socket", options.echo_socket, "").hidden();
   app.add_option("--security", options.security, "").hidden();

@@ -57,7 +57,6 @@ comms::NodeSettings network(const char* name, int domain) {
   settings.name = name;
   settings.domain = domain;
   settings.localhost_only = true;
-  settings.deadlines = false;
   return settings;
 }
 

@@ -100,6 +100,8 @@ struct FleetFigures {
   std::vector<VehicleFigures> vehicles;
   std::array<double, 3> cpu_percent{};  // of one core, by kProcesses
   std::array<double, 3> memory_mib{};
+  int threads = 0;              // of all processes
+  double switches_per_s = 0.0;  // context switches, of all processes
   double stalls_percent = 0.0;  // of the cycles: a core of this computer stood still
   std::uint64_t refused = 0;    // datagrams, all of which are of these processes
 };
@@ -332,6 +334,8 @@ FleetFigures hover(int vehicles, int rate_hz, bool realtime, double seconds, boo
   for (std::size_t k = 0; k < kProcesses.size(); ++k) {
     figures.cpu_percent[k] = 100.0 * (after[k].cpu_s - before[k].cpu_s) / measured_s;
     figures.memory_mib[k] = after[k].memory_mib;
+    figures.threads += after[k].threads;
+    figures.switches_per_s += (after[k].switches - before[k].switches) / measured_s;
   }
   return figures;
 }
@@ -531,6 +535,10 @@ void fleet(Table& table, const Options& options, int vehicles, bool realtime, co
   table.add({name + ": datagrams refused", static_cast<double>(flown.refused), "", "", 0.0, "none"});
   table.add({name + ": CPU of all processes", cpu, "% core", "the messages alone",
              bare.at("cpu_percent").get<double>(), ""});
+  table.add({name + ": threads", static_cast<double>(flown.threads), "", "the messages alone",
+             bare.at("threads").get<double>(), ""});
+  table.add({name + ": context switches", flown.switches_per_s, "/s", "the messages alone",
+             bare.at("switches_per_s").get<double>(), ""});
 }
 
 void fleets(Table& table, const Options& options) {

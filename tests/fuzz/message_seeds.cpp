@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "swiftlet/services/dds/message_types.hpp"
 #include "tests/fuzz/message_types.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
@@ -23,6 +24,15 @@ void write(const std::filesystem::path& folder, const char* name,
   const auto bytes = swiftlet::tests::serialized<typename Type::PubSub>(message);
   std::ofstream file(folder / name, std::ios::binary);
   file.put(Type::kTag);
+  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
+
+// Of a type that no process converts, and so none fuzzes: for the comparison of what goes over the wire.
+template <class PubSub>
+void write_sent(const std::filesystem::path& folder, const char* name) {
+  const auto bytes = swiftlet::tests::serialized<PubSub>(example<typename PubSub::type>());
+  std::ofstream file(folder / name, std::ios::binary);
+  file.put('\0');
   file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
@@ -54,6 +64,16 @@ int main(int argc, char** argv) {
   link.client(4);
   link.depends(true);
   write<GroundLink>(folder, "ground_link", link);
+
+  write_sent<msg::ClockRequestPubSubType>(folder, "clock_request");
+  write_sent<msg::ClockReplyPubSubType>(folder, "clock_reply");
+  write_sent<msg::ClockStatusPubSubType>(folder, "clock_status");
+  write_sent<msg::CommandAckPubSubType>(folder, "command_ack");
+  write_sent<msg::ControlStatusPubSubType>(folder, "control_status");
+  write_sent<msg::EstimatePubSubType>(folder, "estimate");
+  write_sent<msg::MissionStatusPubSubType>(folder, "mission_status");
+  write_sent<msg::ReferencePubSubType>(folder, "reference");
+  write_sent<msg::VehicleInfoPubSubType>(folder, "vehicle_info");
 
   write<Mission>(folder, "mission", to_message(comms::fixtures::mission(5)));
   write<Mission>(folder, "mission_empty", msg::Mission());

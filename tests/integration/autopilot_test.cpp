@@ -17,8 +17,8 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/io/settings/vehicle_file.hpp"
-#include "swiftlet/services/dds/clocks/clock_client.hpp"
-#include "swiftlet/services/dds/clocks/clock_server.hpp"
+#include "swiftlet/services/clocks/clock_client.hpp"
+#include "swiftlet/services/clocks/clock_server.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"

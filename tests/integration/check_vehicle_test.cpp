@@ -38,7 +38,6 @@ class CheckVehicle : public testing::Test {
     settings.vehicle = vehicle;
     settings.domain = lock_.domain();
     settings.localhost_only = true;
-    settings.deadlines = false;
     return settings;
   }
   std::vector<std::string> network(std::vector<std::string> words) const {

@@ -238,7 +238,6 @@ TEST_F(LockstepServices, MocapAnswersARepeatedTruthAgain) {
   settings.name = "plant";
   settings.domain = domain_.domain();
   settings.localhost_only = true;
-  settings.deadlines = false;
   comms::Node plant(settings);
   Inbox<comms::msg::MocapPose> poses;
   const auto subscription = plant.subscribe<comms::msg::MocapPose>(

@@ -26,7 +26,7 @@
 #include "swiftlet/plant/model/samples.hpp"
 #include "swiftlet/plant/simulation/mocap.hpp"
 #include "swiftlet/recording/flight_record.hpp"
-#include "swiftlet/services/dds/clocks/clock_client.hpp"
+#include "swiftlet/services/clocks/clock_client.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/mocap/sources/source.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
@@ -255,7 +255,6 @@ class MotionCapture : public SeparateProcesses {
   void expect_flown_in_lockstep(const std::string& room, Cameras cameras, const std::string& mission,
                                 double rms_m) {
     comms::NodeSettings network = node("mocap");
-    network.deadlines = false;
     capture_.emplace(network, room, std::move(cameras));
     poses_.emplace();
     seen_ = watcher_->subscribe<msg::MocapPose>(comms::topics::kMocapPose, [this](const auto& pose) {

@@ -32,7 +32,6 @@ namespace msg = comms::msg;
 using namespace std::chrono_literals;
 
 constexpr std::int64_t kDays_s = 24 * 3600;
-constexpr std::uint32_t kHighestStrength = 0x7fffffff;
 
 class Security : public testing::Test {
  protected:
@@ -69,8 +68,7 @@ class Security : public testing::Test {
 
   // Sends commands that stop the rotors to the vehicle, which flies.
   static void expect_not_obeyed(const RedundantFlight& flight, comms::Node& sender) {
-    comms::Publisher<msg::ActuatorCommand> commands =
-        sender.publish(comms::topics::kActuatorCommand, kHighestStrength);
+    comms::Publisher<msg::ActuatorCommand> commands = sender.publish(comms::topics::kActuatorCommand);
     msg::ActuatorCommand stop;
     stop.rotor_state(msg::ActuatorCommand_Constants::ROTORS_OFF);
     stop.rotor_count(4);

@@ -169,7 +169,7 @@ class FailingFlight {
     program(process) = std::make_unique<Program>(name, words, folder_);
   }
 
-  // Any command of the level: its topic has exclusive ownership, as the vehicle's reader.
+  // Any command of the level.
   void hear_commands() {
     const auto subscribe = [this](const auto& topic) {
       using Message = typename std::decay_t<decltype(topic)>::Message;

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "swiftlet/plant/model/propulsion.hpp"
+#include "swiftlet/services/messages/wire_version.hpp"
 
 namespace swiftlet::tests {
 namespace {
@@ -138,6 +139,7 @@ void FakeVehicle::publish() {
 
 void FakeVehicle::publish_info() {
   comms::msg::VehicleInfo info;
+  info.wire_version(comms::kWireVersion);
   info.stamp_ns(static_cast<std::int64_t>(samples()) * kPeriodNs);
   info.sequence_number(samples() / kImuPerInfo);
   info.name("rail");

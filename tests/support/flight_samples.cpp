@@ -68,10 +68,10 @@ FlightMetrics FlightSamples::metrics(std::int64_t from_ns, std::int64_t to_ns, s
   std::uint32_t term = 0;
   for (auto imu = imu_.lower_bound(from_ns); imu != imu_.upper_bound(to_ns); ++imu) {
     ++metrics.samples;
-    const auto gap_ns = imu->first - imu->second.command_stamp_ns();
+    const auto gap_ns = imu->first - imu->second.obeyed().stamp_ns();
     metrics.longest_gap_ms = std::max(metrics.longest_gap_ms, math::seconds(gap_ns) * 1e3);
-    if (term != 0 && imu->second.command_term() != term) ++metrics.changes_of_controller;
-    term = imu->second.command_term();
+    if (term != 0 && imu->second.obeyed().term() != term) ++metrics.changes_of_controller;
+    term = imu->second.obeyed().term();
   }
   const msg::Reference* last = nullptr;
   for (auto reference = reference_.lower_bound(from_ns); reference != reference_.upper_bound(to_ns);

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "swiftlet/services/messages/convert.hpp"
+#include "swiftlet/services/messages/wire_version.hpp"
 
 namespace swiftlet::tests {
 namespace {
@@ -59,6 +60,7 @@ void HeldVehicle::publish(std::int64_t stamp_ns) {
         comms::to_message(plant::BatterySample{stamp_ns, ++batteries_, 4.1, 0.1, 0.9}));
   if (stamp_ns % kInfo_ns != 0) return;
   comms::msg::VehicleInfo info;
+  info.wire_version(comms::kWireVersion);
   info.stamp_ns(stamp_ns);
   info.name("held");
   info.rotor_count(4);

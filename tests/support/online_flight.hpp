@@ -130,7 +130,6 @@ class OnlineFlight : public Online {
   comms::NodeSettings settings() const {
     comms::NodeSettings settings = settings_of("test", lock_);
     settings.vehicle = "kl7";
-    settings.deadlines = false;
     return settings;
   }
 

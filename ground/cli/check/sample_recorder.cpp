@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "swiftlet/services/messages/convert.hpp"
+#include "swiftlet/services/messages/wire_version.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::ground {
@@ -20,7 +21,6 @@ constexpr std::int64_t kAlive_ns = 1'000'000'000;  // since the last sign of a c
 
 comms::NodeSettings listening(comms::NodeSettings settings) {
   settings.name = "ground";
-  settings.deadlines = false;  // so that it receives from every writer
   return settings;
 }
 
@@ -31,14 +31,14 @@ std::uint64_t random_number() {
 
 comms::Fault convert(const msg::Imu& message, ImuReport& out) {
   const comms::Fault fault = comms::from_message(message, out.imu);
-  out.obeyed = comms::obeyed_command(message);
-  out.lockstep = message.mocap_sequence_number() > 0 || message.battery_sequence_number() > 0;
+  out.obeyed = comms::from_message(message.obeyed());
+  out.lockstep = message.lockstep().mocap_pose() > 0 || message.lockstep().battery() > 0;
   return fault;
 }
 comms::Fault convert(const msg::VehicleOdometry& message, OdometryReport& out) {
   const comms::Fault fault = comms::from_message(message, out.odometry);
-  out.obeyed = comms::obeyed_command(message);
-  out.lockstep = message.mocap_sequence_number() > 0 || message.battery_sequence_number() > 0;
+  out.obeyed = comms::from_message(message.obeyed());
+  out.lockstep = message.lockstep().mocap_pose() > 0 || message.lockstep().battery() > 0;
   return fault;
 }
 template <class Message, class Sample>
@@ -69,8 +69,8 @@ SampleRecorder::SampleRecorder(const comms::NodeSettings& settings)
   const auto subscribe = [this](const auto& topic, auto& record) {
     using Message = typename std::decay_t<decltype(topic)>::Message;
     return node_.subscribe<Message>(
-        topic, [this, &record](const Message& message) { take(record, message); },
-        comms::Delivery::kOwnThread, comms::kSourceSilence);
+        topic, [this, &record](const Message& message) { take(record, message); }, comms::Delivery::kSamples,
+        comms::kSourceSilence);
   };
   imu_ = subscribe(topics::kImu, recording_.imu);
   odometry_ = subscribe(topics::kVehicleOdometry, recording_.odometry);
@@ -79,9 +79,13 @@ SampleRecorder::SampleRecorder(const comms::NodeSettings& settings)
   rotor_speeds_ = subscribe(topics::kRotorSpeeds, recording_.rotor_speeds);
   info_ = node_.subscribe<msg::VehicleInfo>(topics::kVehicleInfo, [this](const msg::VehicleInfo& info) {
     const std::lock_guard lock(mutex_);
-    recording_.description = {info.name().c_str(), info.simulated(),
-                              info.rotor_count(),  info.mass_kg(),
-                              info.imu_rate_hz(),  plant::ControlLevels::from_bits(info.control_levels())};
+    recording_.description = {info.name().c_str(),
+                              info.simulated(),
+                              info.rotor_count(),
+                              info.mass_kg(),
+                              info.imu_rate_hz(),
+                              plant::ControlLevels::from_bits(info.control_levels()),
+                              comms::fault_of_wire_version(info.wire_version(), "the vehicle")};
     recording_.rotors_running.push_back({info.rotors_running(), now_ns()});
   });
   clock_replies_ =

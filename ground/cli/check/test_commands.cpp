@@ -19,7 +19,6 @@ constexpr auto kLastPeriod = 10ms;  // without IMU samples
 
 comms::NodeSettings commanding(comms::NodeSettings settings) {
   settings.name = "check";
-  settings.deadlines = true;  // a vehicle may request it
   return settings;
 }
 
@@ -30,10 +29,10 @@ TestCommands::TestCommands(const comms::NodeSettings& settings, int rotor_count,
       rotor_count_(rotor_count),
       renewed_ns_(runtime::monotonic_ns()),
       node_(commanding(settings)),
-      publisher_(node_.publish(comms::topics::kActuatorCommand, term)),
+      publisher_(node_.publish(comms::topics::kActuatorCommand)),
       imu_(node_.subscribe<comms::msg::Imu>(
-          comms::topics::kImu, [this](const comms::msg::Imu& imu) { answer(imu); },
-          comms::Delivery::kOwnThread, comms::kSourceSilence)) {}
+          comms::topics::kImu, [this](const comms::msg::Imu& imu) { answer(imu); }, comms::Delivery::kSamples,
+          comms::kSourceSilence)) {}
 
 TestCommands::~TestCommands() {
   off();

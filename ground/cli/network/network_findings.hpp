@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "swiftlet/ground/cli/network/network_probe.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
-#include "swiftlet/services/dds/discovery/network_probe.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::ground {

@@ -11,6 +11,10 @@ namespace swiftlet::comms {
 
 bool is_latched(Qos profile) { return profile == Qos::kLatched || profile == Qos::kLatchedLarge; }
 
+bool is_reliable(Qos profile) {
+  return is_latched(profile) || profile == Qos::kRequest || profile == Qos::kReply;
+}
+
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
@@ -26,9 +30,6 @@ constexpr milliseconds kHeartbeatPeriod{10};
 constexpr milliseconds kResponseDelay{1};
 constexpr milliseconds kFirstRequestPeriod{20};
 
-bool is_reliable(Qos profile) {
-  return is_latched(profile) || profile == Qos::kRequest || profile == Qos::kReply;
-}
 bool is_long(Qos profile) { return profile == Qos::kLatchedLarge || profile == Qos::kRequest; }
 
 // As rmw_dds_common encodes it.
@@ -49,14 +50,12 @@ void set_fragments(dds::DataWriterQos& qos) {
 
 // The policies that are the same for writer and reader, so that they match.
 template <class EndpointQos>
-void set_common(EndpointQos& qos, Qos profile, int deadline_ms) {
+void set_common(EndpointQos& qos, Qos profile) {
   qos.reliability().kind =
       is_reliable(profile) ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
   qos.reliability().max_blocking_time = duration(kReliableWriteTimeout);
   qos.durability().kind = is_latched(profile) || profile == Qos::kReply ? dds::TRANSIENT_LOCAL_DURABILITY_QOS
                                                                         : dds::VOLATILE_DURABILITY_QOS;
-  if (deadline_ms > 0) qos.deadline().period = duration(std::chrono::milliseconds(deadline_ms));
-  if (profile == Qos::kOwnedStream) qos.ownership().kind = dds::EXCLUSIVE_OWNERSHIP_QOS;
 
   auto& limits = qos.resource_limits();
   limits.max_instances = 1;
@@ -93,10 +92,9 @@ std::shared_ptr<eprosima::fastdds::rtps::FlowControllerDescriptor> long_message_
   return flow;
 }
 
-dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, std::uint32_t strength) {
+dds::DataWriterQos writer_qos(Qos profile) {
   dds::DataWriterQos qos;
-  set_common(qos, profile, deadline_ms);
-  if (profile == Qos::kOwnedStream) qos.ownership_strength().value = strength;
+  set_common(qos, profile);
   // A middleware thread sends long messages in fragments. The calling thread sends all others.
   qos.publish_mode().kind = is_long(profile) ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
   if (is_long(profile)) set_fragments(qos);
@@ -104,12 +102,10 @@ dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, std::uint32_t streng
   return qos;
 }
 
-dds::DataReaderQos reader_qos(Qos profile, int deadline_ms, Delivery delivery) {
+dds::DataReaderQos reader_qos(Qos profile) {
   dds::DataReaderQos qos;
-  set_common(qos, profile, deadline_ms);
+  set_common(qos, profile);
   if (is_reliable(profile)) set_repair_times(qos, duration(kResponseDelay), duration(kFirstRequestPeriod));
-  if (delivery == Delivery::kOwnThread)
-    qos.properties().properties().emplace_back("fastdds.unique_network_flows", "");
   return qos;
 }
 

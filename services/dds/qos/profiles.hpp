@@ -13,14 +13,15 @@ namespace swiftlet::comms {
 
 // True if late joiners receive the last sample (durability transient local).
 bool is_latched(Qos profile);
+bool is_reliable(Qos profile);
 
 // Sends the fragments of long messages: each fits into a frame of Ethernet, so that a lost frame costs one fragment, and a
 // long message does not fill the buffers on the way. For participants with kHasFlowControllers; without, only the size of
 // the fragments is limited.
 std::shared_ptr<eprosima::fastdds::rtps::FlowControllerDescriptor> long_message_flow();
 
-eprosima::fastdds::dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, std::uint32_t strength);
-eprosima::fastdds::dds::DataReaderQos reader_qos(Qos profile, int deadline_ms, Delivery delivery);
+eprosima::fastdds::dds::DataWriterQos writer_qos(Qos profile);
+eprosima::fastdds::dds::DataReaderQos reader_qos(Qos profile);
 
 // States the type hash of an endpoint in its user data, where ROS 2 looks for it. hash: may be null.
 void state_type_hash(eprosima::fastdds::dds::DataWriterQos& qos, const char* hash);

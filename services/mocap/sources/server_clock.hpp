@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "swiftlet/services/dds/clocks/clock_filter.hpp"
+#include "swiftlet/services/clocks/clock_filter.hpp"
 
 namespace swiftlet::mocap {
 

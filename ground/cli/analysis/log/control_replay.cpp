@@ -134,7 +134,7 @@ class Inputs {
   void take_imu(Recorded recorded) {
     const auto sample = message_in<comms::msg::Imu>(view_of(recorded.payload));
     if (!sample || (!imu.empty() && sample->sequence_number() <= imu.back().sequence)) return;
-    lockstep = lockstep || sample->mocap_sequence_number() > 0;
+    lockstep = lockstep || sample->lockstep().mocap_pose() > 0;
     recorded.sequence = sample->sequence_number();
     imu.push_back(std::move(recorded));
   }
@@ -251,10 +251,10 @@ class Feeder {
       send_between(imu.log_time_ns, i == 0);
       auto sample = *message_in<comms::msg::Imu>(view_of(imu.payload));
       send_samples(imu, sample);
-      sample.mocap_sequence_number(sent_[topics::kMocapPose.name]);
-      sample.battery_sequence_number(sent_[topics::kBattery.name]);
-      sample.rotor_speeds_sequence_number(sent_[topics::kRotorSpeeds.name]);
-      sample.commands(comms::msg::Imu_Constants::COMMANDS_UNREPORTED);  // they obeyed another controller
+      sample.lockstep().mocap_pose(sent_[topics::kMocapPose.name]);
+      sample.lockstep().battery(sent_[topics::kBattery.name]);
+      sample.lockstep().rotor_speeds(sent_[topics::kRotorSpeeds.name]);
+      sample.obeyed({});  // they obeyed another controller: unreported
       last_ = sample;
       send_until_answered(imu.sequence, i == 0 ? kStartTimeout : kReplayTimeout);
     }
@@ -272,9 +272,8 @@ class Feeder {
   // The sequence number up to which control had the samples of a topic with this IMU sample.
   std::uint64_t due(const std::string& topic, const Recorded& imu, const comms::msg::Imu& sample) const {
     if (inputs_.lockstep) {
-      if (topic == topics::kMocapPose.name) return sample.mocap_sequence_number();
-      return topic == topics::kBattery.name ? sample.battery_sequence_number()
-                                            : sample.rotor_speeds_sequence_number();
+      if (topic == topics::kMocapPose.name) return sample.lockstep().mocap_pose();
+      return topic == topics::kBattery.name ? sample.lockstep().battery() : sample.lockstep().rotor_speeds();
     }
     if (topic == topics::kMocapPose.name) {
       const auto command = inputs_.pose_of_command.find(imu.sequence);
@@ -409,7 +408,6 @@ ControlReplay replay_into_control(const mcap::Reader& file, const ControlReplayS
   network.vehicle = settings.vehicle;
   network.domain = domain.domain();
   network.localhost_only = true;
-  network.deadlines = false;
   comms::Node node(network);
   mcap::Selection recorded;
   const std::string topic = "/" + settings.vehicle + "/" + inputs.command_topic;

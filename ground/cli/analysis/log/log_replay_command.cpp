@@ -66,7 +66,6 @@ int publish(const LogReplayOptions& options, const mcap::Reader& file) {
   const comms::FlightReservation reservation(options.network, published);
   comms::NodeSettings network = options.network;
   network.name = "replay";
-  network.deadlines = false;
   const comms::Participant participant(network, published);
   ProgressLine progress;
   const ReplayTotals totals = replay(file, participant, settings, [&](const ReplayTotals& now) {

@@ -13,6 +13,7 @@
 
 #include "swiftlet/ground/client/vehicle.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
+#include "swiftlet/services/messages/wire_version.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/private_domain.hpp"
 
@@ -40,8 +41,9 @@ class Control {
     missions_ = node_.subscribe<msg::Mission>(
         comms::topics::kMission, [this](const msg::Mission& mission) { received_.put(mission.id()); });
   }
-  void publish_status(std::uint64_t sequence_number) {
+  void publish_status(std::uint64_t sequence_number, std::uint32_t wire_version = comms::kWireVersion) {
     msg::ControlStatus status;
+    status.wire_version(wire_version);
     status.sequence_number(sequence_number);
     statuses_.publish(status);
   }
@@ -185,6 +187,20 @@ TEST(Connection, IsThereWhenTheControllerReadsSetpoints) {
       late.subscribe<msg::Setpoint>(comms::topics::kSetpoint, [](const auto&) {});
   EXPECT_TRUE(connecting.get().accepted());
   EXPECT_TRUE(vehicle.send(VelocitySetpoint{Eigen::Vector3d::Zero()}));
+}
+
+// GIVEN a controller whose messages have another version WHEN a program connects THEN it is told so at once, by a sentence.
+TEST(Connection, ToAControllerOfAnotherWireVersionIsRefused) {
+  const DomainLock lock;
+  Control control(lock);
+  control.publish_status(1, comms::kWireVersion + 1);
+  Vehicle vehicle(settings_of("ground", lock));
+  const Result refused = vehicle.connect(60s);
+  EXPECT_EQ(refused.kind, Result::Kind::kNoControl);
+  EXPECT_NE(refused.reason.find("control speaks version 3 of the messages, this program 2"),
+            std::string::npos)
+      << refused.reason;
+  EXPECT_FALSE(vehicle.connected());
 }
 
 }  // namespace swiftlet::ground::client_test

@@ -25,7 +25,6 @@ class GroundSignals : public testing::Test {
     settings.name = name;
     settings.domain = lock.domain();
     settings.localhost_only = true;
-    settings.deadlines = false;
     return settings;
   }
   comms::DomainLock lock_;

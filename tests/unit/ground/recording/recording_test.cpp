@@ -52,7 +52,7 @@ TEST(SampleQueue, RefusesWhatDoesNotFit) {
 }
 
 TEST(GapCounter, CountsWhatIsMissingOfEachWriter) {
-  GapCounter gaps(Writers::kAll);
+  GapCounter gaps;
   EXPECT_EQ(gaps.missing_before(1, 50), 0U);
   EXPECT_EQ(gaps.missing_before(1, 51), 0U);
   EXPECT_EQ(gaps.missing_before(2, 7), 0U);
@@ -60,14 +60,6 @@ TEST(GapCounter, CountsWhatIsMissingOfEachWriter) {
   EXPECT_EQ(gaps.missing_before(2, 8), 0U);
   EXPECT_EQ(gaps.missing_before(2, 8), 0U) << "sent again";
   EXPECT_EQ(gaps.missing_before(1, 55), 0U);
-}
-
-TEST(GapCounter, ForgetsAWriterWhoseTurnEnds) {
-  GapCounter gaps(Writers::kStrongest);
-  EXPECT_EQ(gaps.missing_before(1, 50), 0U);
-  EXPECT_EQ(gaps.missing_before(2, 7), 0U);
-  EXPECT_EQ(gaps.missing_before(2, 9), 1U);
-  EXPECT_EQ(gaps.missing_before(1, 90), 0U) << "its samples in between were not for this reader";
 }
 
 TEST(StandardFrames, AreEnuAndFlu) {

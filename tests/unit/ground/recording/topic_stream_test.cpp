@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
+#include "swiftlet/services/messages/wire_version.hpp"
 #include "tests/support/eventually.hpp"
 
 namespace swiftlet::ground::topic_stream_test {
@@ -41,6 +42,7 @@ TEST_F(TopicStreamTest, GivesEachMessageOnceInOrder) {
   TopicStream stream(participant, "kl1", "vehicle_info");
   EXPECT_FALSE(stream.next(0ms));
   comms::msg::VehicleInfo message;
+  message.wire_version(comms::kWireVersion);
   for (int i = 1; i <= 3; ++i) {
     message.mass_kg(0.5 * i);
     infos.publish(message);

@@ -21,6 +21,7 @@
 #include "swiftlet/ground/view/viewer.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/payload.hpp"
+#include "swiftlet/services/messages/wire_version.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/foxglove_client.hpp"
 #include "tests/support/private_domain.hpp"
@@ -370,7 +371,9 @@ TEST_F(Server, ASlowViewerLosesTheOlderAndSlowsNobody) {
 TEST_F(Server, SendsRequestsAndReturnsTheReasonOfARefusal) {
   auto acks = vehicle_.publish(comms::topics::kCommandAck);
   auto statuses = vehicle_.publish(comms::topics::kControlStatus);
-  statuses.publish(msg::ControlStatus());
+  msg::ControlStatus status;
+  status.wire_version(comms::kWireVersion);
+  statuses.publish(status);
   tests::Inbox<std::uint8_t> asked;
   const auto commands =
       vehicle_.subscribe<msg::Command>(comms::topics::kCommand, [&](const msg::Command& command) {

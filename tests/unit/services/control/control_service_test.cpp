@@ -1,7 +1,9 @@
 // The control service on its own DDS domain: scheduling of its threads, and how it reports it.
 #include "swiftlet/services/control/control_service.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <sched.h>
@@ -15,6 +17,7 @@
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/messages/convert.hpp"
+#include "swiftlet/services/messages/wire_version.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/private_domain.hpp"
@@ -70,7 +73,7 @@ class RealtimeService : public testing::Test {
     imu.stamp_ns(static_cast<std::int64_t>(sequence_) * 2'000'000);
     imu.sequence_number(sequence_);
     imu.specific_force_frd({0.0, 0.0, -9.81});
-    comms::set_obeyed_command({true, false, 0, 0}, imu);
+    imu.obeyed(comms::to_message(plant::ObeyedCommand{true, false, 0, 0}));
     imu_.publish(imu);
     last_imu_ = imu;
     msg::MocapPose pose;
@@ -145,6 +148,33 @@ TEST_F(RealtimeService, ARepeatedSampleIsAnsweredWithTheSameCommand) {
   }));
   const auto all = commands.items();
   for (std::size_t i = before; i < all.size(); ++i) EXPECT_TRUE(all[i] == all[before - 1]) << i;
+}
+
+// GIVEN a vehicle whose messages have another version WHEN it is to be armed THEN that is refused by a sentence that says so.
+TEST_F(RealtimeService, AVehicleOfAnotherWireVersionIsNotArmed) {
+  tests::Inbox<msg::CommandAck> answers;
+  const auto acks = vehicle_node_.subscribe<msg::CommandAck>(
+      topics::kCommandAck, [&](const msg::CommandAck& answer) { answers.put(answer); });
+  auto infos = vehicle_node_.publish(topics::kVehicleInfo);
+  auto commands = vehicle_node_.publish(topics::kCommand);
+  msg::VehicleInfo info;
+  info.wire_version(comms::kWireVersion + 1);
+  infos.publish(info);
+  ASSERT_TRUE(eventually([&] { return commands.matched() == 1 && infos.matched() == 1; }));
+  ASSERT_TRUE(infos.wait_until_received(std::chrono::seconds(10)));
+  msg::Command arm;
+  arm.client(1);
+  arm.kind(msg::Command_Constants::ARM);
+  ASSERT_TRUE(eventually([&] {
+    send_samples();
+    arm.id(arm.id() + 1);
+    commands.publish(arm);
+    return std::any_of(answers.items().begin(), answers.items().end(), [](const msg::CommandAck& answer) {
+      return std::string(answer.reason().c_str())
+                 .find("the vehicle speaks version 3 of the messages, this program 2") != std::string::npos;
+    });
+  }));
+  for (const msg::CommandAck& answer : answers.items()) EXPECT_FALSE(answer.accepted());
 }
 
 }  // namespace swiftlet::services::control_service_test

@@ -10,9 +10,9 @@ VehicleSample imu(std::uint64_t number, std::uint64_t pose, std::uint64_t batter
                   std::uint64_t rotor_speeds) {
   comms::msg::Imu message;
   message.sequence_number(number);
-  message.mocap_sequence_number(pose);
-  message.battery_sequence_number(battery);
-  message.rotor_speeds_sequence_number(rotor_speeds);
+  message.lockstep().mocap_pose(pose);
+  message.lockstep().battery(battery);
+  message.lockstep().rotor_speeds(rotor_speeds);
   return vehicle_sample(message);
 }
 

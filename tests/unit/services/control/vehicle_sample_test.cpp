@@ -13,8 +13,8 @@ constexpr std::int64_t kSecond = 1'000'000'000;
 
 TEST(VehicleSample, HasWhatTheMessagesShare) {
   comms::msg::VehicleOdometry message = comms::fixtures::example<comms::msg::VehicleOdometry>();
-  message.battery_sequence_number(4);
-  comms::set_obeyed_command({true, true, 7, 99}, message);
+  message.lockstep().battery(4);
+  message.obeyed(comms::to_message(plant::ObeyedCommand{true, true, 7, 99}));
   const VehicleSample sample = vehicle_sample(message);
   EXPECT_EQ(sample.stamp_ns(), message.stamp_ns());
   EXPECT_EQ(sample.sequence(), message.sequence_number());

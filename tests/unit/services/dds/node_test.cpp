@@ -5,8 +5,13 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <future>
+#include <iterator>
+#include <map>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -339,110 +344,85 @@ TEST(Replies, ReachAReaderThatIsDiscoveredAfterThem) {
   for (const std::uint64_t id : ids.items()) EXPECT_EQ(id, ++expected);
 }
 
-// Two controllers of one vehicle that both send continuously; messages are numbered by ownership strength.
-class ExclusiveOwnership : public testing::Test {
- protected:
-  class Controller {
-   public:
-    Controller(const DomainLock& lock, int strength)
-        : node_(settings(lock, "control")),
-          publisher_(node_.publish(topics::kActuatorCommand, strength)),
-          sender_(publisher_, static_cast<std::uint64_t>(strength)) {}
-    void silence() { sender_.silence(); }
-    int matched() const { return publisher_.matched(); }
-
-   private:
-    Node node_;
-    Publisher<msg::ActuatorCommand> publisher_;
-    SteadySender sender_;
-  };
-
-  ExclusiveOwnership()
-      : plant_(settings(lock_, "plant")),
-        subscription_(plant_.subscribe<msg::ActuatorCommand>(
-            topics::kActuatorCommand,
-            [this](const msg::ActuatorCommand& command) { received_.put(command.sequence_number()); })) {}
-
-  // The last 20 messages have this strength.
-  bool receives_only(std::uint64_t strength) {
-    return received_.wait([&](const std::vector<std::uint64_t>& received) {
-      if (received.size() < 20) return false;
-      return std::all_of(received.end() - 20, received.end(), [&](std::uint64_t s) { return s == strength; });
-    });
-  }
-
-  DomainLock lock_;
-  Inbox<std::uint64_t> received_;
-  Node plant_;
-  Subscription subscription_;
-};
-
-TEST_F(ExclusiveOwnership, DeliversTheStrongestWriter) {
-  Controller weak(lock_, 1);
-  ASSERT_TRUE(receives_only(1));
-  Controller strong(lock_, 2);
-  ASSERT_TRUE(receives_only(2));
-  ASSERT_TRUE(eventually([&] { return weak.matched() == 1 && subscription_.matched() == 2; }));
-  const std::size_t before = received_.size();
-  ASSERT_TRUE(received_.wait_for_count(before + 100));
-  const auto received = received_.items();
-  EXPECT_TRUE(std::all_of(received.begin() + static_cast<std::ptrdiff_t>(before), received.end(),
-                          [](std::uint64_t s) { return s == 2; }));
-}
-
-TEST_F(ExclusiveOwnership, FallsBackWhenTheStrongestWriterLeaves) {
-  Controller weak(lock_, 1);
-  {
-    Controller strong(lock_, 2);
-    ASSERT_TRUE(receives_only(2));
-    ASSERT_TRUE(eventually([&] { return weak.matched() == 1 && subscription_.matched() == 2; }));
-  }
-  EXPECT_TRUE(receives_only(1));
-}
-
-TEST_F(ExclusiveOwnership, FallsBackWithinTheDeadlineOfASilentWriter) {
-  Controller weak(lock_, 1);
-  Controller strong(lock_, 2);
-  ASSERT_TRUE(receives_only(2));
-  ASSERT_TRUE(eventually([&] { return weak.matched() == 1 && subscription_.matched() == 2; }));
-  const auto silent_since = std::chrono::steady_clock::now();
-  strong.silence();
-  ASSERT_TRUE(
-      received_.wait([](const std::vector<std::uint64_t>& received) { return received.back() == 1; }));
-  // Well below the liveliness lease; a loaded machine may exceed the deadline itself.
-  EXPECT_LT(std::chrono::steady_clock::now() - silent_since, kLivelinessLease / 2);
-  EXPECT_TRUE(receives_only(1));
-}
-
-TEST(Delivery, OwnThreadServesOneSubscription) {
+// A vehicle hears every controller: it decides by their terms.
+TEST(Commands, OfAllControllersAreDelivered) {
   const DomainLock lock;
   Node plant(settings(lock, "plant"));
-  Node control(settings(lock, "control"));
-  Inbox<std::thread::id> own;
-  Inbox<std::thread::id> shared;
-  const auto imu_subscription = control.subscribe<msg::Imu>(
-      topics::kImu, [&](const msg::Imu&) { own.put(std::this_thread::get_id()); },
-      comms::Delivery::kOwnThread);
-  const auto pose_subscription = control.subscribe<msg::MocapPose>(
-      topics::kMocapPose, [&](const msg::MocapPose&) { shared.put(std::this_thread::get_id()); });
-  const auto battery_subscription = control.subscribe<msg::Battery>(
-      topics::kBattery, [&](const msg::Battery&) { shared.put(std::this_thread::get_id()); });
-  auto imu = plant.publish(topics::kImu);
-  auto pose = plant.publish(topics::kMocapPose);
-  auto battery = plant.publish(topics::kBattery);
-  ASSERT_TRUE(eventually([&] { return imu.matched() + pose.matched() + battery.matched() == 3; }));
-  ASSERT_TRUE(eventually([&] {
-    return imu_subscription.matched() + pose_subscription.matched() + battery_subscription.matched() == 3;
+  Inbox<std::uint64_t> received;
+  const auto subscription = plant.subscribe<msg::ActuatorCommand>(
+      topics::kActuatorCommand,
+      [&](const msg::ActuatorCommand& command) { received.put(command.sequence_number()); });
+  Node first(settings(lock, "control"));
+  Node second(settings(lock, "control"));
+  auto of_first = first.publish(topics::kActuatorCommand);
+  auto of_second = second.publish(topics::kActuatorCommand);
+  const SteadySender first_sender(of_first, 1);
+  const SteadySender second_sender(of_second, 2);
+  EXPECT_TRUE(received.wait([](const std::vector<std::uint64_t>& numbers) {
+    return std::count(numbers.begin(), numbers.end(), 1U) >= 20 &&
+           std::count(numbers.begin(), numbers.end(), 2U) >= 20;
   }));
+}
 
-  imu.publish(example<msg::Imu>());
-  pose.publish(example<msg::MocapPose>());
-  battery.publish(example<msg::Battery>());
+int threads_of_this_process() {
+  const std::filesystem::directory_iterator tasks("/proc/self/task");
+  return static_cast<int>(std::distance(begin(tasks), end(tasks)));
+}
 
-  ASSERT_TRUE(own.wait_for_count(1));
-  ASSERT_TRUE(shared.wait_for_count(2));
-  EXPECT_EQ(shared.items()[0], shared.items()[1]);
-  EXPECT_NE(own.items()[0], shared.items()[0]);
+// GIVEN a participant that serves vehicles WHEN samples of several kinds and vehicles come THEN those of one kind come in one
+// thread, those of another kind in another, and a further vehicle takes none.
+TEST(Delivery, OneThreadServesAKindOfSamplesOfAllVehicles) {
+  const DomainLock lock;
+  const Participant sensors(settings(lock, "plant"), {"kl1", "kl2"});
+  const Participant control(settings(lock, "control"), {"kl1", "kl2"});
+  std::mutex mutex;
+  std::map<Delivery, std::set<std::thread::id>> threads;
+  std::map<Delivery, int> received;
+  const auto note = [&](Delivery delivery) {
+    const std::lock_guard<std::mutex> guard(mutex);
+    threads[delivery].insert(std::this_thread::get_id());
+    ++received[delivery];
+  };
+  std::vector<std::unique_ptr<Node>> nodes;
+  std::vector<Subscription> subscriptions;
+  std::vector<Publisher<msg::Imu>> imu;
+  std::vector<Publisher<msg::MocapPose>> poses;
+  std::vector<Publisher<msg::Battery>> batteries;
+  int threads_before = 0;
+  for (const std::string vehicle : {"kl1", "kl2"}) {
+    threads_before = threads_of_this_process();
+    Node& reading = *nodes.emplace_back(std::make_unique<Node>(control, vehicle));
+    Node& writing = *nodes.emplace_back(std::make_unique<Node>(sensors, vehicle));
+    subscriptions.push_back(reading.subscribe<msg::Imu>(
+        topics::kImu, [&](const auto&) { note(Delivery::kSamples); }, Delivery::kSamples));
+    subscriptions.push_back(reading.subscribe<msg::MocapPose>(
+        topics::kMocapPose, [&](const auto&) { note(Delivery::kSensors); }, Delivery::kSensors));
+    subscriptions.push_back(
+        reading.subscribe<msg::Battery>(topics::kBattery, [&](const auto&) { note(Delivery::kShared); }));
+    imu.push_back(writing.publish(topics::kImu));
+    poses.push_back(writing.publish(topics::kMocapPose));
+    batteries.push_back(writing.publish(topics::kBattery));
+  }
+  EXPECT_EQ(threads_of_this_process(), threads_before) << "of the second vehicle";
+  ASSERT_TRUE(eventually([&] {
+    return std::all_of(subscriptions.begin(), subscriptions.end(),
+                       [](const auto& one) { return one.matched() == 1; });
+  }));
+  EXPECT_TRUE(eventually([&] {
+    for (auto& publisher : imu) publisher.publish(example<msg::Imu>());
+    for (auto& publisher : poses) publisher.publish(example<msg::MocapPose>());
+    for (auto& publisher : batteries) publisher.publish(example<msg::Battery>());
+    const std::lock_guard<std::mutex> guard(mutex);
+    return received[Delivery::kSamples] >= 4 && received[Delivery::kSensors] >= 4 &&
+           received[Delivery::kShared] >= 4;
+  }));
+  const std::lock_guard<std::mutex> guard(mutex);
+  std::set<std::thread::id> all;
+  for (const auto& [delivery, of_delivery] : threads) {
+    EXPECT_EQ(of_delivery.size(), 1U);
+    all.insert(of_delivery.begin(), of_delivery.end());
+  }
+  EXPECT_EQ(all.size(), 3U);
 }
 
 TEST(Vehicles, AreIsolatedFromEachOther) {

@@ -45,7 +45,7 @@ TEST(Participant, AllThreadsOfTheMiddlewareHaveTheRealtimePriority) {
   Node control(settings);
   std::atomic<pid_t> receiver{0};
   const auto sensor = control.subscribe<msg::Imu>(
-      topics::kImu, [](const msg::Imu&) {}, Delivery::kOwnThread);
+      topics::kImu, [](const msg::Imu&) {}, Delivery::kSamples);
   const auto requests =
       control.subscribe<msg::Command>(topics::kCommand, [&](const msg::Command&) { receiver = ::gettid(); });
   Publisher<msg::Estimate> estimates = control.publish(topics::kEstimate);

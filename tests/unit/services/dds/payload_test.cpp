@@ -16,7 +16,7 @@ constexpr std::size_t kOverhead = 20 + 16 + 12 + 24 + 60;
 TEST(Payload, OfEveryStreamFitsIntoOneFrame) {
   int streams = 0;
   for_each_topic([&](const auto& topic) {
-    if (topic.qos != Qos::kStream && topic.qos != Qos::kOwnedStream && topic.qos != Qos::kTelemetry) return;
+    if (topic.qos != Qos::kStream && topic.qos != Qos::kTelemetry) return;
     ++streams;
     EXPECT_LE(to_payload(typename std::decay_t<decltype(topic)>::Message()).size(), kUdpInFrame - kOverhead)
         << topic.name;

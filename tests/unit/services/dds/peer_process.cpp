@@ -1,5 +1,5 @@
 // A separate process for the tests: joins a domain as "peer", receives requests, publishes its status and actuator
-// commands of the highest strength until its standard input is closed, then leaves.
+// commands until its standard input is closed, then leaves.
 //   dds_peer DOMAIN
 // With "isolated" as DOMAIN, it enters a new network namespace, checks that two nodes discover each other
 // there, and exits with 0, or with 77 if it lacks the permission.
@@ -22,7 +22,7 @@ namespace swiftlet::comms::fixtures {
 namespace {
 
 constexpr int kNotPermitted = 77;
-constexpr int kStrongest = 9;
+constexpr int kCommandNumber = 9;
 
 bool enter_new_network_namespace() {
   if (::unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0 && ::unshare(CLONE_NEWNET) != 0) return false;
@@ -64,8 +64,8 @@ int run_peer(int domain) {
   const Subscription requests = node.subscribe<msg::Command>(topics::kCommand, [](const msg::Command&) {});
   auto state = node.publish(topics::kControlStatus);
   state.publish(example<msg::ControlStatus>());
-  auto commands = node.publish(topics::kActuatorCommand, kStrongest);
-  const SteadySender sender(commands, kStrongest);
+  auto commands = node.publish(topics::kActuatorCommand);
+  const SteadySender sender(commands, kCommandNumber);
   char byte = 0;
   while (::read(STDIN_FILENO, &byte, 1) > 0) {
   }

@@ -20,7 +20,6 @@
 #include "swiftlet/services/dds/node.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/paths.hpp"
-#include "tests/unit/services/dds/steady_sender.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
 namespace swiftlet::comms::fixtures::process_test {
@@ -126,8 +125,8 @@ TEST_F(Peers, AreReportedToALateListener) {
   node_.on_peer({});
 }
 
-// GIVEN a peer and a weaker one WHEN the peer stands still for longer than its lease THEN it is received again for as long as it
-// runs. WHEN it dies THEN the weaker one's stream is delivered before the lease ends, and the death is reported within it.
+// GIVEN a peer WHEN it stands still for longer than its lease THEN it is received again for as long as it runs. WHEN it dies THEN
+// that is reported within the lease.
 TEST_F(Peers, AreReceivedAgainAfterASuspensionAndReportedDeadWithinTheLease) {
   Inbox<std::uint64_t> received;
   const auto subscription = node_.subscribe<msg::ActuatorCommand>(
@@ -147,19 +146,9 @@ TEST_F(Peers, AreReceivedAgainAfterASuspensionAndReportedDeadWithinTheLease) {
   EXPECT_TRUE(received.wait([&](const auto& numbers) { return of_peer(numbers) >= before + 1500; }))
       << of_peer(received.items()) - before << " received after it resumed";
 
-  NodeSettings standby_settings = settings();
-  standby_settings.name = "standby";
-  Node standby(standby_settings);
-  auto commands = standby.publish(topics::kActuatorCommand, 1);
-  const SteadySender sender(commands, 1);
-  ASSERT_TRUE(eventually([&] { return commands.matched() == 1 && subscription.matched() == 2; }));
-  ASSERT_TRUE(received.wait([](const auto& numbers) { return numbers.back() == 9; }));
   const std::size_t reported = events_.size();
   peer.crash();
   const auto crashed_at = std::chrono::steady_clock::now();
-  EXPECT_TRUE(received.wait([](const auto& numbers) { return numbers.back() == 1; }));
-  EXPECT_LT(std::chrono::steady_clock::now() - crashed_at, kLivelinessLease / 2);
-
   ASSERT_TRUE(events_.wait_for_count(reported + 1));
   EXPECT_LT(std::chrono::steady_clock::now() - crashed_at, kLivelinessLease + 1s);
   EXPECT_FALSE(events_.items()[reported].alive);

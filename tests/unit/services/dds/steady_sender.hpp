@@ -20,7 +20,7 @@ class SteadySender {
           command.sequence_number(sequence_number);
           runtime::PeriodicTimer timer(2'000'000, 2'000'000);
           while (!stop_) {
-            if (!silent_) publisher.publish(command);
+            publisher.publish(command);
             timer.wait();
           }
         }) {}
@@ -31,11 +31,8 @@ class SteadySender {
   SteadySender(const SteadySender&) = delete;
   SteadySender& operator=(const SteadySender&) = delete;
 
-  void silence() { silent_ = true; }
-
  private:
   std::atomic<bool> stop_{false};
-  std::atomic<bool> silent_{false};
   std::thread thread_;
 };
 

@@ -9,6 +9,7 @@
 #include "swiftlet_msgs/msg/CommandPubSubTypes.h"
 #include "swiftlet_msgs/msg/MissionPubSubTypes.h"
 #include "swiftlet_msgs/msg/MocapPosePubSubTypes.h"
+#include "swiftlet_msgs/msg/VehicleInfoPubSubTypes.h"
 
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
@@ -45,7 +46,7 @@ class RawPeer {
       : session_(swiftlet::tests::settings_of("raw", lock), Announcement(), std::make_shared<DatagramGuard>(),
                  nullptr) {
     dds::Topic* const raw_topic = session_.topic("rt/kl1/" + topic, dds::TypeSupport(new RawType(type)));
-    writer_ = session_.publisher->create_datawriter(raw_topic, writer_qos(qos, 0, 0));
+    writer_ = session_.publisher->create_datawriter(raw_topic, writer_qos(qos));
   }
   bool send(const Bytes& bytes) { return write(*writer_, &bytes); }
   bool is_matched() const {
@@ -97,6 +98,41 @@ TEST(BrokenMessage, IsDroppedOnARequestTopic) {
   for (std::size_t i = 0; i < 4; ++i) endless.at(kEncapsulation + 16 + i) = 0xff;  // the number of items
   expect_dropped<msg::MissionPubSubType>(topics::kMission, mission,
                                          {endless, cut(whole, whole.size() / 2), changed(whole, 0, 1)});
+}
+
+// GIVEN a peer whose vehicle_info has another wire version and another layout WHEN it comes THEN a reader gets that version alone, and
+// one of payloads nothing.
+TEST(WireVersion, IsAllThatIsTakenOfAMessageOfAnotherOne) {
+  const DomainLock lock;
+  Node node(swiftlet::tests::settings_of("node", lock));
+  Inbox<msg::VehicleInfo> inbox;
+  Inbox<std::size_t> payloads;
+  const auto messages =
+      node.subscribe<msg::VehicleInfo>(topics::kVehicleInfo, [&](const auto& info) { inbox.put(info); });
+  Node recorder(swiftlet::tests::settings_of("recorder", lock));
+  const auto raw = recorder.subscribe_raw<msg::VehicleInfo>(
+      topics::kVehicleInfo, [&](const RawSample& sample) { payloads.put(sample.size); });
+  RawPeer peer(lock, "vehicle_info", type_name(msg::VehicleInfoPubSubType()), Qos::kLatched);
+  ASSERT_TRUE(eventually([&] { return messages.matched() == 1 && raw.matched() == 1; }));
+  const Bytes whole = serialized<msg::VehicleInfoPubSubType>(example<msg::VehicleInfo>());
+  ASSERT_TRUE(peer.send(cut(changed(whole, kEncapsulation, 3), kEncapsulation + 12)));
+  ASSERT_TRUE(inbox.wait_for_count(1));
+  ASSERT_TRUE(peer.send(whole));
+  ASSERT_TRUE(inbox.wait_for_count(2));
+  ASSERT_TRUE(payloads.wait_for_count(1));
+  msg::VehicleInfo foreign;
+  foreign.wire_version(3);
+  EXPECT_TRUE(inbox.items()[0] == foreign);
+  EXPECT_TRUE(inbox.items()[1] == example<msg::VehicleInfo>());
+  EXPECT_EQ(payloads.size(), 1U);
+}
+
+TEST(WireVersion, IsRefusedByName) {
+  EXPECT_EQ(fault_of_wire_version(kWireVersion, "the vehicle"), "");
+  EXPECT_EQ(fault_of_wire_version(3, "the vehicle"),
+            "the vehicle speaks version 3 of the messages, this program 2");
+  EXPECT_EQ(fault_of_wire_version(0x51234567, "control"),
+            "control speaks another version of the messages than this program, 2");
 }
 
 }  // namespace swiftlet::comms::fixtures::broken_message_test

@@ -132,14 +132,14 @@ TEST(Convert, ImuSampleCarriesTheObeyedCommand) {
   for (const plant::ObeyedCommand& obeyed : {plant::ObeyedCommand{}, plant::ObeyedCommand{true, false, 0, 0},
                                              plant::ObeyedCommand{true, true, 7, 8}}) {
     msg::Imu message = example<msg::Imu>();
-    set_obeyed_command(obeyed, message);
-    const plant::ObeyedCommand got = obeyed_command(message);
+    message.obeyed(to_message(obeyed));
+    const plant::ObeyedCommand got = from_message(message.obeyed());
     EXPECT_EQ(got.reported, obeyed.reported);
     EXPECT_EQ(got.any, obeyed.any);
     EXPECT_EQ(got.term, obeyed.term);
     EXPECT_EQ(got.stamp_ns, obeyed.stamp_ns);
   }
-  EXPECT_FALSE(obeyed_command(msg::Imu()).reported) << "a vehicle that does not set the fields";
+  EXPECT_FALSE(from_message(msg::Imu().obeyed()).reported) << "a vehicle that does not set the fields";
 }
 
 TEST(Convert, RefusesInvalidSamples) {

@@ -6,6 +6,7 @@
 
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/messages/topics.hpp"
+#include "swiftlet/services/messages/wire_version.hpp"
 
 namespace swiftlet::comms::fixtures {
 
@@ -327,9 +328,11 @@ inline msg::Reference example() {
 template <>
 inline msg::ControlStatus example() {
   msg::ControlStatus message;
+  message.wire_version(kWireVersion);
   message.stamp_ns(1009);
   message.sequence_number(20);
   message.mode(msg::ControlStatus_Constants::MODE_HOLDING);
+  message.reason_code(msg::ControlStatus_Constants::REASON_REQUESTED);
   message.reason() = "arrived";
   message.airborne(true);
   message.has_pose(true);
@@ -377,6 +380,7 @@ inline msg::CommandAck example() {
 template <>
 inline msg::VehicleInfo example() {
   msg::VehicleInfo message;
+  message.wire_version(kWireVersion);
   message.stamp_ns(1011);
   message.sequence_number(22);
   message.name() = "kaylion";

@@ -43,7 +43,6 @@ class Lockstep : public testing::Test {
     settings.name = name;
     settings.domain = lock.domain();
     settings.localhost_only = true;
-    settings.deadlines = false;
     return settings;
   }
 
@@ -191,9 +190,9 @@ TEST_F(Lockstep, PublishesEverySample) {
   for (const msg::Imu& sample : samples_.items()) {
     EXPECT_LE(sample.stamp_ns(), newest_ns + kPeriod_ns);
     EXPECT_EQ(sample.stamp_ns(), static_cast<std::int64_t>(sample.sequence_number() - 1) * kPeriod_ns);
-    EXPECT_GE(sample.mocap_sequence_number(), frames);
+    EXPECT_GE(sample.lockstep().mocap_pose(), frames);
     newest_ns = std::max(newest_ns, sample.stamp_ns());
-    frames = sample.mocap_sequence_number();
+    frames = sample.lockstep().mocap_pose();
   }
   EXPECT_NEAR(static_cast<double>(frames), 1e-9 * static_cast<double>(newest_ns) * settings_.mocap.rate_hz,
               2.0);
@@ -269,7 +268,7 @@ TEST_F(Lockstep, GoesOnWithoutSilentMotionCapture) {
   answers_ = true;
   start(going_on());
   ASSERT_TRUE(samples_.wait(
-      [](const Samples& samples) { return !samples.empty() && samples.back().mocap_sequence_number() > 5; }));
+      [](const Samples& samples) { return !samples.empty() && samples.back().lockstep().mocap_pose() > 5; }));
   mocap_answers_ = false;
   ASSERT_TRUE(stands_still());
   const std::int64_t stood_ns = newest_ns();
@@ -278,8 +277,8 @@ TEST_F(Lockstep, GoesOnWithoutSilentMotionCapture) {
   std::uint64_t frames = 0;
   for (const msg::Imu& sample : samples_.items()) {
     if (sample.stamp_ns() <= stood_ns + kPeriod_ns) continue;
-    if (frames == 0) frames = sample.mocap_sequence_number();
-    EXPECT_EQ(sample.mocap_sequence_number(), frames);
+    if (frames == 0) frames = sample.lockstep().mocap_pose();
+    EXPECT_EQ(sample.lockstep().mocap_pose(), frames);
   }
 }
 

@@ -106,7 +106,7 @@ class Px4Flight : public testing::Test {
     if (!control_lives_) return;
     Sample sample;
     ASSERT_FALSE(comms::from_message(message, sample));
-    control_->set_obeyed(comms::obeyed_command(message));
+    control_->set_obeyed(comms::from_message(message.obeyed()));
     const plant::VehicleCommand* command = nullptr;
     if constexpr (std::is_same_v<Sample, plant::ImuSample>) {
       command = &control_->on_imu(sample);

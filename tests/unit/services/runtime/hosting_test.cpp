@@ -161,13 +161,4 @@ TEST(Hosting, EndsAtOnceWhenAllHaveFailed) {
   EXPECT_EQ(host_all({Fault::kRunThrows}, traces), "its step failed");
 }
 
-TEST(GroupPhase, SpreadsFewVehiclesAndGathersMany) {
-  EXPECT_EQ(group_phase(0, 1), 0.0);
-  EXPECT_EQ(group_phase(1, 2), 0.5);
-  EXPECT_EQ(group_phase(2, 3), 2.0 / 3.0);
-  std::map<double, int> vehicles_at;
-  for (std::size_t i = 0; i < 16; ++i) ++vehicles_at[group_phase(i, 16)];
-  EXPECT_EQ(vehicles_at, (std::map<double, int>{{0.0, 4}, {0.25, 4}, {0.5, 4}, {0.75, 4}}));
-}
-
 }  // namespace swiftlet::runtime::hosting_test

@@ -13,7 +13,7 @@ TEST(Wire, AnImuSampleKeepsItsStampsAndReportsTheObeyedCommand) {
   in.stamp_us = 1'234'567'890'123;
   in.specific_force_frd = {1.0F, 2.0F, -9.75F};
   in.body_rates_frd = {0.5F, -0.25F, 0.125F};
-  EXPECT_EQ(to_message(in).commands(), comms::msg::Imu_Constants::COMMANDS_NONE);
+  EXPECT_EQ(to_message(in).obeyed().state(), comms::msg::ObeyedCommand_Constants::NONE);
   in.has_command = 1;
   in.command_term = 70'000;
   in.command_stamp_us = 1'234'567'888'123;
@@ -21,10 +21,10 @@ TEST(Wire, AnImuSampleKeepsItsStampsAndReportsTheObeyedCommand) {
   EXPECT_EQ(out.stamp_ns(), 1'234'567'890'123'000);
   EXPECT_EQ(out.specific_force_frd()[2], -9.75);
   EXPECT_EQ(out.body_rates_frd()[1], -0.25);
-  EXPECT_EQ(out.commands(), comms::msg::Imu_Constants::COMMANDS_OBEYED);
-  EXPECT_EQ(out.command_term(), 70'000U);
-  EXPECT_EQ(out.command_stamp_ns(), 1'234'567'888'123'000);
-  EXPECT_EQ(out.mocap_sequence_number(), 0U) << "always so in real time";
+  EXPECT_EQ(out.obeyed().state(), comms::msg::ObeyedCommand_Constants::OBEYED);
+  EXPECT_EQ(out.obeyed().term(), 70'000U);
+  EXPECT_EQ(out.obeyed().stamp_ns(), 1'234'567'888'123'000);
+  EXPECT_EQ(out.lockstep().mocap_pose(), 0U) << "always so in real time";
 }
 
 TEST(Wire, ACommandNamesTheSampleThatItAnswersInItsOwnMicroseconds) {

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/malloc_guard.hpp"
 #include "tests/support/rtps_message.hpp"
 
 namespace swiftlet::comms::datagram_guard_test {
@@ -51,6 +52,26 @@ TEST(DatagramGuard, RefusesNoNumberAndNoNewcomer) {
                      kSecond_ns))
       << "with another lease than before";
   EXPECT_EQ(guard.refusals().total(), 0U);
+}
+
+// The threads that receive are real-time: they hold a lock meanwhile for which the others wait.
+TEST(DatagramGuard, AllocatesNothingWhileItReceives) {
+  std::vector<Bytes> datagrams;
+  for (std::uint32_t i = 0; i <= 2 * kMostParticipants; ++i) datagrams.push_back(newcomer(i).bytes());
+  datagrams.push_back(sample(1).bytes());
+  Bytes broken = sample(2).bytes();
+  broken.resize(broken.size() / 2);
+  datagrams.push_back(broken);
+  DatagramGuard guard;
+  const test::MallocGuard allocations;
+  for (std::size_t i = 0; i < datagrams.size(); ++i) {
+    SenderAddress host = kHost;
+    host[15] = static_cast<std::uint8_t>(i);
+    const auto now_ns = static_cast<std::int64_t>(i + 1) * kSecond_ns;
+    guard.admit(datagrams[i].data(), datagrams[i].size(), host, 7411, {now_ns, now_ns});
+  }
+  EXPECT_EQ(allocations.calls(), 0U);
+  EXPECT_EQ(guard.refusals().total(), 1U);
 }
 
 TEST(DatagramGuard, KnowsWithSecurityWhatParticipantsSaidAboutThemselves) {

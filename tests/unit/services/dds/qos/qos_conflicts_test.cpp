@@ -143,7 +143,6 @@ class QosConflictLog : public testing::Test {
 };
 
 constexpr Topic<msg::Imu> kReliableImu{"imu", Qos::kRequest};
-constexpr Topic<msg::ActuatorCommand> kUnownedCommand{"actuator_command", Qos::kStream};
 
 TEST_F(QosConflictLog, NamesTopicPolicyAndPeerOnBothSides) {
   const auto publisher = talker_.publish(topics::kImu);
@@ -162,13 +161,12 @@ TEST_F(QosConflictLog, NamesTopicPolicyAndPeerOnBothSides) {
 }
 
 TEST_F(QosConflictLog, IncludesALateSubscriber) {
-  const auto publisher = talker_.publish(kUnownedCommand);
+  const auto publisher = talker_.publish(topics::kActuatorCommand);
   ASSERT_TRUE(eventually([&] { return !listener_.topics_seen().empty(); }));
-  const auto subscription =
-      listener_.subscribe<msg::ActuatorCommand>(topics::kActuatorCommand, [](const msg::ActuatorCommand&) {});
+  const auto subscription = listener_.subscribe<msg::ActuatorCommand>(
+      {topics::kActuatorCommand.name, Qos::kRequest}, [](const msg::ActuatorCommand&) {});
 
-  const std::string policies =
-      "ownership (offered shared, requested exclusive), deadline (offered none, requested 50 ms)";
+  const std::string policies = "reliability (offered best effort, requested reliable)";
   EXPECT_TRUE(is_logged({"rt/kl1/actuator_command: 'talker' (", "is not received", policies})) << all_lines();
   EXPECT_TRUE(is_logged({"rt/kl1/actuator_command: 'listener' (", "does not receive", policies}))
       << all_lines();

@@ -1,4 +1,4 @@
-#include "swiftlet/services/dds/clocks/clock_client.hpp"
+#include "swiftlet/services/clocks/clock_client.hpp"
 
 #include <random>
 #include <utility>

@@ -1,5 +1,5 @@
 // A process asks the vehicle for its clock.
-#include "swiftlet/services/dds/clocks/clock_client.hpp"
+#include "swiftlet/services/clocks/clock_client.hpp"
 
 #include <atomic>
 #include <chrono>
@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/services/dds/clocks/clock_server.hpp"
+#include "swiftlet/services/clocks/clock_server.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/private_domain.hpp"

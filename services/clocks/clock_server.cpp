@@ -1,4 +1,4 @@
-#include "swiftlet/services/dds/clocks/clock_server.hpp"
+#include "swiftlet/services/clocks/clock_server.hpp"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "swiftlet/services/dds/clocks/clock_exchange.hpp"
+#include "swiftlet/services/clocks/clock_exchange.hpp"
 
 #include <algorithm>
 #include <initializer_list>

@@ -1,4 +1,4 @@
-#include "swiftlet/services/dds/discovery/network_probe.hpp"
+#include "swiftlet/ground/cli/network/network_probe.hpp"
 
 #include <algorithm>
 #include <arpa/inet.h>
@@ -15,7 +15,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "swiftlet/services/dds/clocks/clock_filter.hpp"
+#include "swiftlet/services/clocks/clock_filter.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::comms {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "swiftlet/services/dds/clocks/clock_exchange.hpp"
+#include "swiftlet/services/clocks/clock_exchange.hpp"
 
 namespace swiftlet::comms {
 

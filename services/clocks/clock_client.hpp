@@ -7,7 +7,7 @@
 #include <functional>
 #include <optional>
 
-#include "swiftlet/services/dds/clocks/clock_filter.hpp"
+#include "swiftlet/services/clocks/clock_filter.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/runtime/latest_value.hpp"
 

@@ -1,4 +1,4 @@
-#include "swiftlet/services/dds/clocks/clock_filter.hpp"
+#include "swiftlet/services/clocks/clock_filter.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,46 @@
+// The version of the messages, which vehicle_info and control_status state: a process refuses another one by a sentence.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <type_traits>
+
+#include "swiftlet_msgs/msg/VehicleInfo.h"
+
+namespace swiftlet::comms {
+
+constexpr std::uint32_t kWireVersion = swiftlet_msgs::msg::VehicleInfo_Constants::WIRE_VERSION;
+
+template <class Message, class = void>
+struct StatesWireVersion : std::false_type {};
+template <class Message>
+struct StatesWireVersion<Message, std::void_t<decltype(std::declval<const Message&>().wire_version())>>
+    : std::true_type {};
+
+// Of a payload in CDR, with its encapsulation header, of a message that begins with wire_version. nullopt: it is too short.
+inline std::optional<std::uint32_t> wire_version_of(const std::uint8_t* payload, std::size_t size) {
+  constexpr std::size_t kHeader = 4;
+  if (size < kHeader + sizeof(std::uint32_t)) return std::nullopt;
+  const bool is_little_endian = (payload[1] & 1U) != 0;
+  std::uint32_t version = 0;
+  for (std::size_t byte = 0; byte < sizeof version; ++byte)
+    version |= static_cast<std::uint32_t>(payload[kHeader + byte])
+               << 8U * (is_little_endian ? byte : 3 - byte);
+  return version;
+}
+
+// "the vehicle speaks another version of the messages than this program, 2"; empty: it speaks the same one.
+inline std::string fault_of_wire_version(std::uint32_t version, const char* who) {
+  if (version == kWireVersion) return {};
+  const std::string own = std::to_string(kWireVersion);
+  constexpr std::uint32_t kPlausible = 1000;  // version 1 had no such member: a time stands there
+  if (version == 0 || version > kPlausible)
+    return std::string(who) + " speaks another version of the messages than this program, " + own;
+  return std::string(who) + " speaks version " + std::to_string(version) + " of the messages, this program " +
+         own;
+}
+
+}  // namespace swiftlet::comms
