@@ -347,10 +347,11 @@ void over_socket(const Options& options, int rate_hz, RoundTrips& trips) {
       while (::recv(ends[0], &datagram, sizeof datagram, 0) > 0) trips.answered(datagram.sequence);
     });
     Datagram datagram{};
-    trips.pace(options, rate_hz, [&](std::uint64_t sequence) {
+    const auto send = [&](std::uint64_t sequence) {
       datagram.sequence = sequence;
       if (::send(ends[0], &datagram, sizeof datagram, 0) < 0) throw std::runtime_error("cannot send");
-    });
+    };
+    rate_hz == kBackToBack ? trips.back_to_back(send) : trips.pace(options, rate_hz, send);
     ::shutdown(ends[0], SHUT_RDWR);
     receiver.join();
   }
