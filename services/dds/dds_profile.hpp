@@ -15,10 +15,9 @@ struct DdsProfile {
   eprosima::fastdds::rtps::UDPv4TransportDescriptor udp;
 };
 
-// Reads the participant profile of a file: the only one, or that with is_default_profile="true". It may set
-//   rtps: allocation, sendSocketBufferSize, listenSocketBufferSize, propertiesPolicy, userTransports with one UDPv4 transport
-//   transport_descriptor: sendBufferSize, receiveBufferSize, TTL, maxMessageSize, output_port, interfaceWhiteList
-// Throws runtime::ConfigError with file, line and element for everything else, and for what Fast DDS refuses.
+// Reads the participant profile of a file: the first one, or that with is_default_profile="true", with its first transport, which
+// must be UDPv4. What Swiftlet sets itself (discovery, addresses, QoS of topics, flow controllers) is set over it. Throws
+// runtime::ConfigError with file and line, or with what Fast DDS says of the file.
 DdsProfile load_dds_profile(const std::string& file);
 
 }  // namespace swiftlet::comms

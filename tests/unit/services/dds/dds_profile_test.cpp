@@ -6,6 +6,7 @@
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::comms::dds_profile_test {
@@ -86,35 +87,35 @@ TEST_F(DdsProfiles, AreApplied) {
   EXPECT_GE(sockets_with_buffer(2 * 78000), 2);
 }
 
-TEST_F(DdsProfiles, NameWhatTheyMayNotSet) {
-  const std::string swiftlet = "may not be set: Swiftlet sets it, or ignores it; of ";
-  EXPECT_EQ(refusal(with("", "<name>other</name>\n")).rfind("6: <name>: " + swiftlet + "<rtps>", 0), 0U)
-      << refusal(with("", "<name>other</name>\n"));
-  const std::string writer = refusal(with("<data_writer profile_name=\"w\"/>\n", ""));
-  EXPECT_EQ(writer, "4: <data_writer>: " + swiftlet +
-                        "<profiles> a profile may set transport_descriptors, participant");
-  const std::string flow = refusal(with("", "<flow_controller_descriptor_list/>\n"));
-  EXPECT_EQ(flow.rfind("6: <flow_controller_descriptor_list>: " + swiftlet + "<rtps>", 0), 0U) << flow;
-  EXPECT_EQ(refusal(with("", "<useBuiltinTransports>true</useBuiltinTransports>\n")),
-            "6: <useBuiltinTransports>: is true, must be false");
-  EXPECT_EQ(refusal(with(descriptor("t", "<type>TCPv4</type>\n"), user_transport("t"))),
-            "4: <transport_descriptor>: is of type TCPv4, must be UDPv4");
-  EXPECT_EQ(refusal(with("", user_transport("t"))),
-            "6: <transport_id>: is 't', must be the transport_id of a <transport_descriptor>");
-}
-
 TEST_F(DdsProfiles, AreRefusedIfBroken) {
   EXPECT_EQ(refusal("<dds>\n<profiles>\n</dds>\n").rfind("2: is no valid XML: ", 0), 0U)
       << refusal("<dds>\n<profiles>\n</dds>\n");
-  EXPECT_EQ(refusal("<!-- nothing -->\n"), " must be <dds> with <profiles>");
-  EXPECT_EQ(refusal("<html/>\n"), "1: <html>: must be <dds> with <profiles>");
-  EXPECT_EQ(refusal("<dds><profiles></profiles></dds>\n"), "1: <profiles>: has no <participant>");
-  const std::string many = "<participant profile_name=\"other\"><rtps/></participant>\n";
-  EXPECT_EQ(refusal(with(many, "")),
-            "3: <profiles>: has several <participant>, of which none has is_default_profile=\"true\"");
+  const std::string none = " must be <dds> with <profiles> and in it a <participant profile_name=...>";
+  EXPECT_EQ(refusal("<!-- nothing -->\n"), none);
+  EXPECT_EQ(refusal("<html/>\n"), none);
+  EXPECT_EQ(refusal("<dds><profiles></profiles></dds>\n"), none);
+  EXPECT_EQ(refusal(with(descriptor("t", "<type>TCPv4</type>\n"), user_transport("t"))),
+            " <userTransports>: must name a transport of type UDPv4");
   const std::string by_fast_dds = refusal(with("", "<sendSocketBufferSize>much</sendSocketBufferSize>\n"));
   EXPECT_EQ(by_fast_dds.rfind(" is refused by Fast DDS: ", 0), 0U) << by_fast_dds;
   EXPECT_THROW(Node(settings_with("/no/such/profile.xml")), runtime::ConfigError);
+}
+
+// What Swiftlet sets itself is set over the profile.
+TEST_F(DdsProfiles, DoNotChangeWhatSwiftletSets) {
+  const std::string file =
+      folder_.write("more.xml", with("<data_writer profile_name=\"w\"/>\n",
+                                     "<name>other</name>\n"
+                                     "<useBuiltinTransports>true</useBuiltinTransports>\n"));
+  const Node here(settings_with(file));
+  NodeSettings there_settings = settings_with("");
+  there_settings.name = "there";
+  Node there(there_settings);
+  tests::Inbox<std::string> peers;
+  there.on_peer([&](const PeerEvent& event) { peers.put(event.name); });
+  ASSERT_TRUE(peers.wait_for_count(1));
+  EXPECT_EQ(peers.items().front(), "here");
+  there.on_peer({});
 }
 
 }  // namespace swiftlet::comms::dds_profile_test
