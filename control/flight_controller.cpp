@@ -66,6 +66,8 @@ void FlightController::set_vehicle_fault(const VehicleFault& fault) {
   impl_->vehicle_fault = fault;
 }
 
+void FlightController::set_vehicle_refusal(const VehicleFault& refusal) { impl_->vehicle_refusal = refusal; }
+
 void FlightController::set_rotors_running(bool running) { impl_->rotors_running = running; }
 
 void FlightController::set_obeyed(const plant::ObeyedCommand& obeyed) { impl_->obeyed = obeyed; }

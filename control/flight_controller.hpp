@@ -65,6 +65,8 @@ class FlightController {
   // What the vehicle reports as fault in vehicle_info, from the next step on; empty: none. At other levels than actuators a
   // flight is stopped after 0.5 s of one, and none begins.
   void set_vehicle_fault(const VehicleFault& fault);
+  // Why the vehicle must not be armed, a sentence; empty: it may. Has no effect in flight.
+  void set_vehicle_refusal(const VehicleFault& refusal);
 
   // What the vehicle reports of its rotors in vehicle_info, from the next step on. At other levels than actuators a take-off begins
   // when they run: a vehicle with an arming of its own starts them later than it is told to. Without a call they run when told to.

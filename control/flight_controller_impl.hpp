@@ -122,6 +122,7 @@ struct FlightController::Impl {
   SupplyObserver supply_observer;
   Allocator::Supply supply;  // now
   VehicleFault vehicle_fault{};
+  VehicleFault vehicle_refusal{};
   std::int64_t vehicle_fault_since_ns = 0;  // of the first step with it
   bool rotors_running = true;               // as the vehicle reports
   plant::ControlLevel level = plant::ControlLevel::kActuators;

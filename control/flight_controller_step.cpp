@@ -137,7 +137,8 @@ SupervisorInputs FlightController::Impl::inputs() const {
   inputs.level = level;
   inputs.accepted_levels = accepted_levels;
   inputs.rotors_running = rotors_running || level == plant::ControlLevel::kActuators;
-  if ((level != plant::ControlLevel::kActuators || accepted_levels.empty()) && vehicle_fault[0] != '\0') {
+  if (vehicle_refusal[0] != '\0') inputs.vehicle_refusal = vehicle_refusal.data();
+  if (level != plant::ControlLevel::kActuators && vehicle_fault[0] != '\0') {
     inputs.vehicle_fault = vehicle_fault.data();
     inputs.vehicle_fault_s = math::seconds(last_stamp_ns - vehicle_fault_since_ns);
   }

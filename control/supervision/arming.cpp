@@ -119,15 +119,20 @@ Outcome samples_fit_level(const SupervisorContext& context) {
   return refuse("level actuators needs imu, but the vehicle brings vehicle_odometry");
 }
 
+Outcome vehicle_acceptable(const SupervisorContext& context) {
+  if (context.inputs.vehicle_refusal[0] == '\0') return accept();
+  return refuse("%s", context.inputs.vehicle_refusal);
+}
+
 Outcome no_vehicle_fault(const SupervisorContext& context) {
   if (context.inputs.vehicle_fault[0] == '\0') return accept();
   return refuse("the vehicle reports: %s", context.inputs.vehicle_fault);
 }
 
-constexpr ArmingCheck kChecks[] = {
-    no_vehicle_fault,  level_accepted, samples_fit_level, pose_available, pose_accepted, imu_usable,
-    battery_available, imu_at_rest,    not_turning,       rotors_still,   level,         not_moving,
-    inside_fence};
+constexpr ArmingCheck kChecks[] = {vehicle_acceptable, level_accepted, samples_fit_level, no_vehicle_fault,
+                                   pose_available,     pose_accepted,  imu_usable,        battery_available,
+                                   imu_at_rest,        not_turning,    rotors_still,      level,
+                                   not_moving,         inside_fence};
 
 // Appends "; sentence" if it fits.
 void append(const char* sentence, Outcome& outcome) {

@@ -43,6 +43,7 @@ struct SupervisorInputs {
   plant::ControlLevels accepted_levels = plant::ControlLevel::kActuators;
   // What vehicle_info reports as fault, and for how long; empty: none. Only above level actuators, where the
   // vehicle has loops and modes of its own.
+  const char* vehicle_refusal = "";  // why it must not be armed; empty: it may
   const char* vehicle_fault = "";
   double vehicle_fault_s = 0.0;
   bool rotors_running = true;  // as the vehicle reports; true at level actuators, where rotors start at once

@@ -139,24 +139,17 @@ std::optional<msg::RequestStatus> Client::reported_status(const control::Request
   return reported->second;
 }
 
-template <class Message>
-bool Client::refuses(const Message& message, const char* sender) {
-  std::string fault = comms::fault_of_wire_version(message.wire_version(), sender);
-  if (fault.empty()) return false;
-  {
-    const std::lock_guard lock(mutex_);
-    view_.foreign = std::move(fault);
-  }
-  changed_.notify_all();
-  return true;
-}
-
 // Statuses, answers and peer events wake waiting threads.
 void Client::subscribe_statuses() {
   using namespace comms::topics;
   subscriptions_.push_back(
       node_.subscribe<msg::ControlStatus>(kControlStatus, [this](const msg::ControlStatus& status) {
-        if (refuses(status, "control")) return;
+        const std::string fault = comms::fault_of_wire_version(status.wire_version(), "control");
+        {
+          const std::lock_guard lock(mutex_);
+          view_.foreign_control = fault;
+        }
+        if (!fault.empty()) return changed_.notify_all();
         {
           // Each controller counts its own statuses: a count that does not rise is another controller's.
           const std::lock_guard lock(mutex_);
@@ -174,7 +167,7 @@ void Client::subscribe_statuses() {
       }));
   subscriptions_.push_back(
       node_.subscribe<msg::VehicleInfo>(kVehicleInfo, [this](const msg::VehicleInfo& info) {
-        if (refuses(info, "the vehicle")) return;
+        if (info.wire_version() != comms::kWireVersion) return;  // control refuses it by a sentence
         keep(&View::vehicle, info);
         advance_after(info.stamp_ns());
         changed_.notify_all();
@@ -431,7 +424,7 @@ std::string Client::where() const {
 }
 
 std::string Client::no_control() const {
-  if (const std::string foreign = view().foreign; !foreign.empty()) return where() + ": " + foreign;
+  if (const std::string foreign = view().foreign_control; !foreign.empty()) return where() + ": " + foreign;
   std::string text = "no control service for " + where();
   // Processes started with --localhost-only are discovered, but exchange data on the loopback interface only.
   const auto peers = view().peers;

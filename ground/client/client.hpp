@@ -61,7 +61,7 @@ struct View {
   Latest<msg::ClockStatus> clock;  // of motion capture with a clock of its own
   HeardSamples samples;
   std::map<std::string, int> peers;  // number of live processes, by name
-  std::string foreign;  // control or vehicle speak another version of the messages, a sentence; empty: not so
+  std::string foreign_control;  // the last control_status had another wire version, a sentence; empty: not so
   std::map<std::uint64_t, Latest<msg::ControllerState>>
       controllers;  // by controller number; filled after hear_controllers()
 };
@@ -139,9 +139,6 @@ class Client {
          Telemetry telemetry);
   template <class T>
   void keep(Latest<T> View::*slot, const T& message);
-  // Of another version of the messages.
-  template <class Message>
-  bool refuses(const Message& message, const char* sender);
   void subscribe_statuses();
   void subscribe_telemetry();
   void subscribe_sensors(SensorRecord& sensors);

@@ -104,7 +104,7 @@ Result Vehicle::connect(milliseconds timeout) const {
   const auto is_cancelled = [this] { return cancelled_ && cancelled_(); };
   const auto deadline = Clock::now() + timeout;
   client_->wait(timeout, [&](const View& view) {
-    return view.control.seen() || !view.foreign.empty() || is_cancelled();
+    return view.control.seen() || !view.foreign_control.empty() || is_cancelled();
   });
   const bool found = client_->view().control.seen();
   if (found) client_->await_setpoint_reader(deadline, is_cancelled);

@@ -217,8 +217,10 @@ void SimulatedRecorder::write_mission(const control::Status& status) {
   message.state(static_cast<std::uint8_t>(status.mission.state));
   message.item_index(static_cast<std::uint32_t>(std::max(status.mission.item_index, 0)));
   message.item_count(static_cast<std::uint32_t>(std::max(status.mission.item_count, 0)));
-  message.reason_code(static_cast<std::uint8_t>(status.reason));
-  if (is_over(status.mission.state)) message.reason() = control::to_string(status.reason);
+  if (is_over(status.mission.state)) {
+    message.reason_code(static_cast<std::uint8_t>(status.reason));
+    message.reason() = control::to_string(status.reason);
+  }
   write(topics::kMissionStatus, message, mission_ns_);
 }
 

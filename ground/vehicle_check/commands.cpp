@@ -13,7 +13,7 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr double kAnswer_s = 0.05;  // deadline of actuator_command
+constexpr double kAnswer_s = 0.05;
 constexpr double kLeastTimeout_s = 0.05;
 constexpr double kLongestTimeout_s = 1.0;
 constexpr std::int64_t kLastPart_ns = 200'000'000;
@@ -62,10 +62,10 @@ CheckResult check_obeyed(const VehicleRecording& recording, const CommandPhase& 
     delays.push_back(1e-9 * static_cast<double>(received.sample.imu.stamp_ns - obeyed.stamp_ns));
   }
   if (delays.empty())
-    return missing(kName,
-                   "commands do not reach the vehicle, or it obeys none: its reader must request exclusive "
-                   "ownership and a "
-                   "deadline of at least 50 ms");
+    return missing(
+        kName,
+        "commands do not reach the vehicle, or it obeys none: its reader must be best effort and volatile, "
+        "with shared ownership and no deadline");
   const double delay_s = quantile(std::move(delays), 0.95);
   std::string finding;
   if (other_term > 0) {
@@ -89,8 +89,7 @@ CheckResult check_lower_term(const VehicleRecording& recording, const CommandPha
   constexpr const char* kFinding =
       "the vehicle obeys commands of a lower term: a controller that was overtaken could fly it";
   if (!reports_obeyed(recording))
-    return skipped(kName,
-                   "the vehicle does not report obeyed commands; ownership alone decides whom it obeys");
+    return skipped(kName, "the vehicle does not report obeyed commands; it must obey the highest term");
   std::size_t samples = 0;
   std::size_t lower = 0;
   for (const auto& received : recording.imu.samples) {

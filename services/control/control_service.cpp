@@ -321,6 +321,8 @@ void ControlService::run(const std::atomic<bool>& stop) {
 void ControlService::on_vehicle_info(const msg::VehicleInfo& message) {
   const std::string foreign = comms::fault_of_wire_version(message.wire_version(), "the vehicle");
   if (!foreign.empty()) return refuse_vehicle(foreign);
+  if (refused_vehicle_) loop_.vehicle_refusal.put({});
+  refused_vehicle_ = false;
   const std::uint8_t levels = plant::ControlLevels::from_bits(message.control_levels()).bits();
   if (reported_levels_.exchange(levels, std::memory_order_relaxed) != levels) wake_.post();
   control::VehicleFault fault{};
@@ -333,17 +335,17 @@ void ControlService::on_vehicle_info(const msg::VehicleInfo& message) {
   telemetry_.set_vehicle_fault(fault.data());
 }
 
-// The vehicle accepts commands at no level, and says why: it cannot be armed. One that is known already is flown on: this is another
-// process's message.
+// It cannot be armed until a vehicle_info of this version comes, and a flight goes on. In lockstep its samples are answered, so that
+// requests are.
 void ControlService::refuse_vehicle(const std::string& why) {
-  const bool known = levels_known_.load(std::memory_order_acquire);
-  if (!refused_vehicle_.exchange(true, std::memory_order_relaxed))
-    runtime::log_error("{}: {}", why, known ? "that vehicle_info is ignored" : "it cannot be armed");
-  if (known) return;
-  control::VehicleFault fault{};
-  std::copy_n(why.c_str(), std::min(why.size(), fault.size() - 1), fault.begin());
-  loop_.vehicle_fault.put(fault);
-  loop_.levels.put({plant::ControlLevels(), wanted_level_});
+  if (reported_levels_.load(std::memory_order_relaxed) != 0)
+    return;  // known: this is another process's message
+  if (!refused_vehicle_) runtime::log_error("{}: it cannot be armed", why);
+  refused_vehicle_ = true;
+  control::VehicleFault refusal{};
+  std::copy_n(why.c_str(), std::min(why.size(), refusal.size() - 1), refusal.begin());
+  loop_.vehicle_refusal.put(refusal);
+  levels_known_.store(true, std::memory_order_release);
 }
 
 // Opens the topic of the level before the inner loop commands at it.

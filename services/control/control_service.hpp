@@ -115,9 +115,9 @@ class ControlService {
   const int rotor_count_;
   const std::optional<plant::ControlLevel> wanted_level_;
   std::atomic<std::uint8_t> reported_levels_{
-      0};                            // by vehicle_info, as ControlLevels::bits(); 0: not known yet
-  std::uint8_t adopted_levels_ = 0;  // used by the thread of run() only
-  std::atomic<bool> refused_vehicle_{false};
+      0};                                  // by vehicle_info, as ControlLevels::bits(); 0: not known yet
+  std::uint8_t adopted_levels_ = 0;        // used by the thread of run() only
+  bool refused_vehicle_ = false;           // used by the thread of vehicle_info only
   std::atomic<bool> levels_known_{false};  // the inner loop has them, or will at its next step
   AnsweredSamples answered_samples_;
   Arrivals imu_arrivals_, pose_arrivals_, battery_arrivals_;

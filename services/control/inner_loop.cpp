@@ -41,6 +41,7 @@ void InnerLoop::begin_step(std::int64_t stamp_ns, std::int64_t now_ns, Role role
   take_levels();
   control::VehicleFault fault;
   if (vehicle_fault.take(fault)) controller_.set_vehicle_fault(fault);
+  if (vehicle_refusal.take(fault)) controller_.set_vehicle_refusal(fault);
   controller_.set_rotors_running(vehicle_rotors_running.load(std::memory_order_relaxed));
   take_heartbeats();
   if (role == Role::kStandby) follow(followed_term);

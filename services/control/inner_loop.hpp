@@ -76,6 +76,7 @@ class InnerLoop {
   runtime::LatestValue<FailoverState> failover_state;
   runtime::LatestValue<LevelChoice> levels;
   runtime::LatestValue<control::VehicleFault> vehicle_fault;
+  runtime::LatestValue<control::VehicleFault> vehicle_refusal;
   std::atomic<bool> vehicle_rotors_running{true};
   boost::lockfree::spsc_queue<PendingRequest*, boost::lockfree::capacity<kMaxPendingRequests>> requests;
 

@@ -53,13 +53,12 @@ Telemetry::Telemetry(InnerLoop& loop, CommandServer& command_server,
   open();
 }
 
-// Creates the latched publishers anew, without a last sample. Those of long messages follow with the first one: from then on a thread
-// of Fast DDS wakes every millisecond.
+// Creates the latched publishers anew, without a last sample.
 void Telemetry::open() {
   statuses_ = node_.publish(topics::kControlStatus);
   missions_ = node_.publish(topics::kMissionStatus);
-  flown_missions_.reset();
-  flown_trajectories_.reset();
+  flown_missions_ = node_.publish(topics::kFlownMission);
+  flown_trajectories_ = node_.publish(topics::kFlownTrajectory);
   published_mission_ = 0;
   published_trajectory_ = 0;
 }
@@ -100,15 +99,13 @@ void Telemetry::publish_plan() {
   const std::uint64_t mission = last_.status.mission.id;
   if (mission != 0 && mission != published_mission_) {
     const comms::msg::Mission message = command_server_.mission(mission);
-    if (!flown_missions_) flown_missions_ = node_.publish(topics::kFlownMission);
-    if (message.id() == mission) flown_missions_->publish(message);
+    if (message.id() == mission) flown_missions_.publish(message);
     published_mission_ = mission;
   }
   const std::uint64_t trajectory = last_.status.mode == control::Mode::kTrajectory ? last_.trajectory_id : 0;
   if (trajectory != 0 && trajectory != published_trajectory_) {
     const comms::msg::Trajectory message = command_server_.trajectory(trajectory);
-    if (!flown_trajectories_) flown_trajectories_ = node_.publish(topics::kFlownTrajectory);
-    if (message.id() == trajectory) flown_trajectories_->publish(message);
+    if (message.id() == trajectory) flown_trajectories_.publish(message);
     published_trajectory_ = trajectory;
   }
 }
@@ -127,7 +124,7 @@ void Telemetry::take(const Snapshot& snapshot) {
   const bool requests_changed = control::differ_in_state(snapshot.requests, last_.requests);
   const bool mission_changed = differ(now.mission, before.mission);
   if (mission_changed) {
-    mission_end_code_ = static_cast<std::uint8_t>(now.reason);
+    mission_end_code_ = is_over(now.mission.state) ? static_cast<std::uint8_t>(now.reason) : std::uint8_t{0};
     mission_end_ = is_over(now.mission.state) ? reason_text(now.reason) : "";
   }
   if (mode_changed) runtime::log_info("{}: {}", control::to_string(now.mode), reason_text(now.reason));

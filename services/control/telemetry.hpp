@@ -84,8 +84,8 @@ class Telemetry {
   comms::Publisher<comms::msg::Reference> references_;
   comms::Publisher<comms::msg::ControlStatus> statuses_;
   comms::Publisher<comms::msg::MissionStatus> missions_;
-  std::optional<comms::Publisher<comms::msg::Mission>> flown_missions_;
-  std::optional<comms::Publisher<comms::msg::Trajectory>> flown_trajectories_;
+  comms::Publisher<comms::msg::Mission> flown_missions_;
+  comms::Publisher<comms::msg::Trajectory> flown_trajectories_;
   comms::Publisher<comms::msg::CommandAck> acks_;
 };
 

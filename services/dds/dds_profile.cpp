@@ -76,18 +76,22 @@ DdsProfile load_dds_profile(const std::string& file) {
   set_up_fast_dds();
   const std::string name = participant_profile(file);
   load_into_fast_dds(file);
+  dds::DomainParticipantQos of_file;
+  dds::DomainParticipantFactory::get_instance()->get_participant_qos_from_profile(name, of_file);
   DdsProfile profile;
-  dds::DomainParticipantFactory::get_instance()->get_participant_qos_from_profile(name, profile.participant);
-  auto& transports = profile.participant.transport().user_transports;
+  profile.participant.allocation(of_file.allocation());
+  profile.participant.properties(of_file.properties());
+  const auto& transports = of_file.transport().user_transports;
   if (!transports.empty()) {
     const auto* const udp = dynamic_cast<const UDPv4TransportDescriptor*>(transports.front().get());
     if (udp == nullptr)
       throw runtime::ConfigError(file, 0, "<userTransports>", "must name a transport of type UDPv4");
     profile.udp = *udp;
   }
-  transports.clear();
   // The sizes of the participant are those of its transport, unless that has its own.
-  const auto& sizes = profile.participant.transport();
+  const auto& sizes = of_file.transport();
+  profile.participant.transport().send_socket_buffer_size = sizes.send_socket_buffer_size;
+  profile.participant.transport().listen_socket_buffer_size = sizes.listen_socket_buffer_size;
   if (profile.udp.sendBufferSize == 0) profile.udp.sendBufferSize = sizes.send_socket_buffer_size;
   if (profile.udp.receiveBufferSize == 0) profile.udp.receiveBufferSize = sizes.listen_socket_buffer_size;
   return profile;

@@ -15,9 +15,9 @@ struct DdsProfile {
   eprosima::fastdds::rtps::UDPv4TransportDescriptor udp;
 };
 
-// Reads the participant profile of a file: the first one, or that with is_default_profile="true", with its first transport, which
-// must be UDPv4. What Swiftlet sets itself (discovery, addresses, QoS of topics, flow controllers) is set over it. Throws
-// runtime::ConfigError with file and line, or with what Fast DDS says of the file.
+// Of the participant profile of a file, the first one, or that with is_default_profile="true": its allocation, properties, sizes of
+// socket buffers, and its first transport, which must be UDPv4. Swiftlet sets the rest itself. Throws runtime::ConfigError with file
+// and line, or with what Fast DDS says of the file.
 DdsProfile load_dds_profile(const std::string& file);
 
 }  // namespace swiftlet::comms

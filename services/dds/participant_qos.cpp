@@ -1,5 +1,6 @@
 #include "swiftlet/services/dds/participant_qos.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -26,6 +27,12 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
   const DdsProfile profile = file.empty() ? DdsProfile{} : load_dds_profile(file);
   dds::DomainParticipantQos qos = profile.participant;
   qos.name(settings.name);
+  // Writers tell the readers of other participants from their own by their number: all of these match.
+  auto& properties = qos.properties().properties();
+  properties.erase(
+      std::remove_if(properties.begin(), properties.end(),
+                     [](const auto& one) { return one.name() == "fastdds.ignore_local_endpoints"; }),
+      properties.end());
   if (!settings.security.empty()) {
     if (!settings.network.discovery_servers.empty())
       throw std::invalid_argument(

@@ -42,6 +42,8 @@ class RealtimeLoop {
 
   const runtime::RealtimeSettings realtime_;
   std::mutex mutex_;  // guards vehicles_; held while they step
+  std::atomic<int> waiting_{
+      0};  // threads that wait for mutex_: a loop that is late would not let them have it
   std::vector<Stepped> vehicles_;
   std::atomic<bool> stop_{false};
   std::thread thread_;

@@ -45,7 +45,8 @@ class RealtimeVehicle {
   TruthSchedule truth_;
   runtime::RealtimeSettings realtime_;
 
-  boost::lockfree::spsc_queue<ReceivedCommand, boost::lockfree::capacity<64>> commands_;  // of all levels
+  boost::lockfree::spsc_queue<ReceivedCommand, boost::lockfree::capacity<64>>
+      commands_;  // of all levels, from the one thread of Delivery::kSamples
   runtime::RealtimeThread listener_;
   runtime::LatestValue<plant::PoseSample> pose_;
   // The computer's clock at stamp 0, monotonic; 0 before the first step.

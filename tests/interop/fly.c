@@ -192,7 +192,7 @@ int main(int argc, char** argv) {
   const char* name = argv[2];
   pilot_t pilot;
   memset(&pilot, 0, sizeof pilot);
-  join(&pilot.vehicle, atoi(argv[1]), name, atoi(argv[3]));
+  join(&pilot.vehicle, atoi(argv[1]), name, atoi(argv[3]), OF_TOPIC);
   pilot.clock = writer(&pilot, name, "simulation_clock");
   pilot.command = writer(&pilot, name, "command");
   pilot.mission = writer(&pilot, name, "mission");

@@ -99,7 +99,11 @@ class Interop:
             processes.start("swiftlet-plant", "--clock", "lockstep", "--paused")
             processes.start("swiftlet-mocap", "--clock", "lockstep")
             processes.start("swiftlet-control", "--clock", "lockstep")
+            everything = sorted(HEARD_IN_FLIGHT | SENT_IN_FLIGHT)
+            listener = self.peer("listen", processes.domain, "kl1", PATIENCE_S, *everything)
             output = self.finish(self.peer("fly", processes.domain, "kl1", PATIENCE_S), "the flight")
+            self.finish(listener, "listening with the QoS of sensor data")
+            print(f"interop: {len(everything)} topics heard with the QoS of sensor data")
         print("".join(f"interop: {line}\n" for line in output.splitlines()), end="")
         heard = set(re.findall(r"^decoded (\w+) \d+$", output, re.MULTILINE))
         if heard != HEARD_IN_FLIGHT | SENT_IN_FLIGHT:

@@ -13,10 +13,10 @@
 const topic_t topics[] = {
     TOPIC("imu", Imu, STREAM),
     TOPIC("vehicle_odometry", VehicleOdometry, STREAM),
-    TOPIC("actuator_command", ActuatorCommand, OWNED_STREAM),
-    TOPIC("rates_setpoint", RatesSetpoint, OWNED_STREAM),
-    TOPIC("attitude_setpoint", AttitudeSetpoint, OWNED_STREAM),
-    TOPIC("trajectory_setpoint", TrajectorySetpoint, OWNED_STREAM),
+    TOPIC("actuator_command", ActuatorCommand, STREAM),
+    TOPIC("rates_setpoint", RatesSetpoint, STREAM),
+    TOPIC("attitude_setpoint", AttitudeSetpoint, STREAM),
+    TOPIC("trajectory_setpoint", TrajectorySetpoint, STREAM),
     TOPIC("controller_state", ControllerState, STREAM),
     TOPIC("mocap_pose", MocapPose, STREAM),
     TOPIC("rotor_speeds", RotorSpeeds, STREAM),
@@ -68,7 +68,6 @@ static dds_qos_t* qos_of(profile_t profile) {
     dds_qset_history(qos, DDS_HISTORY_KEEP_ALL, 0);
   else
     dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 1);
-  if (profile == OWNED_STREAM) dds_qset_ownership(qos, DDS_OWNERSHIP_EXCLUSIVE);
   return qos;
 }
 
@@ -81,8 +80,16 @@ static dds_entity_t topic_in(dds_entity_t participant, const char* vehicle, cons
   return entity;
 }
 
-dds_entity_t create_reader(dds_entity_t participant, const char* vehicle, const topic_t* topic) {
-  dds_qos_t* qos = qos_of(topic->profile);
+static dds_qos_t* sensor_data_qos(void) {
+  dds_qos_t* qos = dds_create_qos();
+  dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);
+  dds_qset_durability(qos, DDS_DURABILITY_VOLATILE);
+  dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 5);
+  return qos;
+}
+
+dds_entity_t create_reader(dds_entity_t participant, const char* vehicle, const topic_t* topic, reader_qos_t wanted) {
+  dds_qos_t* qos = wanted == SENSOR_DATA ? sensor_data_qos() : qos_of(topic->profile);
   const dds_entity_t reader = dds_create_reader(participant, topic_in(participant, vehicle, topic), qos, NULL);
   dds_delete_qos(qos);
   if (reader < 0) fail("%s: no reader: %s", topic->name, dds_strretcode(reader));

@@ -7,7 +7,7 @@
 #include "dds/dds.h"
 #include "swiftlet_msgs.h"
 
-typedef enum { STREAM, OWNED_STREAM, LATCHED, REQUEST, REPLY } profile_t;  // as in idl/README.md; telemetry is as a stream
+typedef enum { STREAM, LATCHED, REQUEST, REPLY } profile_t;  // as in idl/README.md; telemetry is as a stream
 
 typedef struct {
   const char* name;
@@ -20,8 +20,11 @@ extern const size_t topic_count;
 
 const topic_t* find_topic(const char* name);  // NULL if there is none
 
+// That of the topic's profile, or the one that ROS 2 has for sensor data, which every topic must match.
+typedef enum { OF_TOPIC, SENSOR_DATA } reader_qos_t;
+
 // Of rt/<vehicle>/<name>. Ends the process if it cannot be created.
-dds_entity_t create_reader(dds_entity_t participant, const char* vehicle, const topic_t* topic);
+dds_entity_t create_reader(dds_entity_t participant, const char* vehicle, const topic_t* topic, reader_qos_t qos);
 dds_entity_t create_writer(dds_entity_t participant, const char* vehicle, const topic_t* topic);
 
 // Takes the next sample as the message that the topic's type says, allocated; NULL if there is none. The message is encoded

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-void join(vehicle_t* vehicle, int domain, const char* name, int seconds) {
+void join(vehicle_t* vehicle, int domain, const char* name, int seconds, reader_qos_t qos) {
   memset(vehicle, 0, sizeof *vehicle);
   vehicle->deadline = dds_time() + DDS_SECS(seconds);
   vehicle->client = (uint64_t)dds_time() | 1;
@@ -10,7 +10,7 @@ void join(vehicle_t* vehicle, int domain, const char* name, int seconds) {
   if (vehicle->participant < 0) fail("no participant: %s", dds_strretcode(vehicle->participant));
   vehicle->waitset = dds_create_waitset(vehicle->participant);
   for (size_t i = 0; i < topic_count; ++i) {
-    vehicle->readers[i] = create_reader(vehicle->participant, name, &topics[i]);
+    vehicle->readers[i] = create_reader(vehicle->participant, name, &topics[i], qos);
     dds_set_status_mask(vehicle->readers[i], DDS_DATA_AVAILABLE_STATUS);
     dds_waitset_attach(vehicle->waitset, vehicle->readers[i], (dds_attach_t)i);
   }

@@ -17,7 +17,7 @@ typedef struct {
 } vehicle_t;
 
 // Joins the domain. Everything must be done within so many seconds.
-void join(vehicle_t* vehicle, int domain, const char* name, int seconds);
+void join(vehicle_t* vehicle, int domain, const char* name, int seconds, reader_qos_t qos);
 void leave(vehicle_t* vehicle);
 
 // Waits for samples, 20 ms at most, and takes all that there are. Fails after the deadline with what was waited for.

@@ -18,8 +18,7 @@ class TestCommands {
   // If renew() is not called for this long, the commands become rotors off: the program hangs.
   static constexpr std::int64_t kPatience_ns = 1'000'000'000;
 
-  // Sends rotors off at first. term: of the commands, as that of a controller; their ownership strength too. Throws
-  // std::runtime_error.
+  // Sends rotors off at first. term: of the commands, as that of a controller. Throws std::runtime_error.
   TestCommands(const comms::NodeSettings& settings, int rotor_count, std::uint32_t term);
   // Sends rotors off until a few commands have been sent, for half a second at most.
   ~TestCommands();

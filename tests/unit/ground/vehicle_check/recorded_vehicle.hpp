@@ -28,7 +28,7 @@ struct CommandDefects {
   bool ignores_timeout = false;
   bool obeys_lower_terms = false;
   bool turns_while_off = false;
-  bool reports_nothing = false;           // COMMANDS_UNREPORTED
+  bool reports_nothing = false;           // UNREPORTED
   bool is_deaf = false;                   // obeys nothing
   bool idles_off = false;                 // rotors stand at throttle 0
   std::vector<int> rotor_of{1, 2, 3, 4};  // that each command reaches

@@ -175,6 +175,16 @@ TEST_F(RealtimeService, AVehicleOfAnotherWireVersionIsNotArmed) {
     });
   }));
   for (const msg::CommandAck& answer : answers.items()) EXPECT_FALSE(answer.accepted());
+
+  info.wire_version(comms::kWireVersion);
+  infos.publish(info);
+  EXPECT_TRUE(eventually([&] {
+    send_samples();
+    arm.id(arm.id() + 1);
+    commands.publish(arm);
+    return answers.size() > 0 &&
+           std::string(answers.items().back().reason().c_str()).find("speaks") == std::string::npos;
+  })) << "of its successor";
 }
 
 }  // namespace swiftlet::services::control_service_test

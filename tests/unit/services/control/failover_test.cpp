@@ -292,7 +292,7 @@ TEST(Failover, ResumedStandbyDoesNotTakeOver) {
   }
 }
 
-// GIVEN a standby that the vehicle does not hear, because its ownership strength is not raised yet, WHEN the one that flies
+// GIVEN a standby that the vehicle does not hear, because of the network, WHEN the one that flies
 // stalls for longer than the standby waits THEN it flies on afterwards, and the standby is ready for the next time.
 TEST(Failover, StandbyThatIsNotHeardDoesNotEndTheFlightOfAnother) {
   Vehicle vehicle;

@@ -106,7 +106,9 @@ TEST_F(DdsProfiles, DoNotChangeWhatSwiftletSets) {
   const std::string file =
       folder_.write("more.xml", with("<data_writer profile_name=\"w\"/>\n",
                                      "<name>other</name>\n"
-                                     "<useBuiltinTransports>true</useBuiltinTransports>\n"));
+                                     "<useBuiltinTransports>true</useBuiltinTransports>\n"
+                                     "<builtin><discovery_config><discoveryProtocol>NONE</"
+                                     "discoveryProtocol></discovery_config></builtin>\n"));
   const Node here(settings_with(file));
   NodeSettings there_settings = settings_with("");
   there_settings.name = "there";

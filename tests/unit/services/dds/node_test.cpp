@@ -364,6 +364,32 @@ TEST(Commands, OfAllControllersAreDelivered) {
   }));
 }
 
+// GIVEN a controller that reads the topic that it publishes itself WHEN others read it, leave, come back, and it rejoins THEN they hear
+// it each time, and it never hears itself.
+TEST(Streams, AreHeardByOthersNotByThePublisher) {
+  const DomainLock lock;
+  Node control(settings(lock, "control"));
+  std::atomic<int> own{0};
+  auto states = control.publish(topics::kControllerState);
+  const auto reads =
+      control.subscribe<msg::ControllerState>(topics::kControllerState, [&](const auto&) { ++own; });
+  const auto is_heard = [&] {
+    Node standby(settings(lock, "control"));
+    std::atomic<int> heard{0};
+    const auto subscription =
+        standby.subscribe<msg::ControllerState>(topics::kControllerState, [&](const auto&) { ++heard; });
+    return eventually([&] {
+      states.publish(example<msg::ControllerState>());
+      return heard >= 3;
+    });
+  };
+  EXPECT_TRUE(is_heard());
+  EXPECT_TRUE(is_heard()) << "by another one, after the first has left";
+  control.rejoin();
+  EXPECT_TRUE(is_heard()) << "after a rejoin";
+  EXPECT_EQ(own, 0);
+}
+
 int threads_of_this_process() {
   const std::filesystem::directory_iterator tasks("/proc/self/task");
   return static_cast<int>(std::distance(begin(tasks), end(tasks)));
