@@ -20,6 +20,17 @@ constexpr auto kFlushPeriod = 500ms;
 constexpr const char* kCounts = "swiftlet/counts";
 constexpr const char* kClocks = "swiftlet/clocks";
 
+// Samples come for each sample of the IMU, in lockstep hundreds at once.
+bool is_fast(const std::string& topic) {
+  for (const char* fast :
+       {comms::topics::kImu.name, comms::topics::kVehicleOdometry.name, comms::topics::kRotorSpeeds.name,
+        comms::topics::kActuatorCommand.name, comms::topics::kRatesSetpoint.name,
+        comms::topics::kAttitudeSetpoint.name, comms::topics::kTrajectorySetpoint.name}) {
+    if (topic == fast) return true;
+  }
+  return false;
+}
+
 std::optional<std::int64_t> stamp_of(const comms::RawSample& sample, int offset) {
   std::int64_t stamp_ns = 0;
   const auto at = static_cast<std::size_t>(offset);
@@ -113,7 +124,7 @@ void FlightRecorder::subscribe(Vehicle& vehicle, const comms::Topic<T>& topic) {
   }
   vehicle.subscriptions.push_back(vehicle.node->subscribe_raw<T>(
       topic, [this, channel](const comms::RawSample& sample) { receive(*channel, sample); },
-      topic.qos == comms::Qos::kStream ? comms::Delivery::kSamples : comms::Delivery::kShared));
+      is_fast(topic.name) ? comms::Delivery::kOwn : comms::Delivery::kShared));
 }
 
 void FlightRecorder::receive(Channel& channel, const comms::RawSample& sample) {

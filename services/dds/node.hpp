@@ -93,8 +93,9 @@ enum class Delivery {
   kSamples,  // what is answered at once: samples of the IMU, the truth at motion capture, commands at the vehicle
   kSensors,  // poses and rotor speeds
   kPlans,    // long messages, and what other controllers say of themselves
+  kOwn,  // of this subscription alone: a recorder's, for which one buffer would be too small for all vehicles
 };
-constexpr std::size_t kDeliveryCount = 4;
+constexpr std::size_t kDeliveryCount = 5;
 
 // A sample as it came: its payload is not checked.
 struct RawSample {

@@ -137,7 +137,7 @@ dds::Topic* ParticipantSession::topic(const std::string& wire_name, const dds::T
   return found;
 }
 
-// kShared: the socket of the participant. The first reader of any other delivery opens a socket, which Fast DDS keeps until the
+// kShared: the socket of the participant. kOwn: a further one. The first reader of any other delivery opens one, which Fast DDS keeps until the
 // participant ends; those that follow name its addresses.
 void ParticipantSession::receive_in(Delivery delivery, dds::DataReaderQos& qos) const {
   if (delivery == Delivery::kShared) return;
@@ -151,7 +151,7 @@ void ParticipantSession::receive_in(Delivery delivery, dds::DataReaderQos& qos) 
 
 void ParticipantSession::note_receiver(Delivery delivery, const dds::DataReader& reader) {
   rtps::LocatorList_t& opened = receivers_[static_cast<std::size_t>(delivery)];
-  if (delivery == Delivery::kShared || !opened.empty()) return;
+  if (delivery == Delivery::kShared || delivery == Delivery::kOwn || !opened.empty()) return;
   eprosima::fastdds::rtps::LocatorList addresses;
   if (!succeeded(reader.get_listening_locators(addresses))) return;
   for (const rtps::Locator_t& address : addresses) opened.push_back(address);

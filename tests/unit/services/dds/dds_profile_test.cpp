@@ -42,11 +42,12 @@ class DdsProfiles : public testing::Test {
     return settings;
   }
   std::string refusal(const std::string& text) const {
+    const std::string name = unique_name() + ".xml";  // Fast DDS reads a file once
     try {
-      const Node node(settings_with(folder_.write("p.xml", text)));
+      const Node node(settings_with(folder_.write(name, text)));
       return "accepted";
     } catch (const runtime::ConfigError& error) {
-      const std::string prefix = (folder_.path() / "p.xml").string() + ":";
+      const std::string prefix = (folder_.path() / name).string() + ":";
       const std::string what = error.what();
       return what.rfind(prefix, 0) == 0 ? what.substr(prefix.size()) : what;
     }
