@@ -225,6 +225,7 @@ void SimulatedRecorder::write_mission(const control::Status& status) {
 }
 
 void SimulatedRecorder::write_vehicle_info() {
+  vehicle_info_.wire_version(comms::kWireVersion);
   vehicle_info_ns_ = loop_.plant.stamp_ns();
   vehicle_info_.stamp_ns(vehicle_info_ns_);
   vehicle_info_.sequence_number(vehicle_info_.sequence_number() + 1);
