@@ -3,10 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include "swiftlet_msgs/msg/VehicleInfo.h"
 
