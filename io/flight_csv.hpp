@@ -1,4 +1,4 @@
-// The header of flight.csv, the telemetry of a flight record.
+// The header of the table of a flight, as `swiftlet log csv` writes it.
 #pragma once
 
 #include <algorithm>

@@ -18,11 +18,11 @@
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/ground/flight/flight_inputs.hpp"
-#include "swiftlet/io/mcap/message_decoder.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/plant/model/control_level.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
+#include "swiftlet/record/mcap/message_decoder.hpp"
 
 namespace swiftlet::python {
 

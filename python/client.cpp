@@ -11,8 +11,8 @@
 #include "swiftlet/ground/client/context.hpp"
 #include "swiftlet/ground/client/vehicle.hpp"
 #include "swiftlet/ground/recording/topic_stream.hpp"
-#include "swiftlet/io/mcap/signal_arrays.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
+#include "swiftlet/record/mcap/signal_arrays.hpp"
 
 namespace swiftlet::python {
 namespace {

@@ -4,11 +4,11 @@
 
 #include "bindings.hpp"
 
-#include "swiftlet/io/logs/flight_log_files.hpp"
-#include "swiftlet/io/logs/recorded_flight.hpp"
-#include "swiftlet/io/mcap/series.hpp"
-#include "swiftlet/io/mcap/signal_arrays.hpp"
-#include "swiftlet/io/mcap/topic_decoder.hpp"
+#include "swiftlet/ground/logs/flight_log_files.hpp"
+#include "swiftlet/record/file/flight_reader.hpp"
+#include "swiftlet/record/mcap/series.hpp"
+#include "swiftlet/record/mcap/signal_arrays.hpp"
+#include "swiftlet/record/mcap/topic_decoder.hpp"
 
 namespace swiftlet::python {
 namespace {
@@ -128,11 +128,12 @@ void add_logs(py::module_& module) {
       "mcap_topics", [](const std::string& path) { return mcap::decodable_topics(mcap::Reader(path)); },
       "path"_a, "The topics of an MCAP file that read_mcap() can read, sorted.");
   module.def(
-      "mcap_vehicles", [](const std::string& path) { return ground::recorded_vehicles(mcap::Reader(path)); },
+      "mcap_vehicles", [](const std::string& path) { return record::recorded_vehicles(mcap::Reader(path)); },
       "path"_a, "The vehicles of which an MCAP file has messages, sorted.");
   module.def(
       "read_sensors", &read_sensors, "path"_a, "vehicle"_a = "kaylion", "vehicle_name"_a = "",
-      "The samples of a flight as `swiftlet identify flight` reads them: from sensors.csv, flight.mcap, a "
+      "The samples of a flight as `swiftlet identify flight` reads them: from the record of a flight, "
+      "flight.mcap, a "
       "record folder "
       "or a CSV log of another project. A row for each IMU sample: time_s; specific_force_frd (n, 3) m/s^2, "
       "body_rates_frd (n, 3) rad/s, throttle (n, rotors) 0 .. 1, and if recorded supply_voltage_v and "

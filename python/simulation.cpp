@@ -103,13 +103,13 @@ class NoProgress final : public ground::Progress {
 
 struct Flight {
   ground::FlightReport report;
-  std::shared_ptr<ground::FlightRecord> record;
+  std::shared_ptr<record::Flight> flown;
 };
 
-// The rows of a track as a structured array, of which each column is a view.
+// The rows as a structured array, of which each column is a view.
 template <class Row>
-py::dict columns_of(const ground::Track<Row>& track) {
-  const py::array_t<Row> rows(static_cast<py::ssize_t>(track.size()), track.begin());
+py::dict columns_of(const std::vector<Row>& track) {
+  const py::array_t<Row> rows(static_cast<py::ssize_t>(track.size()), track.data());
   py::dict columns;
   for (const auto name : rows.dtype().attr("names"))
     columns[name] = rows[py::reinterpret_borrow<py::str>(name)];
@@ -117,8 +117,7 @@ py::dict columns_of(const ground::Track<Row>& track) {
   return columns;
 }
 
-Flight simulate(const PlannedFlight& planned, bool mcap, bool sensors, bool replace,
-                const std::string& record) {
+Flight simulate(const PlannedFlight& planned, bool replace, const std::string& record) {
   Flight flight;
   Cancellation cancelled;
   {
@@ -126,18 +125,16 @@ Flight simulate(const PlannedFlight& planned, bool mcap, bool sensors, bool repl
     ground::FlyOptions options = planned.options;
     options.record = record;
     options.replace = replace;
-    options.mcap = mcap;
-    options.sensors = sensors;
     const ground::LaunchConfiguration plan = PlannedFlight{options, planned.given}.plan();
-    flight.record = std::make_shared<ground::FlightRecord>(plan.record_capacity());
+    flight.flown = std::make_shared<record::Flight>();
     const auto is_cancelled = [&cancelled] { return cancelled(); };
     if (record.empty()) {
       ground::ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
-      flight.report = fly_in_process(loop, plan, plan.seed, *flight.record, nullptr, is_cancelled).report;
+      flight.report = fly_in_process(loop, plan, plan.seed, *flight.flown, nullptr, is_cancelled);
       flight.report.record_dir.clear();
     } else {
       NoProgress progress;
-      flight.report = fly_and_record(plan, options, *flight.record, is_cancelled, progress);
+      flight.report = fly_and_record(plan, options, *flight.flown, is_cancelled, progress);
     }
   }
   cancelled.raise_if_cancelled();
@@ -435,11 +432,11 @@ void add_stepped(py::module_& module) {
 }
 
 void add_flight(py::module_& module) {
-  PYBIND11_NUMPY_DTYPE(ground::TruthRow, stamp_ns, position_ned, velocity_ned, q_ned_from_frd, body_rates_frd,
+  PYBIND11_NUMPY_DTYPE(record::TruthRow, stamp_ns, position_ned, velocity_ned, q_ned_from_frd, body_rates_frd,
                        rotor_speeds, rotor_count, supply_voltage_v, on_ground);
-  PYBIND11_NUMPY_DTYPE(ground::ReferenceRow, stamp_ns, mode, position_ned, velocity_ned, acceleration_ned,
+  PYBIND11_NUMPY_DTYPE(record::ReferenceRow, stamp_ns, mode, position_ned, velocity_ned, acceleration_ned,
                        yaw_rad, q_ned_from_frd, thrust_n, moment_frd);
-  PYBIND11_NUMPY_DTYPE(ground::EstimateRow, stamp_ns, position_ned, velocity_ned);
+  PYBIND11_NUMPY_DTYPE(record::EstimateRow, stamp_ns, position_ned, velocity_ned);
 
   py::class_<Flight>(module, "Flight", "A simulated flight: its result, and what was recorded of it.")
       .def_property_readonly(
@@ -464,19 +461,19 @@ void add_flight(py::module_& module) {
           "report_json", [](const Flight& self) { return ground::to_json(self.report).dump(2); },
           "What `swiftlet sim fly --json` prints.")
       .def(
-          "truth", [](const Flight& self) { return columns_of(self.record->truth); },
+          "truth", [](const Flight& self) { return columns_of(self.flown->truth); },
           "Ground truth at each IMU sample, by column, each with a row for each sample: stamp_ns, time_s; "
           "position_ned "
           "(n, 3) m, velocity_ned (n, 3) m/s, q_ned_from_frd (n, 4) w, x, y, z, body_rates_frd (n, 3) rad/s, "
           "rotor_speeds (n, 8) rad/s, of which the first rotor_count are used, supply_voltage_v, on_ground.")
       .def(
-          "reference", [](const Flight& self) { return columns_of(self.record->reference); },
+          "reference", [](const Flight& self) { return columns_of(self.flown->reference); },
           "The reference at 100 Hz: stamp_ns, time_s, mode; position_ned (n, 3) m, velocity_ned (n, 3) m/s, "
           "acceleration_ned (n, 3) m/s^2, yaw_rad, q_ned_from_frd (n, 4) of the attitude that is asked for, "
           "thrust_n, "
           "moment_frd (n, 3) N m.")
       .def(
-          "estimate", [](const Flight& self) { return columns_of(self.record->estimate); },
+          "estimate", [](const Flight& self) { return columns_of(self.flown->estimate); },
           "The estimate of the controller at 100 Hz: stamp_ns, time_s; position_ned (n, 3) m, velocity_ned "
           "(n, 3) m/s.");
 }
@@ -486,22 +483,21 @@ void add_simulate(py::module_& module) {
       "simulate",
       [](const MissionArgument& mission, const VehicleArgument& vehicle, const ControlArgument& control,
          const SimulationArgument& simulation, const std::string& dispersion, std::uint64_t seed,
-         const std::string& level, const Eigen::Vector2d& start_ned, const std::string& record, bool replace,
-         bool mcap, bool sensors) {
+         const std::string& level, const Eigen::Vector2d& start_ned, const std::string& record,
+         bool replace) {
         return simulate(planned(mission, vehicle, control, simulation, dispersion, seed, level, start_ned),
-                        mcap, sensors, replace, record);
+                        replace, record);
       },
       "mission"_a = "square", py::kw_only(), "vehicle"_a = "kaylion", "control"_a = "motor_lag",
       "simulation"_a = "default", "dispersion"_a = "", "seed"_a = 1, "level"_a = "actuators",
-      "start_ned"_a = Eigen::Vector2d(0.0, 0.0), "record"_a = "", "replace"_a = false, "mcap"_a = false,
-      "sensors"_a = false,
+      "start_ned"_a = Eigen::Vector2d(0.0, 0.0), "record"_a = "", "replace"_a = false,
       "Flies a mission in this process, as `swiftlet sim fly` does, from arming to landing; the result is "
       "the same for the "
       "same seed. Each model is the name of a file, its path, or an object. dispersion: a file, or "
       "'uncertainty' of the "
       "vehicle file. start_ned: m north and east of the origin. record: a folder for the record of the "
-      "flight, with "
-      "flight.mcap if mcap, and with sensors.csv if sensors; then models must be files. Throws InputError.");
+      "flight, as "
+      "`swiftlet sim fly` writes it; then models must be files. Throws InputError.");
   module.def(
       "simulate_batch",
       [](const MissionArgument& mission, std::size_t runs, const VehicleArgument& vehicle,

@@ -78,11 +78,11 @@ void ClosedLoop::answer(const plant::TelemetryPacket& packet) {
 }
 
 void ClosedLoop::record_sensors(const plant::TelemetryPacket& packet) const {
-  sensors->imu.append(packet.imu);
-  sensors->commands.append(firmware.as_actuators(sent));
-  if (pose_) sensors->poses.append(*pose_);
-  if (packet.battery) sensors->batteries.append(*packet.battery);
-  if (packet.rotor_speeds) sensors->rotor_speeds.append(*packet.rotor_speeds);
+  sensors->imu.push_back(packet.imu);
+  sensors->commands.push_back(firmware.as_actuators(sent));
+  if (pose_) sensors->poses.push_back(*pose_);
+  if (packet.battery) sensors->batteries.push_back(*packet.battery);
+  if (packet.rotor_speeds) sensors->rotor_speeds.push_back(*packet.rotor_speeds);
 }
 
 const plant::MotorCommand& ClosedLoop::motor_command() {

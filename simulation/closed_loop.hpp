@@ -20,7 +20,7 @@
 #include "swiftlet/plant/simulation/odometry.hpp"
 #include "swiftlet/plant/simulation/plant_simulation.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
-#include "swiftlet/recording/sensor_record.hpp"
+#include "swiftlet/record/flight.hpp"
 
 namespace swiftlet::ground {
 
@@ -62,7 +62,7 @@ class ClosedLoop {
   bool control_connected = true;             // false: the vehicle receives no commands
   std::optional<plant::ImuSample> answered;  // the last sample that the controller has processed
   std::optional<plant::OdometrySample> answered_odometry;  // that it processed in place of it
-  SensorRecord* sensors = nullptr;  // records the controller's inputs and commands; null: no record
+  record::Flight* sensors = nullptr;  // takes the controller's inputs and commands; null: they are not kept
   // Called after each sample that the controller has processed, with the pose that came with it; may be empty.
   std::function<void(const plant::TelemetryPacket&, const std::optional<plant::PoseSample>&)> on_answered;
 

@@ -7,7 +7,7 @@
 
 #include "swiftlet/control/attitude/attitude_error.hpp"
 #include "swiftlet/control/types/mode.hpp"
-#include "swiftlet/recording/telemetry_rate.hpp"
+#include "swiftlet/plant/model/telemetry_rate.hpp"
 #include "swiftlet/simulation/mission_runner.hpp"
 
 namespace swiftlet::ground {
@@ -15,7 +15,7 @@ namespace {
 
 std::array<double, 3> array(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-TruthRow row_of(const plant::TruthSample& truth) {
+record::TruthRow row_of(const plant::TruthSample& truth) {
   const Eigen::Quaterniond& q = truth.q_ned_from_frd;
   return {truth.stamp_ns,
           array(truth.position_ned),
@@ -79,38 +79,45 @@ class LoopTransport final : public MissionTransport {
   bool observe() {
     if (observer_.trace != nullptr) observer_.trace->add(loop_.plant.truth(), loop_.command);
     if (observer_.record != nullptr) record(*observer_.record);
-    return !observer_.cancelled || !runtime::is_telemetry_sample(loop_.plant.imu_count(), imu_period_ns_) ||
+    return !observer_.cancelled || !plant::is_telemetry_sample(loop_.plant.imu_count(), imu_period_ns_) ||
            !observer_.cancelled();
   }
 
-  // True if control has answered a sample at the telemetry rate since the last call. The first one after a missed sample is
-  // none here: over DDS, the ground has no true position of its stamp.
+  // True if control has answered a sample at the telemetry rate since the last call, or the first one after a missed one.
   bool answered_sample() {
     if (!loop_.answered) return false;
     const std::uint64_t before = std::exchange(answered_sequence_, loop_.answered->sequence);
-    return before != answered_sequence_ && runtime::is_telemetry_sample(answered_sequence_, imu_period_ns_);
+    return before != answered_sequence_ &&
+           plant::is_telemetry_sample(answered_sequence_, before, imu_period_ns_);
   }
 
-  void record(FlightRecord& record) {
+  void record(record::Flight& flight) {
     const std::int64_t stamp_ns = loop_.plant.stamp_ns();
-    record.truth.append(row_of(loop_.plant.truth()));
+    flight.truth.push_back(row_of(loop_.plant.truth()));
     const control::MissionProgress& now = status_.mission;
     if (now.id != recorded_.id || now.state != recorded_.state || now.item_index != recorded_.item_index) {
-      record.mission.append(
-          {stamp_ns, now.id, static_cast<int>(now.state), static_cast<std::uint32_t>(now.item_index)});
+      const bool is_over =
+          now.state == control::MissionState::kCompleted || now.state == control::MissionState::kAborted;
+      flight.mission.push_back(
+          {stamp_ns, now.id, static_cast<int>(now.state), static_cast<std::uint32_t>(now.item_index),
+           static_cast<std::uint32_t>(now.item_count), is_over ? control::to_string(status_.reason) : ""});
       recorded_ = now;
     }
     if (!answered_sample()) return;
     const control::Estimate& estimate = loop_.controller.estimate();
-    record.reference.append(reference_row(loop_.answered->stamp_ns));
-    record.estimate.append({estimate.stamp_ns, array(estimate.position_ned), array(estimate.velocity_ned)});
+    flight.reference.push_back(reference_row(loop_.answered->stamp_ns));
+    record::EstimateRow row;
+    row.stamp_ns = estimate.stamp_ns;
+    row.position_ned = array(estimate.position_ned);
+    row.velocity_ned = array(estimate.velocity_ned);
+    flight.estimate.push_back(row);
   }
 
-  ReferenceRow reference_row(std::int64_t stamp_ns) const {
+  record::ReferenceRow reference_row(std::int64_t stamp_ns) const {
     const control::Reference& reference = loop_.controller.reference();
     const control::AttitudeSetpoint& setpoint = loop_.controller.attitude_setpoint();
     const Eigen::Quaterniond q(control::attitude_along(setpoint.body_z_ned, setpoint.yaw_rad));
-    ReferenceRow row;
+    record::ReferenceRow row;
     row.stamp_ns = stamp_ns;
     row.mode = static_cast<int>(status_.mode);
     row.position_ned = array(reference.position_ned);

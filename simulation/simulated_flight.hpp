@@ -7,8 +7,8 @@
 
 #include "swiftlet/control/types/mission.hpp"
 #include "swiftlet/control/types/request.hpp"
-#include "swiftlet/recording/flight_record.hpp"
-#include "swiftlet/recording/flight_trace.hpp"
+#include "swiftlet/record/flight.hpp"
+#include "swiftlet/record/flight_trace.hpp"
 #include "swiftlet/simulation/closed_loop.hpp"
 
 namespace swiftlet::ground {
@@ -21,8 +21,8 @@ struct SimulatedFlight {
 
 // Outputs of a flight during its steps, and its cancellation. Every member may be null.
 struct FlightObserver {
-  FlightRecord* record = nullptr;  // ground truth at each IMU sample, the rest at the telemetry rate
-  runtime::FlightTrace* trace = nullptr;
+  record::Flight* record = nullptr;  // ground truth at each IMU sample, the rest at the telemetry rate
+  record::FlightTrace* trace = nullptr;
   std::function<bool()> cancelled = {};  // polled at the telemetry rate; true ends the flight
   std::function<void()> stepped = {};    // after each step of the loop
   std::function<void(const control::Request&, const control::Outcome&)> requested = {};  // after each request

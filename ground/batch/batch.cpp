@@ -29,13 +29,12 @@ double supply_voltage_v(const World& world) {
   return plant::open_circuit_voltage(world.vehicle.battery, world.simulation.supply.initial_state_of_charge);
 }
 
-// The threads of a batch. Each thread takes the next run and reuses one flight record for all its runs.
+// The threads of a batch, of which each takes the next run.
 class WorkerPool {
  public:
-  using Fly = std::function<std::optional<BatchRun>(std::size_t index, FlightRecord& record)>;
+  using Fly = std::function<std::optional<BatchRun>(std::size_t index)>;
 
-  WorkerPool(std::size_t runs, std::size_t record_capacity, Fly fly)
-      : fly_(std::move(fly)), record_capacity_(record_capacity), results_(runs) {}
+  WorkerPool(std::size_t runs, Fly fly) : fly_(std::move(fly)), results_(runs) {}
 
   void work(std::size_t jobs, const std::function<void(std::size_t done, std::size_t failed)>& progress) {
     std::vector<std::thread> threads;
@@ -71,8 +70,7 @@ class WorkerPool {
  private:
   void run() {
     try {
-      FlightRecord record(record_capacity_);
-      while (fly_next(record)) {
+      while (fly_next()) {
       }
     } catch (...) {
       const std::lock_guard<std::mutex> lock(mutex_);
@@ -84,11 +82,10 @@ class WorkerPool {
     changed_.notify_one();
   }
 
-  bool fly_next(FlightRecord& record) {
+  bool fly_next() {
     const std::size_t index = next_.fetch_add(1);
     if (index >= results_.size()) return false;
-    record.clear();
-    std::optional<BatchRun> result = fly_(index, record);
+    std::optional<BatchRun> result = fly_(index);
     if (!result) return false;
     const std::lock_guard<std::mutex> lock(mutex_);
     ++done_;
@@ -98,7 +95,6 @@ class WorkerPool {
   }
 
   const Fly fly_;
-  const std::size_t record_capacity_;
   std::vector<std::optional<BatchRun>> results_;
   std::atomic<std::size_t> next_{0};
 
@@ -130,12 +126,13 @@ Batch BatchRunner::fly(std::size_t jobs, const std::function<bool()>& cancelled,
     throw std::invalid_argument("jobs is " + std::to_string(jobs) + ", must be from 1 to " +
                                 std::to_string(kMostJobs));
   const auto start = std::chrono::steady_clock::now();
-  const auto fly_one = [&](std::size_t index, FlightRecord& record) -> std::optional<BatchRun> {
+  const auto fly_one = [&](std::size_t index) -> std::optional<BatchRun> {
     if (cancelled()) return std::nullopt;
     const std::uint64_t seed = plan_.seed + index;
     DispersionSample drawn = draw(plan_, seed);
     ClosedLoop loop = closed_loop(plan_, drawn.world, seed);
-    const FlightReport report = fly_in_process(loop, plan_, seed, record, nullptr, cancelled).report;
+    record::Flight flight;
+    const FlightReport report = fly_in_process(loop, plan_, seed, flight, nullptr, cancelled);
     if (!report.completed && cancelled()) return std::nullopt;
     return BatchRun{seed,
                     report.completed,
@@ -147,7 +144,7 @@ Batch BatchRunner::fly(std::size_t jobs, const std::function<bool()>& cancelled,
                     std::move(drawn.values)};
   };
 
-  WorkerPool pool(runs_, plan_.record_capacity(), fly_one);
+  WorkerPool pool(runs_, fly_one);
   pool.work(std::min(jobs, runs_), [&](std::size_t done, std::size_t failed) {
     progress({runs_, done, failed, elapsed_s(start)});
   });

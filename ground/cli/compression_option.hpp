@@ -1,7 +1,7 @@
 // The option of commands that write MCAP files.
 #pragma once
 
-#include "swiftlet/io/mcap/compression.hpp"
+#include "swiftlet/record/mcap/compression.hpp"
 #include "swiftlet/services/runtime/command_line.hpp"
 
 namespace swiftlet::ground {

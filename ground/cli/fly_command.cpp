@@ -78,11 +78,11 @@ std::vector<std::string> vehicles_of(const FlyOptions& options) {
 // and is commanded above level actuators.
 FlyOptions with_px4(FlyOptions options) {
   if (options.vehicle == kPx4Vehicle) {
-    const bool simulates = options.clock == runtime::Clock::kLockstep || options.speed || options.sensors ||
+    const bool simulates = options.clock == runtime::Clock::kLockstep || options.speed ||
                            options.imu_rate_hz > 0 || options.odometry != plant::OdometrySource::kNone;
     if (simulates)
       throw InputError(
-          "--vehicle px4: PX4 is no simulation of swiftlet-plant, as --clock lockstep, --speed, --sensors, "
+          "--vehicle px4: PX4 is no simulation of swiftlet-plant, as --clock lockstep, --speed, "
           "--imu-rate and --odometry need");
     options.vehicle = FlyOptions().vehicle;
     options.px4_instance = options.px4_instance.value_or(0);
@@ -134,8 +134,7 @@ Command add_fly_command(runtime::CommandLine root, const std::string& version) {
         "--radio-jitter", "--radio-loss", "--clock", "--speed", "--as-fast-as-possible"}) {
     attach.excludes(app.option(launch_option));
   }
-  for (const char* of_simulation :
-       {"--imu-rate", "--odometry", "--clock", "--speed", "--spacing", "--sensors"})
+  for (const char* of_simulation : {"--imu-rate", "--odometry", "--clock", "--speed", "--spacing"})
     px4.excludes(app.option(of_simulation));
   app.footer(
       "Several vehicles (--vehicle-name kl1,kl2) start their missions at the same time. If one fails, the "

@@ -142,13 +142,9 @@ void add_file_options(runtime::CommandLine app, ReadingOptions& options) {
 void add_record_options(runtime::CommandLine app, FlyOptions& options) {
   const runtime::Option record = app.add_option(
       "--record", options.record,
-      "new folder for flight.csv, report.json, flight.png and logs; default: flights/<date>-<mission>");
+      "new folder for flight.mcap, report.json, flight.png and logs; default: flights/<date>-<mission>");
   app.add_flag("--replace", options.replace, "delete the record that the folder of --record holds first")
       .needs(record);
-  app.add_flag(
-      "--sensors", options.sensors,
-      "write sensors.csv, the input of `swiftlet identify flight`: every IMU sample, command, pose, voltage "
-      "and rotor speed");
   app.add_flag("--json", options.json, "print one JSON object instead of the summary");
 }
 
@@ -183,8 +179,6 @@ runtime::Option add_launch_options(runtime::CommandLine app, FlyOptions& options
          "--speed", options.speed,
          "simulation speed factor (1 = real time); default: 1, or with --clock lockstep as fast as possible")
       .range(0.01, 100.0);
-  app.add_flag("--mcap", options.mcap,
-               "write flight.mcap, every message of the flight, as `swiftlet record` does");
   app.add_flag("--view", options.view,
                "serve the live page of `swiftlet view` beside the flight, and print its URL");
   app.add_flag("--trace", options.trace,

@@ -12,11 +12,11 @@ namespace swiftlet::ground {
 
 // Adds mission, the options of add_file_options(), --vehicle, --control, --simulation, --seed and --imu-rate.
 void add_mission_options(runtime::CommandLine app, FlyOptions& options);
-// Adds the options of add_mission_options(), --level, --record, --replace, --sensors and --json.
+// Adds the options of add_mission_options(), --level, --record, --replace and --json.
 void add_fly_options(runtime::CommandLine app, FlyOptions& options);
-// Adds --record, --replace, --sensors and --json.
+// Adds --record, --replace and --json.
 void add_record_options(runtime::CommandLine app, FlyOptions& options);
-// Adds --attach, --skip-check, --clock, --speed, --mcap and --trace, and changes the network options of `app`. Returns
+// Adds --attach, --skip-check, --clock, --speed, --view and --trace, and changes the network options of `app`. Returns
 // --attach.
 runtime::Option add_launch_options(runtime::CommandLine app, FlyOptions& options);
 // Adds --level: at which the vehicle is commanded.

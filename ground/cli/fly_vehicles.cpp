@@ -56,7 +56,8 @@ void for_each_at_once(std::size_t flights, const Work& work) {
 }
 
 // Flies all vehicles at the same time, ends the processes and writes the records.
-void fly_together(std::deque<ProcessFlight>& flights, ProcessGroup& processes, const StartWatch& start_watch,
+void fly_together(std::deque<ProcessFlight>& flights, ProcessGroup& processes, MessageRecord& messages,
+                  const std::filesystem::path& folder, const StartWatch& start_watch,
                   const Interrupts& interrupts, ProgressLine& progress) {
   std::vector<std::string> names;
   names.reserve(flights.size());
@@ -86,7 +87,9 @@ void fly_together(std::deque<ProcessFlight>& flights, ProcessGroup& processes, c
     for (const std::string& error : errors) progress.say(error);
     errors.clear();
   }
-  for_each_at_once(flights.size(), [&](std::size_t i) { flights[i].finish(errors, shares.of(i)); });
+  const std::string record_fault = messages.finish();
+  for_each_at_once(flights.size(),
+                   [&](std::size_t i) { flights[i].finish(errors, record_fault, folder, shares.of(i)); });
   if (fault) std::rethrow_exception(fault);
 }
 
@@ -133,8 +136,7 @@ int fly_vehicles(const FlyOptions& options, const std::vector<std::string>& vehi
 
   ProgressLine progress;
   const Interrupts interrupts;
-  std::optional<MessageRecord> messages;  // receives from the first message on
-  if (options.mcap) messages.emplace(network, fleet);
+  MessageRecord messages(network, fleet);  // receives from the first message on
   std::optional<LiveView> view;
   if (options.view) {
     view.emplace(network, vehicles, record->path());
@@ -152,18 +154,15 @@ int fly_vehicles(const FlyOptions& options, const std::vector<std::string>& vehi
                  (plan.launch_mode == LaunchMode::kAttached ? "" : " with " + plan.vehicle.name) + ": " +
                  network.vehicle + " in domain " + std::to_string(network.domain) +
                  (network.on_loopback() ? " on this host" : "") + ", record in " + plan.folder.string());
-    flights.emplace_back(std::move(plans[i]), network, processes, participant);
+    flights.emplace_back(std::move(plans[i]), network, processes, participant, messages);
   }
   if (flights.size() == 1) {
     flights.front().fly(interrupts, nullptr, progress);
-    flights.front().finish(processes.stop(), progress);
+    const std::vector<std::string> end_errors = processes.stop();
+    flights.front().finish(end_errors, messages.finish(), fleet.folder, progress);
   } else {
-    fly_together(flights, processes, start_watch, interrupts, progress);
+    fly_together(flights, processes, messages, fleet.folder, start_watch, interrupts, progress);
   }
-  std::string incomplete;
-  if (messages) incomplete = messages->finish();
-  if (!incomplete.empty()) progress.say("swiftlet: the record of the messages is incomplete: " + incomplete);
-
   if (flights.size() == 1) return print_report(flights.front().report(), options.json, progress);
   std::vector<FlightReport> reports;
   reports.reserve(flights.size());

@@ -16,8 +16,8 @@
 #include "swiftlet/ground/client/context.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
-#include "swiftlet/ground/recording/flight_recorder.hpp"
 #include "swiftlet/ground/terminal/progress_line.hpp"
+#include "swiftlet/record/recorder/flight_recorder.hpp"
 #include "swiftlet/services/dds/reach.hpp"
 #include "swiftlet/services/dds/vehicle_list.hpp"
 
@@ -36,7 +36,7 @@ struct RecordOptions {
   std::string output;
   bool replace = false;
   std::optional<double> duration_s;
-  RecorderSettings recorder;
+  record::RecorderSettings recorder;
   int queue_mb = 64;
   bool json = false;
 };
@@ -54,7 +54,7 @@ void require_free(const RecordOptions& options) {
 // The vehicles that are recorded: those named, or all that appear.
 class RecordedVehicles {
  public:
-  RecordedVehicles(const RecordOptions& options, const Context& context, FlightRecorder& recorder)
+  RecordedVehicles(const RecordOptions& options, const Context& context, record::FlightRecorder& recorder)
       : context_(context), recorder_(recorder), all_(options.all) {
     if (all_) return;
     for (const std::string& name : comms::vehicles_of_list(options.network.vehicle)) add(name);
@@ -72,17 +72,17 @@ class RecordedVehicles {
   }
 
   const Context& context_;
-  FlightRecorder& recorder_;
+  record::FlightRecorder& recorder_;
   const bool all_;
   std::set<std::string> names_;
   Steady::time_point next_look_{};
 };
 
-std::string losses(const RecorderTotals& totals) {
+std::string losses(const record::RecorderTotals& totals) {
   return fmt::format("{} dropped, {} lost", totals.dropped, totals.lost);
 }
 
-void print(const RecordOptions& options, const RecorderTotals& totals, double time_s,
+void print(const RecordOptions& options, const record::RecorderTotals& totals, double time_s,
            const std::optional<std::string>& fault) {
   if (options.json) {
     nlohmann::ordered_json json = {
@@ -106,9 +106,9 @@ int record(const RecordOptions& options) {
   std::signal(SIGXFSZ, SIG_IGN);  // a limit of the file's size is an error of write(), as a full disk is
   const Interrupts interrupts;
   const Context context(options.network);
-  RecorderSettings settings = options.recorder;
+  record::RecorderSettings settings = options.recorder;
   settings.queue_bytes = static_cast<std::size_t>(options.queue_mb) << 20U;
-  FlightRecorder recorder(context.participant(), options.output, settings);
+  record::FlightRecorder recorder(context.participant(), options.output, settings);
   RecordedVehicles vehicles(options, context, recorder);
   ProgressLine progress;
   progress.say("recording to " + options.output + "; end with Ctrl-C");
@@ -118,7 +118,7 @@ int record(const RecordOptions& options) {
   while (interrupts.count() == 0 && !fault && !(options.duration_s && time_s() >= *options.duration_s)) {
     vehicles.look();
     std::this_thread::sleep_for(kShownStep);
-    const RecorderTotals totals = recorder.totals();
+    const record::RecorderTotals totals = recorder.totals();
     progress.update(
         0, fmt::format("{:.0f} s  {} messages of {} topics, {:.1f} MB, {}", time_s(), totals.received,
                        totals.topics, static_cast<double>(totals.file_bytes) / 1e6, losses(totals)));
@@ -127,7 +127,7 @@ int record(const RecordOptions& options) {
   const double recorded_s = time_s();
   recorder.stop();
   progress.close();
-  const RecorderTotals totals = recorder.totals();
+  const record::RecorderTotals totals = recorder.totals();
   fault = recorder.fault();
   if (!fault && totals.received == 0)
     fault = "no message was received in domain " + std::to_string(options.network.domain) +
@@ -153,7 +153,7 @@ Command add_record_command(runtime::CommandLine root, const std::string& version
   add_compression_option(app, options->recorder.file.compression);
   app.add_choice(
          "--time", options->recorder.clock,
-         {{"wall", RecordClock::kWall}, {"vehicle", RecordClock::kVehicle}},
+         {{"wall", record::RecordClock::kWall}, {"vehicle", record::RecordClock::kVehicle}},
          "times in the file: wall, when a message arrived; vehicle, the stamps of the vehicle's clock, "
          "for simulated time")
       .show_default("wall");

@@ -15,9 +15,9 @@ int sim_fly(const FlyOptions& options) {
   const LaunchConfiguration plan = plan_flight(options);
   ProgressLine progress;
   const Interrupts interrupts;
-  FlightRecord record(plan.record_capacity());
+  record::Flight flight;
   const FlightReport report = fly_and_record(
-      plan, options, record, [&] { return interrupts.count() > 0; }, progress);
+      plan, options, flight, [&] { return interrupts.count() > 0; }, progress);
   return print_report(report, options.json, progress);
 }
 
@@ -31,8 +31,6 @@ Command add_sim_fly_command(runtime::CommandLine sim, const std::string& version
       sim.add_subcommand("fly", "Fly a mission in one process, as fast as possible");
   add_fly_options(app, *options);
   add_dispersion_option(app, *options);
-  app.add_flag("--mcap", options->mcap,
-               "write flight.mcap, the messages of the flight, as `swiftlet fly --mcap` does");
   app.add_flag("--trace", options->trace,
                "write trace.csv, which holds every sample and command bit for bit, to compare flights");
   app.footer(

@@ -309,7 +309,8 @@ Command add_stream_command(runtime::CommandLine root) {
       app.footer());
   app.add_option("file", options->file,
                  "CSV file whose header names the columns with frame and unit, or is "
-                 "t,x,y,z[,vx,vy,vz[,ax,ay,az]][,yaw] (ENU); or flight.csv of a record; - streams from "
+                 "t,x,y,z[,vx,vy,vz[,ax,ay,az]][,yaw] (ENU); or that of a flight, by `swiftlet log csv`; - "
+                 "streams from "
                  "standard input")
       .required();
   add_frame_option(app, options->frame);

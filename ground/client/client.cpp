@@ -18,46 +18,12 @@ namespace {
 constexpr std::chrono::milliseconds kResendPeriod{2000};  // without an answer
 constexpr std::size_t kMaxReportedRequests = 64;
 constexpr std::chrono::milliseconds kPollPeriod{20};  // for conditions that do not notify changed_
-// How far a lockstep plant may run ahead. Telemetry alone: up to 50 samples at 100 Hz. With sensors and
-// commands: 30 samples at an IMU rate of 500 Hz, 50 at 1000 Hz.
+// How far a lockstep plant may run ahead: 50 samples of the IMU at 500 Hz, which the sockets of a recorder hold.
 constexpr std::int64_t kTelemetryWindowNs = 100'000'000;
-constexpr std::int64_t kSensorWindowNs = 20'000'000;
 
 std::uint64_t random_id() {
   std::random_device device;
   return (static_cast<std::uint64_t>(device()) << 32) | device();
-}
-
-TruthRow row_of(const msg::GroundTruth& truth) {
-  TruthRow row;
-  row.stamp_ns = truth.stamp_ns();
-  row.position_ned = truth.position_ned();
-  row.velocity_ned = truth.velocity_ned();
-  row.q_ned_from_frd = truth.q_ned_from_frd();
-  row.body_rates_frd = truth.body_rates_frd();
-  row.rotor_speeds = truth.rotor_speeds();
-  row.rotor_count = std::min<int>(truth.rotor_count(), static_cast<int>(row.rotor_speeds.size()));
-  row.supply_voltage_v = truth.supply_voltage_v();
-  row.on_ground = truth.on_ground();
-  return row;
-}
-
-ReferenceRow row_of(const msg::Reference& reference) {
-  ReferenceRow row;
-  row.stamp_ns = reference.stamp_ns();
-  row.mode = reference.mode();
-  row.position_ned = reference.position_ned();
-  row.velocity_ned = reference.velocity_ned();
-  row.acceleration_ned = reference.acceleration_ned();
-  row.yaw_rad = reference.yaw();
-  row.q_ned_from_frd = reference.attitude_setpoint();
-  row.thrust_n = reference.thrust_setpoint();
-  row.moment_frd = reference.moment_setpoint();
-  return row;
-}
-
-EstimateRow row_of(const msg::Estimate& estimate) {
-  return {estimate.stamp_ns(), estimate.position_ned(), estimate.velocity_ned()};
 }
 
 Result result_of(const msg::CommandAck& ack) {
@@ -66,34 +32,16 @@ Result result_of(const msg::CommandAck& ack) {
   return {Result::Kind::kRefused, ack.reason().c_str(), key};
 }
 
-MissionRow row_of(const msg::MissionStatus& status) {
-  return {status.stamp_ns(), status.mission_id(), status.state(), status.item_index()};
-}
-
-// Appends a valid sample. Skips invalid ones, samples that lockstep repeats, and heartbeats of motion capture
-// without a pose (sequence 0).
-template <class Message, class Sample>
-void keep_sample(const Message& message, Track<Sample>& track) {
-  Sample sample;
-  if (comms::from_message(message, sample)) return;
-  if (sample.sequence == 0) return;
-  if (!track.empty() && track.back().stamp_ns >= sample.stamp_ns) return;
-  track.append(sample);
-}
-
 }  // namespace
 
-Client::Client(const comms::NodeSettings& settings, FlightRecord* record)
-    : Client(nullptr, settings, record, Telemetry::kReceived) {}
+Client::Client(const comms::NodeSettings& settings) : Client(nullptr, settings, Telemetry::kReceived) {}
 
 Client::Client(const comms::Participant& participant, const comms::NodeSettings& settings,
-               FlightRecord* record, Telemetry telemetry)
-    : Client(&participant, settings, record, telemetry) {}
-
-Client::Client(const comms::Participant* shared, const comms::NodeSettings& settings, FlightRecord* record,
                Telemetry telemetry)
+    : Client(&participant, settings, telemetry) {}
+
+Client::Client(const comms::Participant* shared, const comms::NodeSettings& settings, Telemetry telemetry)
     : settings_(settings),
-      record_(record),
       client_id_(random_id()),
       last_id_(random_id() >> 1),
       node_(shared != nullptr ? comms::Node(*shared, settings.vehicle) : comms::Node(settings)),
@@ -161,7 +109,6 @@ void Client::subscribe_statuses() {
       }));
   subscriptions_.push_back(
       node_.subscribe<msg::MissionStatus>(kMissionStatus, [this](const msg::MissionStatus& status) {
-        if (record_ != nullptr) record_->mission.append(row_of(status));
         keep(&View::mission, status);
         changed_.notify_all();
       }));
@@ -186,18 +133,12 @@ void Client::subscribe_statuses() {
 // Does not wake waiting threads: its rate is too high.
 void Client::subscribe_telemetry() {
   using namespace comms::topics;
-  subscriptions_.push_back(node_.subscribe<msg::Battery>(kBattery, [this](const msg::Battery& battery) {
-    if (record_ != nullptr && record_->sensors) keep_sample(battery, record_->sensors->batteries);
-    keep(&View::battery, battery);
-  }));
-  if (record_ != nullptr && record_->sensors) subscribe_sensors(*record_->sensors);
-  subscriptions_.push_back(node_.subscribe<msg::Estimate>(kEstimate, [this](const msg::Estimate& estimate) {
-    if (record_ != nullptr) record_->estimate.append(row_of(estimate));
-    keep(&View::estimate, estimate);
-  }));
+  subscriptions_.push_back(node_.subscribe<msg::Battery>(
+      kBattery, [this](const msg::Battery& battery) { keep(&View::battery, battery); }));
+  subscriptions_.push_back(node_.subscribe<msg::Estimate>(
+      kEstimate, [this](const msg::Estimate& estimate) { keep(&View::estimate, estimate); }));
   subscriptions_.push_back(
       node_.subscribe<msg::Reference>(kReference, [this](const msg::Reference& reference) {
-        if (record_ != nullptr) record_->reference.append(row_of(reference));
         keep(&View::reference, reference);
         advance_after(reference.stamp_ns());
         std::unique_lock lock(mutex_);
@@ -205,45 +146,10 @@ void Client::subscribe_telemetry() {
         lock.unlock();
         if (heartbeat) heartbeat->telemetry(reference.stamp_ns());
       }));
-  subscriptions_.push_back(
-      node_.subscribe<msg::GroundTruth>(kGroundTruth, [this](const msg::GroundTruth& truth) {
-        // Lockstep repeats a sample whose answer is late.
-        const bool again = record_ != nullptr && !record_->truth.empty() &&
-                           record_->truth.back().stamp_ns == truth.stamp_ns();
-        if (record_ != nullptr && !again) record_->truth.append(row_of(truth));
-        keep(&View::truth, truth);
-      }));
+  subscriptions_.push_back(node_.subscribe<msg::GroundTruth>(
+      kGroundTruth, [this](const msg::GroundTruth& truth) { keep(&View::truth, truth); }));
   subscriptions_.push_back(node_.subscribe<msg::ClockStatus>(
       kClockStatus, [this](const msg::ClockStatus& status) { keep(&View::clock, status); }));
-}
-
-// Subscribes to the IMU last of the plant's topics: a plant whose IMU samples arrive has discovered the other
-// subscriptions too.
-void Client::subscribe_sensors(SensorRecord& sensors) {
-  using namespace comms::topics;
-  subscriptions_.push_back(node_.subscribe<msg::RotorSpeeds>(
-      kRotorSpeeds,
-      [&sensors](const msg::RotorSpeeds& speeds) { keep_sample(speeds, sensors.rotor_speeds); }));
-  subscriptions_.push_back(
-      node_.subscribe<msg::MocapPose>(kMocapPose, [this, &sensors](const msg::MocapPose& pose) {
-        keep_sample(pose, sensors.poses);
-        note_heard(&HeardSamples::pose);
-      }));
-  subscriptions_.push_back(node_.subscribe<msg::ActuatorCommand>(
-      kActuatorCommand, [this, &sensors](const msg::ActuatorCommand& command) {
-        keep_sample(command, sensors.commands);
-        note_heard(&HeardSamples::command);
-      }));
-  subscriptions_.push_back(node_.subscribe<msg::Imu>(kImu, [this, &sensors](const msg::Imu& imu) {
-    keep_sample(imu, sensors.imu);
-    note_heard(&HeardSamples::imu);
-    advance_after(imu.stamp_ns());
-  }));
-}
-
-void Client::note_heard(bool HeardSamples::*kind) {
-  const std::lock_guard lock(mutex_);
-  view_.samples.*kind = true;
 }
 
 void Client::hear_controllers() {
@@ -266,19 +172,29 @@ SimulationClockPublisher& Client::simulation_clock() {
   std::unique_lock lock(mutex_);
   if (clock_publisher_) return *clock_publisher_;
   lock.unlock();
-  const bool every_sample = record_ != nullptr && record_->sensors;
-  auto simulation_clock =
-      std::make_shared<SimulationClockPublisher>(node_, every_sample ? kSensorWindowNs : kTelemetryWindowNs);
+  auto simulation_clock = std::make_shared<SimulationClockPublisher>(node_, kTelemetryWindowNs);
   lock.lock();
   clock_publisher_ = std::move(simulation_clock);
   return *clock_publisher_;
 }
 
 void Client::advance_after(std::int64_t stamp_ns) {
+  come_ns_ = std::max(come_ns_.load(), stamp_ns);  // of the one thread that receives both
+  advance();
+}
+
+void Client::has_been_recorded(std::int64_t stamp_ns) {
+  recorded_ns_ = stamp_ns;
+  advance();
+}
+
+void Client::advance() {
   std::unique_lock lock(mutex_);
   const auto simulation_clock = clock_publisher_;
   lock.unlock();
-  if (simulation_clock) simulation_clock->has_come(stamp_ns);
+  const std::int64_t recorded_ns = recorded_ns_;
+  if (simulation_clock)
+    simulation_clock->has_come(recorded_ns < 0 ? come_ns_.load() : std::min(come_ns_.load(), recorded_ns));
 }
 
 void Client::enable_link_loss_failsafe() {

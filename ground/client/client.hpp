@@ -21,7 +21,6 @@
 #include "swiftlet/ground/client/result.hpp"
 #include "swiftlet/ground/client/simulation_clock.hpp"
 #include "swiftlet/ground/client/telemetry.hpp"
-#include "swiftlet/recording/flight_record.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::ground {
@@ -40,15 +39,6 @@ struct Latest {
   double age_s(Clock::time_point now) const { return std::chrono::duration<double>(now - received).count(); }
 };
 
-// Which sample streams have been received at least once. Set only if sensors are recorded.
-struct HeardSamples {
-  bool imu = false;
-  bool command = false;
-  bool pose = false;  // a pose, or a heartbeat of motion capture
-
-  bool all() const { return imu && command && pose; }
-};
-
 // The newest message of each topic of the vehicle and its controller.
 struct View {
   Latest<msg::ControlStatus> control;
@@ -58,8 +48,7 @@ struct View {
   Latest<msg::Estimate> estimate;
   Latest<msg::Reference> reference;
   Latest<msg::GroundTruth> truth;
-  Latest<msg::ClockStatus> clock;  // of motion capture with a clock of its own
-  HeardSamples samples;
+  Latest<msg::ClockStatus> clock;    // of motion capture with a clock of its own
   std::map<std::string, int> peers;  // number of live processes, by name
   std::string foreign_control;  // the last control_status had another wire version, a sentence; empty: not so
   std::map<std::uint64_t, Latest<msg::ControllerState>>
@@ -70,14 +59,12 @@ struct View {
 // this class. Thread-safe.
 class Client {
  public:
-  // record: receives every sample of ground truth, reference, estimate and mission status and, if its
-  // `sensors` are set, of the sensors and actuator commands; may be null. Throws std::runtime_error if the
-  // network cannot be joined.
-  explicit Client(const comms::NodeSettings& settings, FlightRecord* record = nullptr);
+  // Throws std::runtime_error if the network cannot be joined.
+  explicit Client(const comms::NodeSettings& settings);
   // Shares the participant with other clients. settings.vehicle names the vehicle. Without telemetry, of View only
   // control, mission, vehicle and peers are filled.
   Client(const comms::Participant& participant, const comms::NodeSettings& settings,
-         FlightRecord* record = nullptr, Telemetry telemetry = Telemetry::kReceived);
+         Telemetry telemetry = Telemetry::kReceived);
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
@@ -89,6 +76,9 @@ class Client {
   // Publishes the time up to which a lockstep plant that was started paused may advance. The first call
   // starts the publisher.
   SimulationClockPublisher& simulation_clock();
+  // A sample of the vehicle with this stamp is in the record of its flight. Once it is told so, this client lets time advance no
+  // further than the record follows. From any thread.
+  void has_been_recorded(std::int64_t stamp_ns);
 
   // Publishes the ground heartbeat until the failsafe is disabled or the client is destroyed: if it stops
   // otherwise, the controller does what failsafe.ground_link_action says. Call these two and
@@ -135,21 +125,18 @@ class Client {
 
  private:
   void note_requests(const msg::ControlStatus& status);
-  Client(const comms::Participant* shared, const comms::NodeSettings& settings, FlightRecord* record,
-         Telemetry telemetry);
+  Client(const comms::Participant* shared, const comms::NodeSettings& settings, Telemetry telemetry);
   template <class T>
   void keep(Latest<T> View::*slot, const T& message);
   void subscribe_statuses();
   void subscribe_telemetry();
-  void subscribe_sensors(SensorRecord& sensors);
-  void note_heard(bool HeardSamples::*kind);
   void advance_after(std::int64_t stamp_ns);
+  void advance();
   template <class T>
   Result ask(comms::Publisher<T>& publisher, const T& request, std::chrono::milliseconds timeout,
              const Cancelled& cancelled);
 
   comms::NodeSettings settings_;
-  FlightRecord* record_;
   std::uint64_t client_id_;
   std::atomic<std::uint64_t> last_id_;  // random start: mission ids of two tools must differ
   std::atomic<std::uint64_t> mission_id_{0};
@@ -172,6 +159,8 @@ class Client {
   // Created, used and destroyed without mutex_ held: the middleware's threads lock mutex_ in callbacks while
   // they hold the middleware's own locks (deadlock).
   std::shared_ptr<SimulationClockPublisher> clock_publisher_;
+  std::atomic<std::int64_t> come_ns_{0};       // the newest stamp that has arrived here
+  std::atomic<std::int64_t> recorded_ns_{-1};  // and in the record; < 0: there is none
   std::shared_ptr<GroundHeartbeatPublisher> heartbeat_;
   std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use all members above
 };

@@ -81,8 +81,8 @@ SetpointTally SetpointTally::since(const SetpointTally& before) const {
 Vehicle::Vehicle(const comms::NodeSettings& network) : client_(std::make_shared<Client>(network)) {}
 
 Vehicle::Vehicle(const Context& context, const std::string& name, Telemetry telemetry)
-    : client_(std::make_shared<Client>(context.participant(), of_vehicle(context.network(), name), nullptr,
-                                       telemetry)) {}
+    : client_(
+          std::make_shared<Client>(context.participant(), of_vehicle(context.network(), name), telemetry)) {}
 
 Vehicle::~Vehicle() = default;
 

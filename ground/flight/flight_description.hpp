@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "swiftlet/ground/flight/launch_configuration.hpp"
-#include "swiftlet/io/mcap/records.hpp"
-#include "swiftlet/io/mcap/writer.hpp"
+#include "swiftlet/record/mcap/records.hpp"
+#include "swiftlet/record/mcap/writer.hpp"
 
 namespace swiftlet::ground {
 

@@ -3,26 +3,28 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <stdexcept>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/ground/report/flight_files.hpp"
-#include "swiftlet/io/logs/flight_log_files.hpp"
-#include "swiftlet/services/runtime/clock.hpp"
+#include "swiftlet/record/file/flight_reader.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
 // Why a mission that was flown to its end does not count as completed; empty if it counts.
-std::string shortfall(const FlightReport& report, Window window) {
-  if (!enough_samples(report.errors, window)) {
+std::string shortfall(const FlightReport& report, record::Window window) {
+  if (report.errors.matched == 0 && !report.record_fault.empty())
+    return "nothing was recorded by which it could be judged: " + report.record_fault;
+  if (!record::enough_samples(report.errors, window)) {
     return fmt::format(
         "too little telemetry: {0} of {1:.0f} samples matched (at least {3:.0f} %), longest gap {2:.2f} s "
         "(at most {4:.2f} s)",
-        report.errors.matched, window.duration_s() * kTelemetryRateHz, report.errors.longest_gap_s,
-        kLeastMatchedFraction * 100.0, kLongestGapS);
+        report.errors.matched, window.duration_s() * record::kTelemetryRateHz, report.errors.longest_gap_s,
+        record::kLeastMatchedFraction * 100.0, record::kLongestGapS);
   }
   if (!std::isfinite(report.errors.rms_3d_m)) return "the ground truth is not finite";
   if (report.errors.peak_3d_m > report.tolerance_m) {
@@ -39,16 +41,23 @@ void say_record_fault(const FlightReport& report, Progress& progress) {
 
 }  // namespace
 
-void evaluate(FlightReport& report, const FlightRecord& record, Window window) {
-  const bool complete = report.clock != runtime::to_string(runtime::Clock::kRealtime);  // no sample is lost
-  report.errors = tracking_errors(record.truth, record.reference, window,
-                                  complete ? TruthSource::kEqualStamps : TruthSource::kInterpolated);
-  if (report.reason.empty()) report.reason = shortfall(report, window);
+void judge(FlightReport& report, const record::Evaluation& flown) {
+  report.duration_s = flown.duration_s;
+  report.errors = flown.errors;
+  if (report.reason.empty()) report.reason = shortfall(report, flown.window.value_or(record::Window{}));
   report.completed = report.reason.empty();
 }
 
-void write_record(const std::filesystem::path& folder, const FlightRecord& record, FlightReport& report,
-                  Window window, Progress& progress) {
+std::optional<record::Flight> flight_in(const std::filesystem::path& folder, const std::string& vehicle) {
+  try {
+    return record::read_flight(mcap::Reader((folder / record::kFlightFile).string()), vehicle);
+  } catch (const std::runtime_error&) {
+    return std::nullopt;
+  }
+}
+
+void write_report(const std::filesystem::path& folder, const record::Flight& flight, FlightReport& report,
+                  record::Window window, Progress& progress) {
   const auto attempt = [&](const std::filesystem::path& file, const auto& write) {
     try {
       write(file);
@@ -58,14 +67,9 @@ void write_record(const std::filesystem::path& folder, const FlightRecord& recor
   };
   // First the smallest file, with the result. It is written again at the end if another one has failed.
   attempt(folder / "report.json", [&](const auto& file) { write_report_json(file, report); });
-  attempt(folder / "flight.csv", [&](const auto& file) { write_flight_csv(file, record, window); });
-  if (record.sensors) {
-    attempt(folder / kSensorsFile,
-            [&](const auto& file) { write_flight_log(file, flight_log_of(*record.sensors)); });
-  }
   if (report.errors.matched > 0) {
     attempt(folder / "flight.png", [&](const auto&) {
-      const std::string no_picture = draw_flight(folder, record, report, window);
+      const std::string no_picture = draw_flight(folder, flight, report, window);
       if (!no_picture.empty()) progress.say(no_picture);
     });
   }

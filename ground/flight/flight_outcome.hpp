@@ -2,24 +2,27 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "swiftlet/ground/report/flight_report.hpp"
 #include "swiftlet/ground/terminal/progress_line.hpp"
-#include "swiftlet/recording/flight_record.hpp"
+#include "swiftlet/record/evaluation.hpp"
 
 namespace swiftlet::ground {
 
-// Computes the tracking errors inside the window and sets report.completed: true if report.reason is empty,
-// the telemetry is complete enough and the peak error is within the tolerance.
-void evaluate(FlightReport& report, const FlightRecord& record, Window window);
+// Sets duration and tracking errors of the report, and report.completed: true if report.reason is empty, the telemetry is complete
+// enough and the peak error is within the tolerance.
+void judge(FlightReport& report, const record::Evaluation& flown);
 
-// Writes report.json, flight.csv, sensors.csv, flight.gp and flight.png. Where a file cannot be written, on a
-// full disk, writes the others, sets report.record_fault, and leaves an unfinished CSV file as NAME.part.
-// Without gnuplot, says in the progress that there is no picture; that is no fault.
-void write_record(const std::filesystem::path& folder, const FlightRecord& record, FlightReport& report,
-                  Window window, Progress& progress);
+// What the flight.mcap in a folder holds of a vehicle, also if its end is missing; nullopt if it cannot be read.
+std::optional<record::Flight> flight_in(const std::filesystem::path& folder, const std::string& vehicle);
+
+// Writes report.json, flight.gp and flight.png beside flight.mcap. Where a file cannot be written, on a full disk, writes the others and sets
+// report.record_fault. Without gnuplot, says in the progress that there is no picture; that is no fault.
+void write_report(const std::filesystem::path& folder, const record::Flight& flight, FlightReport& report,
+                  record::Window window, Progress& progress);
 
 // Prints the report as JSON to standard output, or as text. Returns the program's exit code: kFailed also for
 // a completed flight whose record is incomplete.

@@ -4,7 +4,6 @@
 
 #include "swiftlet/ground/flight/flight_outcome.hpp"
 #include "swiftlet/ground/flight/simulated_recorder.hpp"
-#include "swiftlet/recording/flight_window.hpp"
 #include "swiftlet/simulation/simulated_flight.hpp"
 
 namespace swiftlet::ground {
@@ -13,36 +12,29 @@ ClosedLoop closed_loop(const LaunchConfiguration& plan, const World& world, std:
   return {world.vehicle, plan.vehicle, world.simulation, plan.control, seed};
 }
 
-InProcessFlight fly_in_process(ClosedLoop& loop, const LaunchConfiguration& plan, std::uint64_t seed,
-                               FlightRecord& record, runtime::FlightTrace* trace,
-                               const std::function<bool()>& cancelled, SimulatedRecorder* messages) {
+FlightReport fly_in_process(ClosedLoop& loop, const LaunchConfiguration& plan, std::uint64_t seed,
+                            record::Flight& flight, record::FlightTrace* trace,
+                            const std::function<bool()>& cancelled, SimulatedRecorder* messages) {
   control::Mission mission = plan.mission.mission;
   mission.id = 1;
-  InProcessFlight done;
-  FlightReport& report = done.report;
-  report = report_of(plan);
+  FlightReport report = report_of(plan);
   report.seed = seed;
 
   const auto start = std::chrono::steady_clock::now();
-  FlightObserver observer{&record, trace, cancelled, {}, {}};
+  FlightObserver observer{&flight, trace, cancelled, {}, {}};
   if (messages != nullptr) {
     observer.stepped = [messages] { messages->step(); };
     observer.requested = [messages](const control::Request& request, const control::Outcome& outcome) {
       messages->request(request, outcome);
     };
   }
-  const SimulatedFlight flight = fly(loop, mission, plan.planned_duration_s, observer);
+  const SimulatedFlight flown = ground::fly(loop, mission, plan.planned_duration_s, observer);
   report.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
-  report.simulated_s = flight.simulated_s;
-  report.reason = flight.reason;
-  const auto window = mission_window(record, mission.id, mission);
-  if (window) {
-    done.window = *window;
-    report.duration_s = mission_duration_s(record, mission.id, *window);
-  }
-  evaluate(report, record, done.window);
-  return done;
+  report.simulated_s = flown.simulated_s;
+  report.reason = flown.reason;
+  judge(report, record::evaluate(flight));
+  return report;
 }
 
 }  // namespace swiftlet::ground

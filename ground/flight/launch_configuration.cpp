@@ -27,12 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kHighestImuRateHz = 1000.0;
-constexpr double kSpareS = 30.0;  // recorded before and after the mission
-
 // Sizes of a record, somewhat above those of real ones.
-constexpr double kTelemetryRowBytes = 1000.0;  // a row of flight.csv and its part of flight.gp
-constexpr double kSensorsRowBytes = 450.0;
+constexpr double kFigureRowBytes = 600.0;  // of flight.gp, for each reference
 constexpr double kTraceRowBytes = 450.0;
 constexpr double kMessagesBytes = 500.0;  // of all messages, compressed, for each sample of the IMU
 constexpr double kOtherFilesBytes = 1e6;  // settings, logs, pictures
@@ -217,9 +213,6 @@ void take_simulation_options(const FlyOptions& options, LaunchConfiguration& pla
   radio.delay_s = options.radio_delay_s.value_or(radio.delay_s);
   radio.jitter_s = options.radio_jitter_s.value_or(radio.jitter_s);
   radio.loss = options.radio_loss.value_or(radio.loss);
-  if (options.sensors && options.level != plant::ControlLevel::kActuators)
-    throw InputError(
-        "--sensors: needs --level actuators: at other levels the vehicle does not report its throttles");
   for (const plant::Violation& violation : plant::validate(plan.simulation)) {
     throw InputError("--imu-rate: " + violation.key + " " + violation.message);
   }
@@ -291,8 +284,6 @@ LaunchConfiguration plan_flight(const FlyOptions& options, const FlightInputs& g
   plan.folder = options.record.empty() ? default_record_folder(plan.mission.name) : fs::path(options.record);
   plan.trace = options.trace;
   plan.px4_instance = options.px4_instance;
-  plan.sensors = options.sensors;
-  plan.mcap = options.mcap;
   return plan;
 }
 
@@ -300,16 +291,10 @@ DispersionSample draw(const LaunchConfiguration& plan, std::uint64_t seed) {
   return draw(plan.dispersion, {plan.vehicle, plan.simulation}, seed);
 }
 
-std::size_t LaunchConfiguration::record_capacity() const {
-  // The IMU rate of a running vehicle is not known yet.
-  const double rate_hz = launch_mode == LaunchMode::kAttached ? kHighestImuRateHz : simulation.imu.rate_hz;
-  return static_cast<std::size_t>((FlightSchedule::time_limit_s(planned_duration_s) + kSpareS) * rate_hz);
-}
-
 std::uintmax_t LaunchConfiguration::record_bytes() const {
-  const double imu_row_bytes =
-      (sensors ? kSensorsRowBytes : 0.0) + (trace ? kTraceRowBytes : 0.0) + (mcap ? kMessagesBytes : 0.0);
-  const double bytes_per_s = kTelemetryRateHz * kTelemetryRowBytes + simulation.imu.rate_hz * imu_row_bytes;
+  const double imu_row_bytes = kMessagesBytes + (trace ? kTraceRowBytes : 0.0);
+  const double bytes_per_s =
+      record::kTelemetryRateHz * kFigureRowBytes + simulation.imu.rate_hz * imu_row_bytes;
   return static_cast<std::uintmax_t>((planned_duration_s + kGroundTimeS) * bytes_per_s + kOtherFilesBytes);
 }
 

@@ -60,8 +60,6 @@ struct FlyOptions {
   std::optional<int> px4_instance;
   int domain = -1;                   // DDS domain; < 0: a free one, or 0 if attached or with px4_instance
   bool trace = false;                // write a trace of a lockstep or in-process flight
-  bool sensors = false;              // record sensors and commands, for `swiftlet identify flight`
-  bool mcap = false;                 // record every message, as flight.mcap
   bool view = false;                 // serve the live page beside the flight
   std::string program = "swiftlet";  // with its version, for the record
   bool skip_check = false;           // kAttached: do not check the vehicle before it is armed
@@ -85,13 +83,10 @@ struct LaunchConfiguration {
   Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();  // m
   std::filesystem::path folder;                         // of the record; not created by plan_flight()
   bool trace = false;                                   // write trace_file()
-  bool sensors = false;                                 // record sensors and commands
-  bool mcap = false;                                    // record every message
   std::optional<int> px4_instance;                      // of FlyOptions
   std::filesystem::path vehicle_program, mocap_program,
       control_program;  // if kStarted; the first is plant or px4
 
-  std::size_t record_capacity() const;  // rows: IMU samples within the flight's time limit
   std::uintmax_t record_bytes() const;  // size of the record's files, estimated from duration and rates
   std::filesystem::path trace_file() const { return folder / "trace.csv"; }
   std::vector<std::filesystem::path> input_files() const;

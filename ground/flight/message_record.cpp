@@ -1,22 +1,20 @@
 #include "swiftlet/ground/flight/message_record.hpp"
 
 #include <chrono>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "swiftlet/ground/flight/flight_description.hpp"
-#include "swiftlet/ground/recording/process_log.hpp"
-#include "swiftlet/io/logs/flight_log_files.hpp"
+#include "swiftlet/record/file/flight_reader.hpp"
+#include "swiftlet/record/file/process_log.hpp"
 #include "swiftlet/services/runtime/clock.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
-RecorderSettings settings_of(const Fleet& fleet) {
-  RecorderSettings settings;
-  settings.file = writer_settings(fleet.program);
-  if (fleet.plans.front().clock == runtime::Clock::kLockstep) settings.clock = RecordClock::kVehicle;
-  return settings;
+bool is_in_simulated_time(const Fleet& fleet) {
+  return fleet.plans.front().clock == runtime::Clock::kLockstep;
 }
 
 std::int64_t now_ns() {
@@ -34,25 +32,42 @@ comms::NodeSettings listener(comms::NodeSettings network) {
 
 MessageRecord::MessageRecord(const comms::NodeSettings& network, const Fleet& fleet)
     : participant_(listener(network)),
-      recorder_(participant_, fleet.folder / kMessagesFile, settings_of(fleet)),
+      recorder_(participant_, fleet.folder / record::kFlightFile, settings_of(fleet)),
       folder_(fleet.folder),
-      simulated_time_(settings_of(fleet).clock == RecordClock::kVehicle) {
+      simulated_time_(is_in_simulated_time(fleet)) {
   recorder_.add(flight_metadata(fleet));
   for (const mcap::Attachment& attachment : flight_attachments(fleet)) recorder_.add(attachment);
   for (const std::string& vehicle : fleet.vehicles) recorder_.add_vehicle(vehicle);
 }
 
+record::RecorderSettings MessageRecord::settings_of(const Fleet& fleet) {
+  record::RecorderSettings settings;
+  settings.file = writer_settings(fleet.program);
+  if (is_in_simulated_time(fleet)) settings.clock = record::RecordClock::kVehicle;
+  settings.on_motion = [this](const std::string& vehicle, std::int64_t stamp_ns) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto use = on_motion_.find(vehicle);
+    if (use != on_motion_.end() && use->second) use->second(stamp_ns);
+  };
+  return settings;
+}
+
+void MessageRecord::on_motion(const std::string& vehicle, std::function<void(std::int64_t)> use) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  on_motion_[vehicle] = std::move(use);
+}
+
 std::string MessageRecord::finish() {
   if (!simulated_time_) {
-    for (const ProcessLogLine& line : process_log_lines(folder_, now_ns()))
-      recorder_.add(log_message(line), line.time_ns);
+    for (const record::ProcessLogLine& line : record::process_log_lines(folder_, now_ns()))
+      recorder_.add(record::log_message(line), line.time_ns);
   }
   recorder_.stop();
   if (const auto fault = recorder_.fault()) return *fault;
-  const RecorderTotals totals = recorder_.totals();
+  const record::RecorderTotals totals = recorder_.totals();
   if (totals.dropped + totals.lost == 0) return {};
   return fmt::format("{}: {} messages dropped because the disk is too slow, {} lost on their way",
-                     kMessagesFile, totals.dropped, totals.lost);
+                     record::kFlightFile, totals.dropped, totals.lost);
 }
 
 }  // namespace swiftlet::ground

@@ -1,11 +1,15 @@
 // flight.mcap of a flight's record: every message of its vehicles.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
+#include <mutex>
 #include <string>
 
 #include "swiftlet/ground/flight/launch_configuration.hpp"
-#include "swiftlet/ground/recording/flight_recorder.hpp"
+#include "swiftlet/record/recorder/flight_recorder.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::ground {
@@ -17,13 +21,24 @@ class MessageRecord {
   // std::runtime_error.
   MessageRecord(const comms::NodeSettings& network, const Fleet& fleet);
 
+  // Whether it has received the first samples of this vehicle: of its sensors, its motion capture and its controller.
+  bool hears(const std::string& vehicle) const { return recorder_.hears(vehicle); }
+
+  // As RecorderSettings::on_motion, of this vehicle. A new function replaces the former
+  // one, which no longer runs when this returns; empty for none.
+  void on_motion(const std::string& vehicle, std::function<void(std::int64_t stamp_ns)> use);
+
   // Adds the lines of the processes' logs to a file in real time, and ends it. The processes have ended.
   // Returns a sentence if it is not complete.
   std::string finish();
 
  private:
+  record::RecorderSettings settings_of(const Fleet& fleet);
+
+  std::mutex mutex_;  // guards on_motion_; held while one runs
+  std::map<std::string, std::function<void(std::int64_t)>> on_motion_;
   comms::Participant participant_;
-  FlightRecorder recorder_;
+  record::FlightRecorder recorder_;
   const std::filesystem::path folder_;
   const bool simulated_time_;
 };

@@ -10,8 +10,6 @@
 
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/client/action.hpp"
-#include "swiftlet/recording/flight_window.hpp"
-#include "swiftlet/recording/tracking.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::ground {
@@ -72,10 +70,9 @@ double simulated_s(const View& view, std::int64_t since_ns) {
 
 }  // namespace
 
-NetworkTransport::NetworkTransport(Client& client, const FlightRecord& record, const MissionFile& mission,
-                                   runtime::Clock clock, Watch watch, Progress& progress)
+NetworkTransport::NetworkTransport(Client& client, const MissionFile& mission, runtime::Clock clock,
+                                   Watch watch, Progress& progress)
     : client_(client),
-      record_(record),
       mission_(mission),
       lockstep_(clock == runtime::Clock::kLockstep),
       watch_(std::move(watch)),
@@ -118,12 +115,13 @@ void NetworkTransport::wait_until_ready() {
     }
     progress_.update(kBeforeFlight, "waiting for " + absent);
   }
+  if (lockstep_) client_.simulation_clock().up_to(0);
+  wait_until_recorded();
   if (!lockstep_) {
     // In lockstep time stands still without this process, and the plant ends the run.
     client_.enable_link_loss_failsafe();
     return;
   }
-  if (record_.sensors) wait_until_samples_come();
   wait_until_paused_at(FlightSchedule::kFirstRequestNs);
 }
 
@@ -137,12 +135,11 @@ void NetworkTransport::wait_until(const std::function<bool(const View&)>& holds,
   }
 }
 
-// Waits before time advances, until the first samples arrive. A discovered peer may not have discovered this
-// process yet, and it sends each sample once. Only the first samples are repeated while time is paused.
-void NetworkTransport::wait_until_samples_come() {
-  client_.simulation_clock().up_to(0);
-  wait_until([](const View& view) { return view.samples.all(); },
-             "no first samples from plant, mocap and control");
+// In lockstep before time advances: a discovered peer may not have discovered the recorder yet, and it sends each sample once. Only
+// the first samples are repeated while time is paused.
+void NetworkTransport::wait_until_recorded() {
+  wait_until([this](const View&) { return watch_.is_recorded(); },
+             "the record has no first samples from plant, mocap and control");
 }
 
 // Lets time advance up to stamp_ns and waits until the plant has reached it and all samples are answered.
@@ -381,16 +378,35 @@ void NetworkTransport::abandon(const std::string& reason) {
                                                                                  : "; disarmed"));
 }
 
+namespace {
+
+// Distance of the vehicle from its reference. The newest of both may be of different stamps, a few milliseconds apart: the truth is
+// carried on at its velocity.
+double newest_error_m(const View& view) {
+  if (!view.truth.seen() || !view.reference.seen()) return std::numeric_limits<double>::quiet_NaN();
+  const msg::GroundTruth& truth = view.truth.message;
+  const msg::Reference& reference = view.reference.message;
+  const double ahead_s = 1e-9 * static_cast<double>(reference.stamp_ns() - truth.stamp_ns());
+  const auto along = [&](std::size_t axis) {
+    return truth.position_ned()[axis] + ahead_s * truth.velocity_ned()[axis] - reference.position_ned()[axis];
+  };
+  return std::hypot(along(0), along(1), along(2));
+}
+
+}  // namespace
+
 void NetworkTransport::update_progress(const View& view) {
   const auto& mission = view.mission.message;
   const auto& position = view.truth.message.position_ned();
-  const auto window = mission_window(record_, client_.mission_id(), mission_.mission);
-  const double time_s = window ? mission_duration_s(record_, client_.mission_id(), *window) : 0.0;
+  const bool is_own = mission.mission_id() == client_.mission_id();
+  if (is_own && !mission_began_ns_ && mode_of(view) == ControlMode::kMission)
+    mission_began_ns_ = view.truth.message.stamp_ns();
+  const double time_s = mission_began_ns_ ? simulated_s(view, *mission_began_ns_) : 0.0;
   const std::size_t item = std::min<std::size_t>(mission.item_index(), mission_.mission.items.size() - 1);
   const std::string text = fmt::format(
       "{:5.1f} s  {}/{} {:<10}  ({:5.2f}, {:5.2f}, {:5.2f}) m, {:5.1f} mm off, {:.2f} V", time_s, item + 1,
       mission_.mission.items.size(), to_string(mission_.mission.items[item].kind), position[0], position[1],
-      position[2], newest_error_m(record_.truth, record_.reference) * 1e3, view.battery.message.voltage_v());
+      position[2], newest_error_m(view) * 1e3, view.battery.message.voltage_v());
   std::string line = text;
   if (mode_of(view) != ControlMode::kMission)
     line += std::string(", ") + mode_name(view.control.message.mode());

@@ -9,7 +9,6 @@
 #include "swiftlet/ground/flight/start_barrier.hpp"
 #include "swiftlet/ground/terminal/progress.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
-#include "swiftlet/recording/flight_record.hpp"
 #include "swiftlet/services/clocks/clock_client.hpp"
 #include "swiftlet/services/runtime/clock.hpp"
 #include "swiftlet/simulation/mission_runner.hpp"
@@ -26,14 +25,15 @@ class NetworkTransport final : public MissionTransport {
   struct Watch {
     std::function<std::optional<std::string>()> exited_process;  // a process that ended, as a sentence
     std::function<int()> interrupts;                             // by the user, so far
-    StartBarrier* barrier = nullptr;                             // with other vehicles; null: alone
-    bool attached = false;                                       // to processes that outlive the flight
-    double speed = 1.0;                                          // of the vehicle's clock in real time
+    std::function<bool()> is_recorded;  // whether the recorder receives the samples of the vehicle
+    StartBarrier* barrier = nullptr;    // with other vehicles; null: alone
+    bool attached = false;              // to processes that outlive the flight
+    double speed = 1.0;                 // of the vehicle's clock in real time
   };
 
   // In lockstep the plant was started paused.
-  NetworkTransport(Client& client, const FlightRecord& record, const MissionFile& mission,
-                   runtime::Clock clock, Watch watch, Progress& progress);
+  NetworkTransport(Client& client, const MissionFile& mission, runtime::Clock clock, Watch watch,
+                   Progress& progress);
   ~NetworkTransport() override;
 
   void wait_until_ready() override;
@@ -67,7 +67,7 @@ class NetworkTransport final : public MissionTransport {
   void update_clock_offset(comms::ClockClient& vehicle_clock);
   void learn_clock_offset(comms::ClockClient& vehicle_clock);
   void wait_until(const std::function<bool(const View&)>& holds, const std::string& what_not);
-  void wait_until_samples_come();
+  void wait_until_recorded();
   void wait_until_paused_at(std::int64_t stamp_ns);
   [[noreturn]] void fail_silent(const std::string& who);
   void require_alive() const;
@@ -78,15 +78,15 @@ class NetworkTransport final : public MissionTransport {
   bool is_taken_over(const Result& landing) const;
 
   Client& client_;
-  const FlightRecord& record_;
   const MissionFile& mission_;
   bool lockstep_;
   std::int64_t paused_at_ns_ = 0;  // in lockstep, before the mission
   // In real time: the vehicle's clock minus the monotonic one of this host at its speed.
   std::optional<std::int64_t> clock_offset_ns_;
-  std::int64_t start_ns_ = 0;  // on the vehicle's clock; 0: at once
-  Result armed_;               // the answer to the last request to arm
-  Result start_;               // the answer to the request that started the mission
+  std::optional<std::int64_t> mission_began_ns_;  // by ground truth, for the progress
+  std::int64_t start_ns_ = 0;                     // on the vehicle's clock; 0: at once
+  Result armed_;                                  // the answer to the last request to arm
+  Result start_;                                  // the answer to the request that started the mission
   Watch watch_;
   Progress& progress_;
   Silence control_silence_, vehicle_silence_, sample_silence_;

@@ -1,14 +1,13 @@
 #include "swiftlet/ground/flight/process_flight.hpp"
 
 #include <chrono>
-#include <memory>
 #include <utility>
 
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/flight/flight_outcome.hpp"
 #include "swiftlet/ground/flight/flight_settings.hpp"
 #include "swiftlet/ground/flight/network_transport.hpp"
-#include "swiftlet/recording/flight_window.hpp"
+#include "swiftlet/record/evaluation.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -31,25 +30,33 @@ void take_figures(const View& view, FlightReport& report) {
 }  // namespace
 
 ProcessFlight::ProcessFlight(LaunchConfiguration plan, comms::NodeSettings network, ProcessGroup& processes,
-                             const comms::Participant& participant)
+                             const comms::Participant& participant, MessageRecord& messages)
     : plan_(std::move(plan)),
       network_(std::move(network)),
-      record_(plan_.record_capacity()),
       report_(report_of(plan_)),
-      processes_(processes) {
+      processes_(processes),
+      messages_(messages) {
   report_.vehicle_name = network_.vehicle;
-  if (plan_.sensors) record_.sensors = std::make_unique<SensorRecord>(plan_.record_capacity());
   keep_settings(plan_);
-  client_.emplace(participant, network_, &record_);
+  client_.emplace(participant, network_);
+  messages_.on_motion(network_.vehicle,
+                      [this](std::int64_t stamp_ns) { client_->has_been_recorded(stamp_ns); });
 }
 
-void ProcessFlight::finish(const std::vector<std::string>& end_errors, Progress& progress) {
+ProcessFlight::~ProcessFlight() { messages_.on_motion(network_.vehicle, {}); }
+
+void ProcessFlight::finish(const std::vector<std::string>& end_errors, const std::string& record_fault,
+                           const std::filesystem::path& messages, Progress& progress) {
+  messages_.on_motion(network_.vehicle, {});
   client_.reset();
   for (const std::string& error : end_errors) {
     if (report_.reason.empty()) report_.reason = "after the flight: " + error;
   }
-  evaluate(report_, record_, window_);
-  write_record(plan_.folder, record_, report_, window_, progress);
+  report_.record_fault = record_fault;
+  const record::Flight flight = flight_in(messages, network_.vehicle).value_or(record::Flight{});
+  const record::Evaluation flown = record::evaluate(flight);
+  judge(report_, flown);
+  write_report(plan_.folder, flight, report_, flown.window.value_or(record::Window{}), progress);
 }
 
 void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* barrier, Progress& progress) {
@@ -57,9 +64,10 @@ void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* barrier, Pro
   const auto start = Clock::now();
   try {
     const NetworkTransport::Watch watch{
-        [this] { return processes_.exited_process(); }, [&] { return interrupts.count(); }, barrier,
-        plan_.launch_mode == LaunchMode::kAttached, plan_.speed.value_or(1.0)};
-    NetworkTransport vehicle(client, record_, plan_.mission, plan_.clock, watch, progress);
+        [this] { return processes_.exited_process(); },       [&] { return interrupts.count(); },
+        [this] { return messages_.hears(network_.vehicle); }, barrier,
+        plan_.launch_mode == LaunchMode::kAttached,           plan_.speed.value_or(1.0)};
+    NetworkTransport vehicle(client, plan_.mission, plan_.clock, watch, progress);
     ground::fly_mission(vehicle, plan_.planned_duration_s);
     vehicle.wait_for_last_figures();
   } catch (const FlightFailure& failure) {
@@ -75,11 +83,8 @@ void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* barrier, Pro
     throw;
   }
   report_.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
-  if (!record_.truth.empty()) report_.simulated_s = static_cast<double>(record_.truth.back().stamp_ns) * 1e-9;
+  report_.simulated_s = static_cast<double>(client.view().truth.message.stamp_ns()) * 1e-9;
   take_figures(client.view(), report_);
-  const auto window = mission_window(record_, client.mission_id(), plan_.mission.mission);
-  if (window) report_.duration_s = mission_duration_s(record_, client.mission_id(), *window);
-  window_ = window.value_or(Window{});
 }
 
 }  // namespace swiftlet::ground

@@ -1,6 +1,7 @@
-// A flight of one vehicle over DDS: flies the mission, writes record and report.
+// A flight of one vehicle over DDS: flies the mission, and judges it by its record.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,29 +9,33 @@
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/flight/launch_configuration.hpp"
+#include "swiftlet/ground/flight/message_record.hpp"
 #include "swiftlet/ground/flight/process_group.hpp"
 #include "swiftlet/ground/flight/start_barrier.hpp"
 #include "swiftlet/ground/report/flight_report.hpp"
 #include "swiftlet/ground/terminal/progress.hpp"
-#include "swiftlet/recording/flight_record.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::ground {
 
 class ProcessFlight {
  public:
-  // network.vehicle names the vehicle. The processes and the participant are shared with the other vehicles of the
+  // network.vehicle names the vehicle. The processes, the participant and the record are shared with the other vehicles of the
   // flight and must outlive this object. Throws std::runtime_error.
   ProcessFlight(LaunchConfiguration plan, comms::NodeSettings network, ProcessGroup& processes,
-                const comms::Participant& participant);
+                const comms::Participant& participant, MessageRecord& messages);
+  ~ProcessFlight();
+  ProcessFlight(const ProcessFlight&) = delete;
+  ProcessFlight& operator=(const ProcessFlight&) = delete;
 
   // Flies the mission. barrier: shared with the other vehicles of the flight; null for a single one. Call once, from any
   // thread. The vehicle is attended to until finish().
   void fly(const Interrupts& interrupts, StartBarrier* barrier, Progress& progress);
 
-  // Writes the record, once the processes have ended. end_errors: what ProcessGroup::stop() returned. Throws
-  // std::runtime_error if the record cannot be written.
-  void finish(const std::vector<std::string>& end_errors, Progress& progress);
+  // Judges the flight, once processes and record have ended. end_errors: what ProcessGroup::stop() returned. record_fault: what
+  // MessageRecord::finish() returned. messages: the folder of flight.mcap.
+  void finish(const std::vector<std::string>& end_errors, const std::string& record_fault,
+              const std::filesystem::path& messages, Progress& progress);
 
   // Until finish().
   Client& client() { return *client_; }
@@ -40,11 +45,10 @@ class ProcessFlight {
  private:
   LaunchConfiguration plan_;
   comms::NodeSettings network_;
-  FlightRecord record_;
   FlightReport report_;
-  Window window_;
   ProcessGroup& processes_;
-  std::optional<Client> client_;  // last: records into the members above
+  MessageRecord& messages_;
+  std::optional<Client> client_;
 };
 
 }  // namespace swiftlet::ground

@@ -22,10 +22,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kClaim = "record.txt";
-constexpr std::array kRecordFiles = {"record.txt",  "report.json",  "flight.csv",   "flight.gp",
-                                     "flight.mcap", "flight.png",   "trace.csv",    "sensors.csv",
-                                     "batch.csv",   "batch.html",   "batch.gp",     "batch.png",
-                                     "shard.json",  "control.yaml", "vehicle.yaml", "simulation.yaml"};
+constexpr std::array kRecordFiles = {
+    "record.txt", "report.json", "flight.csv",   "flight.gp",    "flight.mcap",    "flight.html",
+    "flight.png", "trace.csv",   "sensors.csv",  "batch.csv",    "batch.html",     "batch.gp",
+    "batch.png",  "shard.json",  "control.yaml", "vehicle.yaml", "simulation.yaml"};
 
 bool is_record_file(const fs::path& file) {
   const std::string name = file.extension() == ".part" ? file.stem() : file.filename();

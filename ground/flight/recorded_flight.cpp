@@ -1,6 +1,5 @@
 #include "swiftlet/ground/flight/recorded_flight.hpp"
 
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -15,7 +14,7 @@ namespace swiftlet::ground {
 namespace {
 
 // Returns a sentence if the trace could not be written whole.
-std::string close(runtime::FlightTrace& trace) {
+std::string close(record::FlightTrace& trace) {
   try {
     trace.close();
     return {};
@@ -26,31 +25,26 @@ std::string close(runtime::FlightTrace& trace) {
 
 }  // namespace
 
-FlightReport fly_and_record(LaunchConfiguration plan, const FlyOptions& options, FlightRecord& record,
+FlightReport fly_and_record(LaunchConfiguration plan, const FlyOptions& options, record::Flight& flight,
                             const std::function<bool()>& cancelled, Progress& progress) {
   ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
   require_space(plan.folder, plan.record_bytes());
   const RecordFolder folder(plan.folder, existing_record(options), "--record", plan.input_files());
   plan.folder = folder.path();
   keep_settings(plan);
-  std::optional<runtime::FlightTrace> trace;
+  std::optional<record::FlightTrace> trace;
   if (plan.trace) trace.emplace(plan.trace_file(), plan.vehicle.rotor_count());
-  if (plan.sensors) record.sensors = std::make_unique<SensorRecord>(plan.record_capacity());
-  loop.sensors = record.sensors.get();
-  std::optional<SimulatedRecorder> messages;
-  if (plan.mcap) messages.emplace(loop, plan, options.program);
+  SimulatedRecorder messages(loop, plan, options.program);
   for (const std::string& assumption : plan.mission.assumptions)
     progress.say(plan.mission.name + ": " + assumption);
 
-  InProcessFlight flight = fly_in_process(loop, plan, plan.seed, record, trace ? &*trace : nullptr, cancelled,
-                                          messages ? &*messages : nullptr);
-  if (trace) flight.report.record_fault = close(*trace);
-  if (messages) {
-    const std::string fault = messages->finish();
-    if (flight.report.record_fault.empty()) flight.report.record_fault = fault;
-  }
-  write_record(plan.folder, record, flight.report, flight.window, progress);
-  return flight.report;
+  FlightReport report =
+      fly_in_process(loop, plan, plan.seed, flight, trace ? &*trace : nullptr, cancelled, &messages);
+  report.record_fault = messages.finish();
+  if (trace && report.record_fault.empty()) report.record_fault = close(*trace);
+  const record::Window window = record::evaluate(flight).window.value_or(record::Window{});
+  write_report(plan.folder, flight, report, window, progress);
+  return report;
 }
 
 }  // namespace swiftlet::ground

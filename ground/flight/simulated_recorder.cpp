@@ -4,12 +4,13 @@
 #include <exception>
 #include <optional>
 #include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "swiftlet/ground/flight/flight_description.hpp"
-#include "swiftlet/io/logs/flight_log_files.hpp"
-#include "swiftlet/recording/telemetry_rate.hpp"
+#include "swiftlet/plant/model/telemetry_rate.hpp"
+#include "swiftlet/record/file/flight_reader.hpp"
 #include "swiftlet/services/dds/payload.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/messages/schemas.hpp"
@@ -39,8 +40,9 @@ SimulatedRecorder::SimulatedRecorder(ClosedLoop& loop, const LaunchConfiguration
                                      const std::string& program)
     : loop_(loop),
       imu_period_ns_(plant::period_ns(loop.imu_rate_hz)),
+      truth_due_(plan.simulation),
       failsafe_(plan.control.failsafe),
-      file_(plan.folder / kMessagesFile, writer_settings(program), true) {
+      file_(plan.folder / record::kFlightFile, writer_settings(program), true) {
   vehicle_info_.name() = plan.vehicle.name;
   vehicle_info_.simulated(true);
   vehicle_info_.rotor_count(static_cast<std::uint8_t>(plan.vehicle.rotor_count()));
@@ -49,7 +51,7 @@ SimulatedRecorder::SimulatedRecorder(ClosedLoop& loop, const LaunchConfiguration
   vehicle_info_.control_levels(plan.simulation.control_levels.bits());
   const Fleet fleet{{kVehicle}, {plan}, plan.folder, program};
   attempt([&] {
-    file_.write(recorder_metadata(RecordClock::kVehicle));
+    file_.write(record::recorder_metadata(record::RecordClock::kVehicle));
     file_.write(flight_metadata(fleet));
     for (const mcap::Attachment& attachment : flight_attachments(fleet)) file_.write(attachment);
   });
@@ -142,15 +144,15 @@ void SimulatedRecorder::write_command(std::int64_t now_ns) {
 
 void SimulatedRecorder::step() {
   const std::int64_t now_ns = loop_.plant.stamp_ns();
-  if (runtime::is_telemetry_sample(loop_.plant.imu_count(), imu_period_ns_)) {
+  if (truth_due_.due(loop_.plant)) {
     comms::msg::GroundTruth truth = comms::to_message(loop_.plant.truth());
     truth.stamp_ns(now_ns);
     truth.sequence_number(++truth_sequence_);
     write(topics::kGroundTruth, truth, now_ns);
   }
   if (loop_.answered && loop_.answered->sequence != answered_sequence_) {
-    answered_sequence_ = loop_.answered->sequence;
-    if (runtime::is_telemetry_sample(answered_sequence_, imu_period_ns_)) write_telemetry();
+    const std::uint64_t before = std::exchange(answered_sequence_, loop_.answered->sequence);
+    if (plant::is_telemetry_sample(answered_sequence_, before, imu_period_ns_)) write_telemetry();
   }
   write_changes();
   const bool running = loop_.command.rotor_state == plant::RotorState::kRunning;

@@ -9,7 +9,8 @@
 
 #include "swiftlet/control/types/request.hpp"
 #include "swiftlet/ground/flight/launch_configuration.hpp"
-#include "swiftlet/ground/recording/message_file.hpp"
+#include "swiftlet/plant/simulation/truth_schedule.hpp"
+#include "swiftlet/record/file/message_file.hpp"
 #include "swiftlet/services/messages/topics.hpp"
 #include "swiftlet/simulation/closed_loop.hpp"
 
@@ -49,8 +50,9 @@ class SimulatedRecorder {
 
   ClosedLoop& loop_;
   const std::int64_t imu_period_ns_;
+  plant::TruthSchedule truth_due_;
   const control::FailsafeSettings failsafe_;
-  MessageFile file_;
+  record::MessageFile file_;
   std::string fault_;
   std::map<std::string, std::uint16_t> channels_;  // by topic
   std::map<std::uint16_t, std::uint32_t> counts_;  // of messages, by channel

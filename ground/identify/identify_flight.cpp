@@ -11,11 +11,11 @@
 #include "swiftlet/ground/identify/flight_identification_report.hpp"
 #include "swiftlet/ground/identify/identify_actions.hpp"
 #include "swiftlet/ground/identify/identify_ulog.hpp"
+#include "swiftlet/ground/logs/flight_log_files.hpp"
 #include "swiftlet/ground/terminal/progress_line.hpp"
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/format.hpp"
-#include "swiftlet/io/logs/flight_log_files.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/io/settings/vehicle_writer.hpp"
 

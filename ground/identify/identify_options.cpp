@@ -13,10 +13,9 @@ Command add_flight_command(runtime::CommandLine identify) {
   const auto options = std::make_shared<IdentifyFlightOptions>();
   const runtime::CommandLine app =
       identify.add_subcommand("flight", "Identify a vehicle from logs of its flights");
-  app.add_option(
-         "logs", options->logs,
-         "flight records made with --sensors or --mcap, MCAP files of `swiftlet record`, or CSV files, "
-         "plain or gzip, or logs of PX4, .ulg, for its thrust scale; all of one vehicle")
+  app.add_option("logs", options->logs,
+                 "flight records, MCAP files of `swiftlet record`, or CSV files, "
+                 "plain or gzip, or logs of PX4, .ulg, for its thrust scale; all of one vehicle")
       .required()
       .type_name("LOG...");
   app.add_option("--vehicle-name", options->vehicle, "which vehicle of an MCAP file that has several");
@@ -48,8 +47,8 @@ Command add_flight_command(runtime::CommandLine identify) {
       "pose_time with position_x_ned and "
       "orientation_w_ned_from_frd and so on;\nrunning; rotor_speed1 and so on. A log without poses or "
       "voltage determines fewer parameters (docs/identification.md).\n\n"
-      "example: swiftlet sim fly identification --sensors --record first && swiftlet identify flight first "
-      "--out mine.yaml\n"
+      "example: swiftlet sim fly identification --record first && swiftlet identify flight first --out "
+      "mine.yaml\n"
       "         swiftlet identify flight tests/data/crazyflie_flight.csv.gz --base crazyflie2");
   return {app, [options] { return identify_flight(*options); }};
 }

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/ground/logs/flight_log_files.hpp"
 #include "swiftlet/identification/bench/bench_simulation.hpp"
 #include "swiftlet/identification/flight/flight.hpp"
-#include "swiftlet/io/logs/flight_log_files.hpp"
 
 namespace swiftlet::ground {
 

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "swiftlet/io/config_error.hpp"
-#include "swiftlet/io/mcap/series.hpp"
-#include "swiftlet/io/mcap/signal_arrays.hpp"
-#include "swiftlet/io/mcap/topic_decoder.hpp"
+#include "swiftlet/record/mcap/series.hpp"
+#include "swiftlet/record/mcap/signal_arrays.hpp"
+#include "swiftlet/record/mcap/topic_decoder.hpp"
 #include "swiftlet/services/messages/topics.hpp"
 
 namespace swiftlet::ground {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "swiftlet/io/mcap/reader.hpp"
-#include "swiftlet/io/mcap/series.hpp"
+#include "swiftlet/record/mcap/reader.hpp"
+#include "swiftlet/record/mcap/series.hpp"
 
 namespace swiftlet::ground {
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "swiftlet/io/mcap/reader.hpp"
+#include "swiftlet/record/mcap/reader.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::ground {

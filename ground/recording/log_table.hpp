@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "swiftlet/io/mcap/reader.hpp"
-#include "swiftlet/io/mcap/series.hpp"
-#include "swiftlet/io/mcap/topic_decoder.hpp"
+#include "swiftlet/record/mcap/reader.hpp"
+#include "swiftlet/record/mcap/series.hpp"
+#include "swiftlet/record/mcap/topic_decoder.hpp"
 
 namespace swiftlet::ground {
 

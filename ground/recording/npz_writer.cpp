@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "swiftlet/io/atomic_write.hpp"
-#include "swiftlet/io/mcap/record_writer.hpp"
+#include "swiftlet/record/mcap/record_writer.hpp"
 
 namespace swiftlet::ground {
 namespace {

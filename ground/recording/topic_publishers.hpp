@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "swiftlet/io/mcap/records.hpp"
+#include "swiftlet/record/mcap/records.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::ground {

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "swiftlet/io/mcap/message_decoder.hpp"
+#include "swiftlet/record/mcap/message_decoder.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::ground {

@@ -1,38 +1,17 @@
 #include "swiftlet/ground/report/flight_comparison.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <array>
 #include <set>
 
 #include <fmt/core.h>
 
-#include "swiftlet/ground/command_line/command.hpp"
-#include "swiftlet/ground/report/recorded_settings.hpp"
-#include "swiftlet/io/config_error.hpp"
-#include "swiftlet/io/natural_order.hpp"
-#include "swiftlet/io/text_file.hpp"
-
 namespace swiftlet::ground {
 namespace {
 
-namespace fs = std::filesystem;
 using Row = std::vector<std::string>;  // label, then one cell per flight
 
 constexpr const char* kMissing = "-";
-constexpr const char* kReport = "report.json";
-
-std::vector<fs::path> flights_in(const fs::path& record) {
-  if (fs::exists(record / kReport)) return {record};
-  std::vector<fs::path> flights;
-  std::error_code none;
-  for (const fs::directory_entry& entry : fs::directory_iterator(record, none)) {
-    if (fs::exists(entry.path() / kReport)) flights.push_back(entry.path());
-  }
-  std::sort(flights.begin(), flights.end(), [](const fs::path& a, const fs::path& b) {
-    return runtime::comes_before(a.filename().native(), b.filename().native());
-  });
-  return flights;
-}
 
 std::string value_of(const RecordedFlight& flight, const std::string& key) {
   const auto found = std::find_if(flight.settings.begin(), flight.settings.end(),
@@ -110,13 +89,6 @@ std::string layout(const std::vector<Row>& rows) {
   return table;
 }
 
-[[noreturn]] void refuse(const fs::path& folder) {
-  throw InputError(folder.string() + ": contains no report.json, " +
-                   (fs::exists(folder / "record.txt")
-                        ? "its flight still flies or was killed (record.txt names its process)"
-                        : "is not a flight record"));
-}
-
 std::string failures(const std::vector<RecordedFlight>& flights) {
   std::string lines;
   for (const RecordedFlight& flight : flights) {
@@ -126,43 +98,6 @@ std::string failures(const std::vector<RecordedFlight>& flights) {
 }
 
 }  // namespace
-
-RecordedFlight load_recorded_flight(const fs::path& folder) {
-  const fs::path file = folder / kReport;
-  if (!fs::exists(file)) refuse(folder);
-  RecordedFlight flight;
-  flight.folder = fs::absolute(folder).lexically_normal();
-  if (flight.folder.filename().empty()) flight.folder = flight.folder.parent_path();
-  flight.name = flight.folder.filename();
-  flight.report = nlohmann::ordered_json::parse(runtime::read_text_file(file.string()), nullptr, false);
-  if (!flight.report.is_object()) throw runtime::ConfigError(file.string(), 0, "", "is not valid JSON");
-  if (text(flight.report, "vehicle_name") == flight.name)
-    flight.name = flight.folder.parent_path().filename() / flight.name;
-  flight.settings = recorded_settings(folder);
-  return flight;
-}
-
-std::vector<fs::path> flights_of(const fs::path& record) {
-  std::vector<fs::path> flights = flights_in(record);
-  if (flights.empty()) refuse(record);
-  return flights;
-}
-
-fs::path newest_record(const fs::path& below) {
-  std::optional<fs::path> newest;
-  fs::file_time_type newest_time;
-  std::error_code none;
-  for (const fs::directory_entry& entry : fs::directory_iterator(below, none)) {
-    for (const fs::path& flight : flights_in(entry.path())) {
-      const fs::file_time_type time = fs::last_write_time(flight / kReport);
-      if (newest && time <= newest_time) continue;
-      newest = entry.path();
-      newest_time = time;
-    }
-  }
-  if (!newest) throw InputError(below.string() + ": contains no flight record; pass the folder of a record");
-  return *newest;
-}
 
 std::string comparison_table(const std::vector<RecordedFlight>& flights) {
   std::string table = layout(figures(flights)) + failures(flights);
@@ -188,7 +123,7 @@ nlohmann::ordered_json comparison_json(const std::vector<RecordedFlight>& flight
     nlohmann::ordered_json settings = nlohmann::ordered_json::object();
     for (const auto& [key, value] : flight.settings) settings[key] = value;
     json["flights"].push_back(
-        {{"folder", flight.folder.string()}, {"report", flight.report}, {"settings", std::move(settings)}});
+        {{"folder", flight.record.string()}, {"report", flight.report}, {"settings", std::move(settings)}});
   }
   json["differ"] = differing_keys(flights);
   return json;

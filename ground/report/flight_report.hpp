@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 #include <nlohmann/json_fwd.hpp>
 
-#include "swiftlet/recording/tracking.hpp"
+#include "swiftlet/record/evaluation.hpp"
 
 namespace swiftlet::ground {
 
@@ -33,9 +33,9 @@ struct FlightReport {
   std::string record_dir;
   std::string record_fault;  // why the record is incomplete; empty if it is complete
 
-  double duration_s = 0.0;   // from mission start to rotors off, or to the failure
-  double tolerance_m = 0.0;  // limit of the peak 3-D error
-  TrackingErrors errors;     // from mission start to the landing command
+  double duration_s = 0.0;        // from mission start to rotors off, or to the failure
+  double tolerance_m = 0.0;       // limit of the peak 3-D error
+  record::TrackingErrors errors;  // from mission start to the landing command
   double imu_rate_hz = 0.0;
   double simulated_s = 0.0;  // simulated time since stamp 0
   double wall_s = 0.0;       // elapsed real time

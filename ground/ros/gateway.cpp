@@ -42,7 +42,7 @@ Gateway::Gateway(const ground::Context& context, const std::string& vehicle, con
     const std::lock_guard<std::mutex> lock(mutex_);
     return ending_;
   });
-  for (const ground::StandardTopic& one : standard_.ros_topics())
+  for (const record::StandardTopic& one : standard_.ros_topics())
     writers_.emplace(one.topic, writer_of(node_, one.topic, one.schema->name));
   forward(comms::topics::kEstimate);
   forward(comms::topics::kReference);
@@ -78,7 +78,7 @@ void Gateway::forward(const comms::Topic<T>& topic) {
         mcap::Message message;
         message.log_time_ns = time_ns;
         message.payload = {sample.payload, sample.size};
-        for (const ground::StandardMessage& follows : standard_.of(name, message)) {
+        for (const record::StandardMessage& follows : standard_.of(name, message)) {
           if (!writers_.at(follows.topic)(follows.payload))
             write_faults_.note(fault_of(follows.topic + " of " + std::to_string(follows.payload.size()) +
                                         " bytes was not sent"));

@@ -14,9 +14,9 @@
 
 #include "swiftlet/ground/client/context.hpp"
 #include "swiftlet/ground/client/vehicle.hpp"
-#include "swiftlet/ground/recording/standard_messages.hpp"
 #include "swiftlet/ground/ros/requests.hpp"
 #include "swiftlet/ground/ros/ros_messages.hpp"
+#include "swiftlet/record/file/standard_messages.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/throttled_warning.hpp"
 
@@ -58,7 +58,7 @@ class Gateway {
   const GatewaySettings settings_;
   const std::function<void(std::int64_t)> clock_;
   ground::Vehicle vehicle_;
-  ground::StandardMessages standard_;                           // of the thread that receives
+  record::StandardMessages standard_;                           // of the thread that receives
   std::map<std::string, Writer> writers_;                       // by topic
   comms::ThrottledWarning write_faults_{"what goes to ROS 2"};  // of the same thread
   comms::ThrottledWarning velocity_faults_{"cmd_vel"};  // these two of the thread that receives velocities

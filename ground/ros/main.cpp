@@ -12,10 +12,10 @@
 #include <fmt/ranges.h>
 
 #include "swiftlet/ground/client/context.hpp"
-#include "swiftlet/ground/recording/cdr_writer.hpp"
 #include "swiftlet/ground/ros/gateway.hpp"
 #include "swiftlet/ground/ros/ros_graph.hpp"
 #include "swiftlet/math/time.hpp"
+#include "swiftlet/record/file/cdr_writer.hpp"
 #include "swiftlet/services/dds/node_options.hpp"
 #include "swiftlet/services/dds/vehicle_list.hpp"
 #include "swiftlet/services/runtime/log.hpp"
@@ -63,7 +63,7 @@ class ClockPublisher {
       : node_(participant, vehicle), writer_(writer<Clock>(node_, "/clock")) {}
 
   void publish(std::int64_t time_ns) {
-    ground::CdrWriter out;
+    record::CdrWriter out;
     out.put(static_cast<std::int32_t>(time_ns / math::kSecond_ns))
         .put(static_cast<std::uint32_t>(time_ns % math::kSecond_ns));
     writer_(out.take());

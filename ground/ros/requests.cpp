@@ -5,8 +5,8 @@
 
 #include <Eigen/Geometry>
 
-#include "swiftlet/ground/recording/standard_messages.hpp"
 #include "swiftlet/io/byte_reader.hpp"
+#include "swiftlet/record/file/standard_messages.hpp"
 
 namespace swiftlet::ros {
 namespace {
@@ -69,8 +69,8 @@ std::optional<Goal> goal_of(const Bytes& payload, double present_down_m, std::st
   refusal.clear();
   if (!in.ok())
     refusal = "it is no geometry_msgs/PoseStamped";
-  else if (!frame.empty() && frame != ground::kMapFrame)
-    refusal = "its frame is '" + frame + "', must be " + ground::kMapFrame;
+  else if (!frame.empty() && frame != record::kMapFrame)
+    refusal = "its frame is '" + frame + "', must be " + record::kMapFrame;
   else if (!position_enu.allFinite())
     refusal = "its position is not finite";
   else if (!(std::abs(q_enu.norm() - 1.0) < kUnitTolerance))
@@ -80,7 +80,7 @@ std::optional<Goal> goal_of(const Bytes& payload, double present_down_m, std::st
   if (!refusal.empty()) return std::nullopt;
 
   Goal goal;
-  goal.position_ned_m = ground::enu_from_ned(position_enu);  // its own inverse
+  goal.position_ned_m = record::enu_from_ned(position_enu);  // its own inverse
   if (position_enu.z() == 0.0) goal.position_ned_m.z() = present_down_m;
   const Eigen::Vector3d forward_enu = q_enu * Eigen::Vector3d::UnitX();
   goal.yaw_rad = kQuarterTurn_rad - std::atan2(forward_enu.y(), forward_enu.x());
@@ -105,7 +105,7 @@ std::optional<ground::VelocitySetpoint> velocity_of(const Bytes& payload, double
 
   ground::VelocitySetpoint setpoint;
   setpoint.velocity_ned_m_s =
-      Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()) * ground::flu_from_frd(velocity_flu);
+      Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()) * record::flu_from_frd(velocity_flu);
   setpoint.heading.yaw_rate_rad_s = -rates_flu.z();
   return setpoint;
 }

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "swiftlet/ground/recording/cdr_writer.hpp"
 #include "swiftlet/ground/ros/raw_type.hpp"
+#include "swiftlet/record/file/cdr_writer.hpp"
 #include "swiftlet/services/dds/checked_type_support.hpp"
 #include "swiftlet/services/dds/participant_session.hpp"
 #include "swiftlet/services/dds/periodic_task.hpp"
@@ -68,7 +68,7 @@ std::map<std::string, Endpoints> nodes_of(const Process& process) {
   return nodes;
 }
 
-void put_gid(ground::CdrWriter& out, const GUID_t& guid, std::size_t gid_bytes) {
+void put_gid(record::CdrWriter& out, const GUID_t& guid, std::size_t gid_bytes) {
   for (const std::uint8_t octet : guid.guidPrefix.value) out.put(octet);
   for (const std::uint8_t octet : guid.entityId.value) out.put(octet);
   for (std::size_t i = kGidBytes; i < gid_bytes; ++i) out.put(std::uint8_t{0});
@@ -76,7 +76,7 @@ void put_gid(ground::CdrWriter& out, const GUID_t& guid, std::size_t gid_bytes) 
 
 // rmw_dds_common/msg/ParticipantEntitiesInfo.
 Bytes entities_message(const GuidPrefix_t& participant, const Process& process, std::size_t gid_bytes) {
-  ground::CdrWriter out;
+  record::CdrWriter out;
   put_gid(out, {participant, comms::rtps::c_EntityId_RTPSParticipant}, gid_bytes);
   const std::map<std::string, Endpoints> nodes = nodes_of(process);
   out.put(static_cast<std::uint32_t>(nodes.size()));

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "swiftlet/io/mcap/records.hpp"
+#include "swiftlet/record/mcap/records.hpp"
 #include "swiftlet/services/messages/schemas.hpp"
 
 namespace swiftlet::ground::foxglove {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <optional>
 
-#include "swiftlet/io/mcap/records.hpp"
+#include "swiftlet/record/mcap/records.hpp"
 
 namespace swiftlet::ground {
 

@@ -24,7 +24,7 @@ struct LiveTopics::Vehicle {
 
   const std::string name;
   comms::Node node;
-  StandardMessages standard;
+  record::StandardMessages standard;
 };
 
 // A topic of a vehicle.
@@ -78,7 +78,7 @@ void LiveTopics::add_vehicle(const std::string& name) {
   const bool is_new = known == vehicles_.end();
   Vehicle& vehicle = is_new ? vehicles_.emplace_back(participant_, name) : *known;
   if (is_new) add_topics(vehicle);
-  for (const StandardTopic& standard : vehicle.standard.topics()) {
+  for (const record::StandardTopic& standard : vehicle.standard.topics()) {
     const std::uint32_t channel = add_channel(standard.topic, *standard.schema);
     State& state = states_[channel];
     for (Source& source : sources_) {
@@ -142,7 +142,7 @@ void LiveTopics::take_all(const std::function<void(std::uint32_t, const Live&)>&
     const bool is_used = states_[source.channel].users > 0;
     if (is_used) hand_on(source.channel, {message.payload.data, message.payload.data + message.payload.size});
     if (source.users == states_[source.channel].users) return;  // no standard message is in use
-    for (StandardMessage& follows : source.vehicle->standard.of(source.topic, message))
+    for (record::StandardMessage& follows : source.vehicle->standard.of(source.topic, message))
       hand_on(known_.at(follows.topic), std::move(follows.payload));
   });
 }

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "swiftlet/ground/client/context.hpp"
-#include "swiftlet/ground/recording/sample_queue.hpp"
-#include "swiftlet/ground/recording/standard_messages.hpp"
 #include "swiftlet/ground/view/foxglove.hpp"
+#include "swiftlet/record/file/standard_messages.hpp"
+#include "swiftlet/record/recorder/sample_queue.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::ground {
@@ -67,7 +67,7 @@ class LiveTopics {
   void add_topic(Vehicle& vehicle, const comms::Topic<T>& topic);
 
   const comms::Participant participant_;
-  SampleQueue queue_;
+  record::SampleQueue queue_;
   std::vector<foxglove::Channel> channels_;
   std::vector<State> states_;                   // of the channels
   std::map<std::string, std::uint32_t> known_;  // channels by topic

@@ -7,7 +7,7 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/ground/recording/cdr_writer.hpp"
+#include "swiftlet/record/file/cdr_writer.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -75,7 +75,7 @@ std::string VehicleRequests::call(const foxglove::ServiceCall& call,
 }
 
 mcap::Bytes to_response(const VehicleRequests::Answer& answer) {
-  CdrWriter out;
+  record::CdrWriter out;
   out.put(std::uint8_t{answer.accepted}).text(answer.reason);
   return out.take();
 }

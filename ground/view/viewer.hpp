@@ -13,7 +13,7 @@
 #include "swiftlet/ground/view/foxglove.hpp"
 #include "swiftlet/ground/view/frame_queue.hpp"
 #include "swiftlet/ground/view/live_topics.hpp"
-#include "swiftlet/io/mcap/records.hpp"
+#include "swiftlet/record/mcap/records.hpp"
 
 namespace swiftlet::ground {
 

@@ -11,9 +11,9 @@
 #include "swiftlet/identification/fitting/estimate.hpp"
 #include "swiftlet/identification/flight/flight_model.hpp"
 #include "swiftlet/identification/flight/flight_window.hpp"
+#include "swiftlet/identification/flight_log.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 #include "swiftlet/plant/model/vehicle_uncertainty.hpp"
-#include "swiftlet/recording/flight_log.hpp"
 
 namespace swiftlet::identification {
 

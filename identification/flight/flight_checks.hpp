@@ -4,8 +4,8 @@
 
 #include "swiftlet/identification/fitting/estimate.hpp"
 #include "swiftlet/identification/flight/flight_window.hpp"
+#include "swiftlet/identification/flight_log.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
-#include "swiftlet/recording/flight_log.hpp"
 
 namespace swiftlet::identification {
 

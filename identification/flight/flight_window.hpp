@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "swiftlet/recording/flight_log.hpp"
+#include "swiftlet/identification/flight_log.hpp"
 
 namespace swiftlet::identification {
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "swiftlet/identification/flight/flight_window.hpp"
+#include "swiftlet/identification/flight_log.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
-#include "swiftlet/recording/flight_log.hpp"
 
 namespace swiftlet::identification {
 

@@ -11,7 +11,7 @@
 
 #include "swiftlet/identification/fitting/estimate.hpp"
 #include "swiftlet/identification/flight/flight_window.hpp"
-#include "swiftlet/recording/flight_log.hpp"
+#include "swiftlet/identification/flight_log.hpp"
 
 namespace swiftlet::identification {
 

@@ -18,7 +18,7 @@
 
 #include <Eigen/Core>
 
-#include "swiftlet/recording/flight_log.hpp"
+#include "swiftlet/identification/flight_log.hpp"
 
 namespace swiftlet::identification {
 

@@ -19,8 +19,8 @@ constexpr double kSampleAtRest_m_s = 1e-3;
 
 struct FlightColumn {
   const char* header;   // in the table that is returned
-  const char* written;  // in flight.csv
-  const char* older;    // in flight.csv of an older version; null: none
+  const char* written;  // in the table of a flight
+  const char* older;    // in that of an older version; null: none
 };
 const std::vector<FlightColumn> kFlightColumns = {{"t [s]", "t [s]", "t"},
                                                   {"x_ned [m]", "ref_x_ned [m]", "ref_px"},
@@ -41,7 +41,7 @@ std::optional<std::size_t> find(const std::vector<std::string>& header, const ch
   return static_cast<std::size_t>(found - header.begin());
 }
 
-// The position in flight.csv of each column of kFlightColumns; shorter without accelerations.
+// The position in the table of a flight of each column of kFlightColumns; shorter without accelerations.
 std::vector<std::size_t> places(const std::vector<std::string>& header, const std::string& file_name) {
   const bool older = find(header, "t").has_value();
   std::vector<std::size_t> places;
@@ -51,7 +51,7 @@ std::vector<std::size_t> places(const std::vector<std::string>& header, const st
     const auto place = find(header, name);
     if (!place) {
       throw ConfigError(file_name, 1, "header",
-                        std::string("has no column ") + name + ", which the flight.csv of a record has");
+                        std::string("has no column ") + name + ", which the table of a flight has");
     }
     places.push_back(*place);
   }

@@ -1,4 +1,4 @@
-// The flight.csv of a flight record as input: its reference, to fly it again.
+// The table of a flight as input, as `swiftlet log csv` writes it: its reference, to fly it again.
 #pragma once
 
 #include <string>

@@ -4,7 +4,7 @@
 //   polynomial CSV      duration,x^0..x^7,y^0..y^7,z^0..z^7,yaw^0..yaw^7 (Crazyswarm, uav_trajectories)
 //   sampled CSV         t, x, y, z and, if given, vx, vy, vz, ax, ay, az, yaw
 //   log of a Crazyflie  its estimated position (crazyflie_log.hpp)
-//   flight.csv          of a flight record: its reference between take-off and landing
+//   flight.csv          of `swiftlet log csv`: its reference between take-off and landing
 //   waypoint CSV        x, y, z and, if given, yaw; or x,y,z[,yaw] without a header line
 //   QGroundControl      .plan, JSON: a simple mission with a planned home position
 //

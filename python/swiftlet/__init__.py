@@ -53,7 +53,7 @@ from ._core import (
     unstable_loops,
 )
 from .design import gains
-from .tables import read_flight_csv, to_pandas
+from .tables import to_pandas
 from .waypoints import waypoint_mission
 
 __all__ = [
@@ -92,7 +92,6 @@ __all__ = [
     "mcap_vehicles",
     "parse_mission",
     "parse_vehicle",
-    "read_flight_csv",
     "read_mcap",
     "read_sensors",
     "simulate",

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "swiftlet/recording/telemetry_rate.hpp"
+#include "swiftlet/plant/model/telemetry_rate.hpp"
 
 namespace swiftlet::services {
 namespace {
@@ -172,7 +172,7 @@ bool InnerLoop::finish(std::int64_t now_ns, const LoopDelay::Figures& loop_delay
   const control::Status& status = controller_.status();
   saturated_ = saturated_ || status.saturated;
   const bool sampled = timing_.period_ns() > 0 &&
-                       runtime::is_telemetry_sample(imu_sequence_, last_imu_sequence_, timing_.period_ns());
+                       plant::is_telemetry_sample(imu_sequence_, last_imu_sequence_, timing_.period_ns());
   const bool answers = evaluated_any_;
   const bool changed = status_changed() || role_ != snapshot_role_;
   const bool old = stamp_ns_ < reported_ns_ || stamp_ns_ - reported_ns_ >= kStandbyReportNs;

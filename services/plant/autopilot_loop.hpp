@@ -15,7 +15,8 @@
 
 #include "swiftlet/plant/simulation/navigation_sensors.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
-#include "swiftlet/recording/flight_trace.hpp"
+#include "swiftlet/plant/simulation/truth_schedule.hpp"
+#include "swiftlet/record/flight_trace.hpp"
 #include "swiftlet/services/clocks/clock_client.hpp"
 #include "swiftlet/services/clocks/clock_server.hpp"
 #include "swiftlet/services/dds/node.hpp"
@@ -23,7 +24,6 @@
 #include "swiftlet/services/plant/mavlink_autopilot.hpp"
 #include "swiftlet/services/plant/rotor_mapping.hpp"
 #include "swiftlet/services/plant/simulated_vehicle.hpp"
-#include "swiftlet/services/plant/truth_schedule.hpp"
 #include "swiftlet/services/runtime/clock.hpp"
 #include "swiftlet/services/runtime/realtime.hpp"
 
@@ -72,7 +72,7 @@ class AutopilotLoop {
   const AutopilotLoopSettings settings_;
   RotorMapping mapping_;
   plant::NavigationSensors sensors_;
-  TruthSchedule truth_;
+  plant::TruthSchedule truth_;
   MavlinkAutopilot autopilot_;
   std::int64_t steps_per_sample_;
   std::int64_t imu_period_ns_;
@@ -85,7 +85,7 @@ class AutopilotLoop {
   int most_left_out_ = 1;           // the most samples per answer that were logged
   bool silent_ = false;             // lockstep: an answer was overdue, and none has come since
   plant::ActuatorCommand command_;  // newest
-  std::optional<runtime::FlightTrace> trace_;
+  std::optional<record::FlightTrace> trace_;
   std::atomic<std::int64_t> origin_ns_{
       0};  // computer's clock at stamp 0, at the present pace; 0: time stands
   std::optional<comms::ClockClient> clock_client_;  // truth_only

@@ -10,7 +10,7 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/recording/telemetry_rate.hpp"
+#include "swiftlet/plant/model/telemetry_rate.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
@@ -35,6 +35,7 @@ LockstepLoop::LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSet
       mocap_(settings.mocap, seed),
       lockstep_(lockstep),
       imu_period_ns_(plant::period_ns(settings.imu.rate_hz)),
+      sends_every_truth_(!settings.faults.empty()),
       control_missing_(lockstep.goes_on),
       expected_(settings, 0),
       advance_to_ns_(lockstep.paused ? -1 : kNoLimit),
@@ -151,8 +152,8 @@ void LockstepLoop::publish() {
     const std::int64_t stamp_ns = simulation.stamp_ns();
     const plant::MocapSchedule::Events events = mocap_.advance(stamp_ns);
     const bool frame = frame_is_due(stamp_ns, events.delivers);
-    truth_needed = frame || events.exposes || events.delivers ||
-                   runtime::is_telemetry_sample(simulation.imu_count(), imu_period_ns_);
+    truth_needed = frame || events.exposes || events.delivers || sends_every_truth_ ||
+                   plant::is_telemetry_sample(simulation.imu_count(), imu_period_ns_);
     if (truth_needed && !frame) truth_sent_ns_ = stamp_ns;
   }
   vehicle_.publish_samples_in_order(mocap_missing_ ? mocap_sequence_ : mocap_due_, truth_needed);

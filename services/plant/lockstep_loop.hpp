@@ -19,7 +19,7 @@
 
 #include "swiftlet/plant/simulation/links/mocap_path.hpp"
 #include "swiftlet/plant/simulation/mocap_schedule.hpp"
-#include "swiftlet/recording/flight_trace.hpp"
+#include "swiftlet/record/flight_trace.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/plant/simulated_vehicle.hpp"
 
@@ -76,6 +76,8 @@ class LockstepLoop {
   plant::MocapSchedule mocap_;  // same as in motion capture
   const LockstepSettings lockstep_;
   std::int64_t imu_period_ns_;
+  bool
+      sends_every_truth_;  // faults lose samples of the IMU, and telemetry then has stamps that cannot be foreseen
 
   std::mutex mutex_;
   bool started_ = false;  // the first samples have been published
@@ -95,7 +97,7 @@ class LockstepLoop {
   double silence_s_ = 0.0;        // since the last progress
   std::string logged_wait_;       // for peers that have not answered yet; the last line of the log
   double clock_silence_s_ = 0.0;  // since simulation_clock was last heard
-  std::optional<runtime::FlightTrace> trace_;
+  std::optional<record::FlightTrace> trace_;
 
   std::vector<comms::Subscription> commands_;  // last: their callbacks use all members above
   comms::Subscription poses_;

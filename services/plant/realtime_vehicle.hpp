@@ -8,10 +8,10 @@
 
 #include <boost/lockfree/spsc_queue.hpp>
 
+#include "swiftlet/plant/simulation/truth_schedule.hpp"
 #include "swiftlet/services/clocks/clock_server.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/plant/simulated_vehicle.hpp"
-#include "swiftlet/services/plant/truth_schedule.hpp"
 #include "swiftlet/services/runtime/realtime.hpp"
 
 namespace swiftlet::services {
@@ -42,7 +42,7 @@ class RealtimeVehicle {
   double speed_;
   std::int64_t steps_per_sample_;
   std::int64_t sample_period_ns_;  // of the IMU, computer's clock
-  TruthSchedule truth_;
+  plant::TruthSchedule truth_;
   runtime::RealtimeSettings realtime_;
 
   boost::lockfree::spsc_queue<ReceivedCommand, boost::lockfree::capacity<64>>

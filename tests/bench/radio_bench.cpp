@@ -13,8 +13,7 @@
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
-#include "swiftlet/recording/flight_window.hpp"
-#include "swiftlet/recording/tracking.hpp"
+#include "swiftlet/record/evaluation.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 #include "swiftlet/simulation/mission_runner.hpp"
 #include "swiftlet/simulation/simulated_flight.hpp"
@@ -33,22 +32,22 @@ struct Options {
 };
 
 // nullopt: not completed.
-std::optional<TrackingErrors> fly_square(const plant::Vehicle& vehicle,
-                                         const plant::SimulationSettings& world,
-                                         const control::ControlSettings& settings, std::uint64_t seed) {
+std::optional<record::TrackingErrors> fly_square(const plant::Vehicle& vehicle,
+                                                 const plant::SimulationSettings& world,
+                                                 const control::ControlSettings& settings,
+                                                 std::uint64_t seed) {
   ClosedLoop loop(vehicle, world, settings, seed);
   control::Mission mission =
       load_mission_file(runtime::find_config("missions/square.yaml"), settings.limits).mission;
   mission.id = 1;
   const double planned_s = planned_duration_s(mission, settings.limits);
-  FlightRecord record(static_cast<std::size_t>(FlightSchedule::time_limit_s(planned_s) * loop.imu_rate_hz));
-  const SimulatedFlight done = fly(loop, mission, planned_s, {&record, nullptr, {}});
-  const auto window = mission_window(record, mission.id, mission);
-  if (!done.completed || !window) return std::nullopt;
-  return tracking_errors(record.truth, record.reference, *window);
+  record::Flight flight;
+  const SimulatedFlight done = fly(loop, mission, planned_s, {&flight, nullptr, {}});
+  if (!done.completed) return std::nullopt;
+  return record::evaluate(flight).errors;
 }
 
-std::string text_of(const std::optional<TrackingErrors>& errors) {
+std::string text_of(const std::optional<record::TrackingErrors>& errors) {
   if (!errors) return "    lost          ";
   char text[64];
   std::snprintf(text, sizeof text, "%8.1f %9.1f", 1e3 * errors->rms_3d_m, 1e3 * errors->peak_3d_m);
@@ -76,13 +75,13 @@ int run(const Options& options) {
     for (const double delay_s : {0.0, 0.01, 0.02, 0.04}) {
       const double jitter_s = delay_s > 0.0 ? options.jitter_s : 0.0;
       world.radio = {delay_s, jitter_s, options.loss};
-      const std::optional<TrackingErrors> flown = fly_square(vehicle, world, settings, options.seed);
+      const std::optional<record::TrackingErrors> flown = fly_square(vehicle, world, settings, options.seed);
       all_flew = all_flew && flown;
       DelayDesign tuned{1.0, settings, {}};
       if (level != ControlLevel::kTrajectory && delay_s > 0.0)
         tuned =
             design_for_delay(vehicle, settings, 2.0 * (delay_s + jitter_s), {level, vehicle_loops(vehicle)});
-      const std::optional<TrackingErrors> slower =
+      const std::optional<record::TrackingErrors> slower =
           tuned.factor < 1.0 ? fly_square(vehicle, world, tuned.settings, options.seed) : flown;
       if (options.json) {
         const auto rms = [](const auto& e) { return e ? nlohmann::ordered_json(e->rms_3d_m) : nullptr; };

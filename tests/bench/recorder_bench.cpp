@@ -20,11 +20,11 @@
 
 #include "swiftlet/ground/flight/in_process_flight.hpp"
 #include "swiftlet/ground/flight/simulated_recorder.hpp"
-#include "swiftlet/ground/recording/flight_recorder.hpp"
+#include "swiftlet/ground/logs/flight_log_files.hpp"
 #include "swiftlet/ground/recording/topic_publishers.hpp"
-#include "swiftlet/io/logs/flight_log_files.hpp"
-#include "swiftlet/io/mcap/reader.hpp"
 #include "swiftlet/io/temporary_folder.hpp"
+#include "swiftlet/record/mcap/reader.hpp"
+#include "swiftlet/record/recorder/flight_recorder.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/runtime/child_process.hpp"
 #include "swiftlet/services/runtime/process.hpp"
@@ -77,13 +77,13 @@ fs::path fly(const std::string& mission, int imu_rate_hz, const fs::path& folder
   fs::create_directories(folder);
   ground::ClosedLoop loop = ground::closed_loop(plan, {plan.vehicle, plan.simulation}, plan.seed);
   ground::SimulatedRecorder messages(loop, plan, "recorder_bench");
-  ground::FlightRecord record(plan.record_capacity());
-  const ground::InProcessFlight flight =
-      ground::fly_in_process(loop, plan, plan.seed, record, nullptr, {}, &messages);
+  record::Flight flight;
+  const ground::FlightReport report =
+      ground::fly_in_process(loop, plan, plan.seed, flight, nullptr, {}, &messages);
   const std::string fault = messages.finish();
   if (!fault.empty()) throw std::runtime_error(fault);
-  if (!flight.report.completed) throw std::runtime_error("the flight failed: " + flight.report.reason);
-  return folder / ground::kMessagesFile;
+  if (!report.completed) throw std::runtime_error("the flight failed: " + report.reason);
+  return folder / record::kFlightFile;
 }
 
 struct Recorded {
@@ -153,7 +153,7 @@ void record(const Options& options) {
   const fs::path log = fly("square", options.imu_rate_hz, folder.path() / "flight");
   const comms::DomainLock domain;
   const comms::Participant participant(network("ground", domain.domain()));
-  ground::FlightRecorder recorder(participant, folder.path() / "fleet.mcap", {});
+  record::FlightRecorder recorder(participant, folder.path() / "fleet.mcap", {});
   for (const std::string& name : names(options.vehicles)) recorder.add_vehicle(name);
   ground::ChildProcess publisher(
       {"the publisher",
@@ -169,7 +169,7 @@ void record(const Options& options) {
   const double time_s = std::chrono::duration<double>(Steady::now() - begin).count();
   const Usage after = usage_of(::getpid());
   recorder.stop();
-  const ground::RecorderTotals totals = recorder.totals();
+  const record::RecorderTotals totals = recorder.totals();
   if (!ended || ended->code != 0 || ended->by_signal)
     throw std::runtime_error("the publisher " + (ended ? ended->to_string() : "does not end") + ": " +
                              publisher.last_log_line());

@@ -19,16 +19,16 @@
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/planning/feasibility.hpp"
 #include "swiftlet/ground/mission/pace.hpp"
-#include "swiftlet/ground/report/recorded_messages.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/csv.hpp"
-#include "swiftlet/io/logs/recorded_flight.hpp"
-#include "swiftlet/io/mcap/reader.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/io/text_file.hpp"
+#include "swiftlet/record/evaluation.hpp"
+#include "swiftlet/record/file/flight_reader.hpp"
+#include "swiftlet/record/mcap/reader.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 #include "swiftlet/simulation/closed_loop.hpp"
 #include "tests/bench/rough_air.hpp"
@@ -466,8 +466,8 @@ void score_logs(const Options& options) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const std::string& log : options.logs) {
     const mcap::Reader file(log);
-    for (const std::string& vehicle : ground::recorded_vehicles(file)) {
-      const ground::FlownMission flown = ground::flown_mission(file, vehicle);
+    for (const auto& [vehicle, flight] : record::read_flights(file)) {
+      const record::Evaluation flown = record::evaluate(flight);
       if (flown.errors.matched == 0)
         throw runtime::ConfigError(log, 0, "/" + vehicle, "has no ground truth and reference of a mission");
       rows.push_back({{"name", log + " " + vehicle},

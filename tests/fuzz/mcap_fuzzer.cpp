@@ -1,6 +1,6 @@
 // Fuzzes MCAP files, and the definitions and messages in them.
-#include "swiftlet/io/mcap/message_decoder.hpp"
-#include "swiftlet/io/mcap/reader.hpp"
+#include "swiftlet/record/mcap/message_decoder.hpp"
+#include "swiftlet/record/mcap/reader.hpp"
 #include "tests/fuzz/refusal.hpp"
 
 using namespace swiftlet;

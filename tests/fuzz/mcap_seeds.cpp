@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/unit/io/mcap/recorded_file.hpp"
+#include "tests/unit/record/mcap/recorded_file.hpp"
 
 using namespace swiftlet;
 

@@ -28,31 +28,31 @@ namespace {
 
 using namespace std::chrono_literals;
 using control::Mode;
-using ground::TruthRow;
 using ground::View;
+using record::TruthRow;
 namespace msg = ground::msg;
 
 class Failsafe : public SeparateProcesses {
  protected:
   double lowest_m() const {
     double lowest = 1e9;
-    for (const TruthRow& row : truth()) lowest = std::min(lowest, -row.position_ned[2]);
+    for (const record::TruthRow& row : truth()) lowest = std::min(lowest, -row.position_ned[2]);
     return lowest;
   }
   double most_tilt_rad() const {
     double most = 0.0;
-    for (const TruthRow& row : truth()) most = std::max(most, tilt_rad(row));
+    for (const record::TruthRow& row : truth()) most = std::max(most, tilt_rad(row));
     return most;
   }
   double farthest_m() const {
     double farthest = 0.0;
-    for (const TruthRow& row : truth())
+    for (const record::TruthRow& row : truth())
       farthest = std::max(farthest, std::hypot(row.position_ned[0], row.position_ned[1]));
     return farthest;
   }
   double fastest_sink() const {
     double fastest = 0.0;
-    for (const TruthRow& row : truth()) fastest = std::max(fastest, row.velocity_ned[2]);
+    for (const record::TruthRow& row : truth()) fastest = std::max(fastest, row.velocity_ned[2]);
     return fastest;
   }
   bool settles_at(double x, double y, double z) const {
@@ -159,7 +159,7 @@ TEST_F(Failsafe, RotorsStopAndStayOffWhenCommandsCease) {
   ASSERT_TRUE(wait_until_rotors_off());
   clear_history();
   wait_vehicle_time(1.0);
-  for (const TruthRow& row : truth()) ASSERT_LT(fastest_rotor(row), 100.0);
+  for (const record::TruthRow& row : truth()) ASSERT_LT(fastest_rotor(row), 100.0);
 }
 
 // A fault of the simulation at a time up to which the test lets time advance when the vehicle hovers.
@@ -212,7 +212,7 @@ TEST_F(FailsafeAtATime, RotorsStopAndStayOffWhenTheImuFallsSilent) {
       << mode_log();
   clear_history();
   wait_vehicle_time(1.0);
-  for (const TruthRow& row : truth()) ASSERT_LT(fastest_rotor(row), 100.0);
+  for (const record::TruthRow& row : truth()) ASSERT_LT(fastest_rotor(row), 100.0);
 }
 
 TEST_F(Failsafe, HoldsInsideTheFenceWhenSetpointsLeaveIt) {
@@ -240,7 +240,7 @@ TEST_F(Failsafe, HoldsInsideTheFenceWhenSetpointsLeaveIt) {
   EXPECT_TRUE(reported(Mode::kHolding, "setpoints stopped")) << mode_log();
   wait_vehicle_time(1.0);
   double farthest_north = 0.0;
-  for (const TruthRow& row : truth()) farthest_north = std::max(farthest_north, row.position_ned[0]);
+  for (const record::TruthRow& row : truth()) farthest_north = std::max(farthest_north, row.position_ned[0]);
   EXPECT_GT(farthest_north, 0.3);
   // The reference stops before the fence; the vehicle overshoots the stop by up to 3 cm.
   EXPECT_LT(farthest_north, 0.635) << "overshoots the fence at 0.6 m by more than 3.5 cm";
@@ -284,7 +284,7 @@ class SteppedClocks : public Failsafe {
   }
   double farthest_from_hover_m() const {
     double farthest = 0.0;
-    for (const TruthRow& row : truth()) {
+    for (const record::TruthRow& row : truth()) {
       farthest =
           std::max(farthest, std::hypot(row.position_ned[0], row.position_ned[1], row.position_ned[2] + 1.0));
     }

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/record/file/flight_reader.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/hop_mission.hpp"
@@ -22,12 +23,8 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using nlohmann::json;
 
-double first_east_m(const fs::path& flight_csv) {
-  std::ifstream file(flight_csv);
-  std::string field;
-  std::getline(file, field);  // t,mode,px,py
-  for (int i = 0; i < 4; ++i) std::getline(file, field, ',');
-  return std::stod(field);
+double first_east_m(const fs::path& record, const std::string& vehicle) {
+  return record::read_flight(mcap::Reader(record / record::kFlightFile), vehicle).truth.at(0).position_ned[1];
 }
 
 class FleetFlight : public testing::Test {
@@ -79,7 +76,7 @@ TEST_F(FleetFlight, StartsTogetherInRowsServedByThreeProcesses) {
     EXPECT_EQ(report.at("start_m"), json({north_m, east_m}));
     EXPECT_EQ(report.at("seed"), 1 + i);
     EXPECT_LT(report.at("rms_3d_m"), 0.01);
-    EXPECT_NEAR(first_east_m(record() / name / "flight.csv"), east_m, 0.01);
+    EXPECT_NEAR(first_east_m(record(), name), east_m, 0.01);
     EXPECT_TRUE(fs::exists(record() / name / "flight.png"));
   }
   const ProgramResult listed = run_program("swiftlet", {"report", record().string()}, folder_.path());

@@ -32,7 +32,7 @@ class IdentifyFlight : public testing::Test {
 
 TEST_F(IdentifyFlight, WritesAVehicleFileFromARecord) {
   const ProgramResult flight =
-      run({"sim", "fly", "identification", "--sensors", "--record", in_folder("first"), "--json"});
+      run({"sim", "fly", "identification", "--record", in_folder("first"), "--json"});
   ASSERT_EQ(flight.exit_code, 0) << flight.errors;
   const ProgramResult result = run({"identify", "flight", in_folder("first"), "--out", in_folder("mine.yaml"),
                                     "--report", in_folder("report.html"), "--json"});
@@ -66,8 +66,8 @@ TEST_F(IdentifyFlight, WritesAVehicleFileFromARecord) {
 
 // Identification uses data received over the network, not internals of the plant.
 TEST_F(IdentifyFlight, ReadsTheRecordOfSeparateProcesses) {
-  const ProgramResult flight = run({"fly", "identification", "--clock", "lockstep", "--sensors", "--record",
-                                    in_folder("first"), "--json"});
+  const ProgramResult flight =
+      run({"fly", "identification", "--clock", "lockstep", "--record", in_folder("first"), "--json"});
   ASSERT_EQ(flight.exit_code, 0) << flight.errors;
   const ProgramResult result =
       run({"identify", "flight", in_folder("first"), "--out", in_folder("mine.yaml"), "--json"});
@@ -110,7 +110,7 @@ TEST_F(IdentifyFlight, RefusesInvalidLogs) {
   EXPECT_NE(missing.errors.find("nowhere.csv: cannot be read"), std::string::npos) << missing.errors;
   const ProgramResult no_log = run({"identify", "flight", folder_.path()});
   EXPECT_EQ(no_log.exit_code, 2);
-  EXPECT_NE(no_log.errors.find(": has no sensor log; fly with --sensors or --mcap"), std::string::npos)
+  EXPECT_NE(no_log.errors.find(": holds no flight.mcap, is not the record of a flight"), std::string::npos)
       << no_log.errors;
   const ProgramResult unit = run({"identify", "flight", folder_.write("unit.csv", "t,acc_x [g]\n0,0\n")});
   EXPECT_EQ(unit.exit_code, 2);

@@ -229,7 +229,7 @@ TEST_F(LivingVehicleInRealTime, IsReportedSilentWhenItDiesAndMayBeStartedAgainAt
   plant_ = start("swiftlet-plant");
   ASSERT_TRUE(reported(control::Mode::kStopped, "IMU samples are not usable")) << mode_log();
   wait_vehicle_time(1.0);
-  for (const ground::TruthRow& row : truth()) ASSERT_LT(fastest_rotor(row), 20.0);
+  for (const record::TruthRow& row : truth()) ASSERT_LT(fastest_rotor(row), 20.0);
   EXPECT_FALSE(ask(msg::Command_Constants::ARM).accepted());
   ASSERT_TRUE(ask(msg::Command_Constants::DISARM).accepted());
   hover();
@@ -282,9 +282,10 @@ TEST_F(LivingVehicleInRealTime, IsDisarmedAgainWhenTheStartIsRefused) {
   const ground::MissionFile mission = ground::parse_mission_file(kHopMission, "hop.yaml", control::Limits());
   ground::StartBarrier barrier(2);
   SilentProgress progress;
-  const ground::NetworkTransport::Watch watch{[] { return std::nullopt; }, [] { return 0; }, &barrier, true};
+  const ground::NetworkTransport::Watch watch{[] { return std::nullopt; }, [] { return 0; },
+                                              [] { return true; }, &barrier, true};
   auto flight = std::async(std::launch::async, [&]() -> std::string {
-    ground::NetworkTransport vehicle(*client_, record_, mission, runtime::Clock::kRealtime, watch, progress);
+    ground::NetworkTransport vehicle(*client_, mission, runtime::Clock::kRealtime, watch, progress);
     try {
       ground::fly_mission(vehicle, 10.0);
     } catch (const ground::FlightFailure& failure) {

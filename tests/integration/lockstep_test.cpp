@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/record/file/flight_reader.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "tests/support/eventually.hpp"
@@ -58,13 +59,6 @@ class CpuLoad {
   std::vector<std::thread> threads_;
 };
 
-std::vector<std::string> lines_of(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
-}
-
 class Lockstep : public testing::Test {
  protected:
   struct Flight {
@@ -85,22 +79,29 @@ class Lockstep : public testing::Test {
   std::string mission_ = folder_.write("hop.yaml", kMission);
 };
 
-// No sample is lost on the way to the ground, whatever the load.
-void expect_every_sample(const std::filesystem::path& over_dds_csv,
-                         const std::filesystem::path& in_process_csv) {
-  const std::vector<std::string> over_dds = lines_of(over_dds_csv);
-  const std::vector<std::string> in_process = lines_of(in_process_csv);
-  ASSERT_GT(in_process.size(), 2'000U);
-  ASSERT_GE(over_dds.size(), in_process.size());
-  EXPECT_EQ(over_dds[0], in_process[0]);
-  // The in-process flight does not record its first sample, and ends before the next voltage, to which the
-  // last rows interpolate.
-  constexpr std::size_t kLastRows = 60;
-  const auto first = std::find(over_dds.begin(), over_dds.end(), in_process[1]);
-  ASSERT_NE(first, over_dds.end());
-  const auto compared = static_cast<std::ptrdiff_t>(in_process.size() - 1 - kLastRows);
-  ASSERT_GE(over_dds.end() - first, compared);
-  EXPECT_TRUE(std::equal(first, first + compared, in_process.begin() + 1));
+record::Flight recorded(const std::filesystem::path& folder) {
+  return record::read_flight(mcap::Reader(folder / record::kFlightFile), "kl1");
+}
+
+// No sample is lost on the way to the record, whatever the load.
+void expect_every_sample(const record::Flight& over_dds, const record::Flight& in_process) {
+  ASSERT_GT(in_process.imu.size(), 2'000U);
+  const auto expect_all = [](const auto& sent, const auto& expected, const auto& equal) {
+    auto at = sent.begin();
+    for (const auto& sample : expected) {
+      at = std::find_if(at, sent.end(), [&](const auto& one) { return one.stamp_ns >= sample.stamp_ns; });
+      ASSERT_NE(at, sent.end()) << sample.stamp_ns;
+      ASSERT_EQ(at->stamp_ns, sample.stamp_ns);
+      ASSERT_TRUE(equal(*at, sample)) << sample.stamp_ns;
+    }
+  };
+  expect_all(over_dds.imu, in_process.imu, [](const auto& a, const auto& b) {
+    return a.specific_force_frd == b.specific_force_frd && a.body_rates_frd == b.body_rates_frd;
+  });
+  expect_all(over_dds.commands, in_process.commands,
+             [](const auto& a, const auto& b) { return a.throttle == b.throttle; });
+  expect_all(over_dds.poses, in_process.poses,
+             [](const auto& a, const auto& b) { return a.position_ned == b.position_ned; });
 }
 
 // GIVEN one seed WHEN the mission is flown in one process, over DDS, over DDS beside other processes on all cores, and at a
@@ -112,7 +113,7 @@ TEST_F(Lockstep, FliesTheSameFlightHoweverItRuns) {
     more.insert(more.begin(), lockstep.begin(), lockstep.end());
     return more;
   };
-  const Flight in_process = fly({"sim", "fly", "--seed", "3", "--sensors"}, "process");
+  const Flight in_process = fly({"sim", "fly", "--seed", "3"}, "process");
   EXPECT_GT(in_process.trace.size(), 1'000'000U);
   EXPECT_FALSE(in_process.trace == fly({"sim", "fly", "--seed", "4"}, "other").trace);
   const auto started = std::chrono::steady_clock::now();
@@ -120,14 +121,14 @@ TEST_F(Lockstep, FliesTheSameFlightHoweverItRuns) {
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started;
   EXPECT_GE(elapsed.count(), slow.report.at("duration_s").get<double>() / kSpeed);
   const CpuLoad load;
-  const Flight under_load = fly(with({"--sensors"}), "load");
+  const Flight under_load = fly(lockstep, "load");
   for (const Flight* over_dds : {&slow, &under_load}) {
     EXPECT_TRUE(over_dds->trace == in_process.trace);
     EXPECT_EQ(over_dds->report.at("clock"), "lockstep");
     for (const char* key : {"rms_3d_m", "peak_3d_m", "rms_m", "peak_m", "matched_samples", "duration_s"})
       EXPECT_EQ(over_dds->report.at(key), in_process.report.at(key)) << key;
   }
-  expect_every_sample(folder_.path() / "load/sensors.csv", folder_.path() / "process/sensors.csv");
+  expect_every_sample(recorded(folder_.path() / "load"), recorded(folder_.path() / "process"));
 }
 
 // At the other rate of the IMU; and the plant waits for frames with random times.

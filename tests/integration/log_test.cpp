@@ -13,10 +13,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/io/mcap/message_decoder.hpp"
-#include "swiftlet/io/mcap/reader.hpp"
 #include "swiftlet/io/mocap/room.hpp"
 #include "swiftlet/math/time.hpp"
+#include "swiftlet/record/mcap/message_decoder.hpp"
+#include "swiftlet/record/mcap/reader.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/hop_mission.hpp"
@@ -97,10 +97,10 @@ TEST_F(Log, HoldsEveryMessageOfAFlight) {
     const auto heads = heads_of(mcap::Reader(file, mcap::Access::kScanned));
     return heads.count("/kl1/command") == 1 && heads.count("/kl1/mission") == 1;
   }));
-  const ProgramResult flight = run_program("swiftlet",
-                                           on_this_domain({"fly", mission, "--attach", "--skip-check",
-                                                           "--mcap", "--record", path("record"), "--json"}),
-                                           folder_.path(), kStuck);
+  const ProgramResult flight = run_program(
+      "swiftlet",
+      on_this_domain({"fly", mission, "--attach", "--skip-check", "--record", path("record"), "--json"}),
+      folder_.path(), kStuck);
   ASSERT_EQ(flight.exit_code, 0) << flight.errors;
   recorder->signal(SIGINT);
   ASSERT_EQ(recorder->wait(kStuck), 0) << recorder->errors();
@@ -140,11 +140,11 @@ TEST_F(Log, HoldsEveryMessageOfAFlight) {
 }
 
 TEST_F(Log, IsPartOfTheRecordOfAFlight) {
-  const ProgramResult flight = run_program(
-      "swiftlet",
-      {"fly", folder_.write("hop.yaml", kHopMission), "--clock", "lockstep", "--seed", "5", "--mcap",
-       "--domain", std::to_string(lock_.domain()), "--record", path("record"), "--json"},
-      folder_.path(), kStuck);
+  const ProgramResult flight =
+      run_program("swiftlet",
+                  {"fly", folder_.write("hop.yaml", kHopMission), "--clock", "lockstep", "--seed", "5",
+                   "--domain", std::to_string(lock_.domain()), "--record", path("record"), "--json"},
+                  folder_.path(), kStuck);
   ASSERT_EQ(flight.exit_code, 0) << flight.errors;
   const mcap::Reader recorded(path("record/flight.mcap"), mcap::Access::kScanned);
   EXPECT_TRUE(recorded.finished());
@@ -189,8 +189,7 @@ TEST_F(Log, IsPartOfTheRecordOfAFlight) {
   EXPECT_EQ(compared.at("signals").at("throttle").at("max"), 0.0);
   // The same flight in one process has the same messages.
   const ProgramResult simulated = run_program(
-      "swiftlet",
-      {"sim", "fly", folder_.path() / "hop.yaml", "--seed", "5", "--mcap", "--record", path("sim")},
+      "swiftlet", {"sim", "fly", folder_.path() / "hop.yaml", "--seed", "5", "--record", path("sim")},
       folder_.path(), kStuck);
   ASSERT_EQ(simulated.exit_code, 0) << simulated.errors;
   std::vector<std::string> diff = {"log", "diff", path("sim/flight.mcap"), path("record/flight.mcap"),
@@ -213,9 +212,8 @@ TEST_F(Log, IsPartOfTheRecordOfAFlight) {
 
 // GIVEN a body that is calibrated by hand WHEN a recorded flight is given THEN what it tells is added to the room file.
 TEST_F(Log, TellsHowABodySitsOnItsVehicle) {
-  const ProgramResult flight =
-      run_program("swiftlet", {"sim", "fly", "calibration", "--mcap", "--record", path("record")},
-                  folder_.path(), kStuck);
+  const ProgramResult flight = run_program(
+      "swiftlet", {"sim", "fly", "calibration", "--record", path("record")}, folder_.path(), kStuck);
   ASSERT_EQ(flight.exit_code, 0) << flight.errors;
   const std::string room = folder_.write(
       "room.yaml",

@@ -25,7 +25,7 @@
 #include "swiftlet/math/statistics.hpp"
 #include "swiftlet/plant/model/samples.hpp"
 #include "swiftlet/plant/simulation/mocap.hpp"
-#include "swiftlet/recording/flight_record.hpp"
+#include "swiftlet/record/flight.hpp"
 #include "swiftlet/services/clocks/clock_client.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/mocap/sources/source.hpp"
@@ -129,7 +129,7 @@ struct PoseErrors {
   double attitude_rad = 1e9;
 };
 
-PoseErrors errors_of(const std::vector<msg::MocapPose>& poses, const std::vector<ground::TruthRow>& truth) {
+PoseErrors errors_of(const std::vector<msg::MocapPose>& poses, const std::vector<record::TruthRow>& truth) {
   constexpr double kMoves_m_s = 0.2;
   const auto position = [](const auto& row) { return Vector3d(row.position_ned.data()); };
   const auto attitude = [](const auto& q) { return Quaterniond(q[0], q[1], q[2], q[3]); };
@@ -349,8 +349,9 @@ TEST_F(MotionCapture, StampsThePosesOfNatNetAndVrpnByTheVehiclesClocks) {
   };
   const FilmedVehicle by_natnet(network_of("cameras", "kl1"), natnet_cameras(natnet_server, tracked));
   const FilmedVehicle by_vrpn(network_of("cameras", "kl2"), vrpn_cameras(vrpn_server));
-  ground::FlightRecord record_of_kl2(200'000);
-  const ground::Client client_of_kl2(network_of("ground", "kl2"), &record_of_kl2);
+  const ground::Client client_of_kl2(network_of("ground", "kl2"));
+  comms::Node watcher_of_kl2(network_of("watcher", "kl2"));
+  const TelemetryLog telemetry_of_kl2(watcher_of_kl2);
 
   control_ = start("swiftlet-control", {"--vehicle-name", "kl1,kl2"});
   plant_ = start("swiftlet-plant", {"--vehicle-name", "kl1,kl2"});
@@ -372,7 +373,7 @@ TEST_F(MotionCapture, StampsThePosesOfNatNetAndVrpnByTheVehiclesClocks) {
   EXPECT_EQ(fly_kl1.wait(kStuck), 0) << fly_kl1.errors() << mocap_->errors() << control_->errors();
   EXPECT_EQ(fly_kl2.wait(kStuck), 0) << fly_kl2.errors() << other_mocap->errors() << control_->errors();
   expect_close(errors_of(by_natnet.seen().items(), truth()));
-  expect_close(errors_of(by_vrpn.seen().items(), {record_of_kl2.truth.begin(), record_of_kl2.truth.end()}));
+  expect_close(errors_of(by_vrpn.seen().items(), telemetry_of_kl2.flight().truth));
 
   EXPECT_TRUE(by_natnet.seen().items().back().tracked());
   *tracked = false;

@@ -53,8 +53,12 @@ TEST_F(StreamFlight, FliesTheReferenceOfARecordAndNamesWhatIsRefused) {
       {"sim", "fly", folder_.write("hop.yaml", kHopMission), "--record", folder_.path() / "first"},
       folder_.path());
   ASSERT_EQ(flown.exit_code, 0) << flown.errors;
+  const std::string table = folder_.path() / "hop.csv";
+  const ProgramResult written =
+      run_program("swiftlet", {"log", "csv", folder_.path() / "first", "-o", table}, folder_.path());
+  ASSERT_EQ(written.exit_code, 0) << written.errors;
   take_off();
-  const ProgramResult result = swiftlet({"stream", folder_.path() / "first" / "flight.csv", "--json"});
+  const ProgramResult result = swiftlet({"stream", table, "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.errors << result.output;
   EXPECT_EQ(json::parse(result.output).at("refused"), 0);
   EXPECT_TRUE(reaches_place(0.5, -0.3, -0.7)) << "the hop before its landing";

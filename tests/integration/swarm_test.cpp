@@ -151,7 +151,7 @@ class SwarmFlight : public testing::Test {
     words.insert(words.end(), more.begin(), more.end());
     return run_program("swiftlet", words, folder_.path(), kStuck);
   }
-  // A topic of the last flight, which was flown with --mcap.
+  // A topic of the last flight.
   Table recorded(const std::string& topic) const {
     const fs::path csv = folder_.path() / "topic.csv";
     const ProgramResult written = run_program(
@@ -187,7 +187,7 @@ class SwarmFlight : public testing::Test {
 };
 
 TEST_F(SwarmFlight, FliesVehiclesOfTwoFilesFromTheirPlaces) {
-  const ProgramResult result = fly(fleet("kaylion"), {"--clock", "lockstep", "--mcap"});
+  const ProgramResult result = fly(fleet("kaylion"), {"--clock", "lockstep"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const json report = json::parse(result.output);
   EXPECT_EQ(report.at("completed"), true);
@@ -258,8 +258,7 @@ TEST_F(SwarmFlight, StartsWithinTwoMillisecondsAndWaitsForOneThatThePilotHasPaus
       "frame: ned\nvehicle: crazyflie2\nsafety: {radius_xy_m: 0.2, radius_z_m: 0.3}\nvehicles:\n"
       "  - {name: a, start_m: [-1.5, 0], mission: first.yaml}\n  - {name: b, start_m: [0, -1.5], mission: "
       "second.yaml}\n");
-  Program fly("swiftlet", {"fleet", "fly", file, "--mcap", "--record", record().string(), "--json"},
-              folder_.path());
+  Program fly("swiftlet", {"fleet", "fly", file, "--record", record().string(), "--json"}, folder_.path());
   const auto said = [&](const std::string& text) { return fly.errors().find(text) != std::string::npos; };
   ASSERT_TRUE(eventually([&] { return said("2/3 waypoint") || fly.exit_code(); })) << fly.errors();
   const std::size_t at = fly.errors().find(" in domain ");

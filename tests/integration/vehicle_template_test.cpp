@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "swiftlet/recording/tracking.hpp"
+#include "swiftlet/record/evaluation.hpp"
 #include "swiftlet/services/microcontroller/firmware.hpp"
 #include "swiftlet/services/microcontroller/port.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
@@ -24,11 +24,10 @@ using ground::View;
 namespace msg = ground::msg;
 namespace topics = comms::topics;
 
-// The part of a record in which the reference flies the square, 1 m above the ground.
-ground::Window at_height(const ground::FlightRecord& record) {
-  ground::Window window;
-  for (std::size_t i = 0; i < record.reference.size(); ++i) {
-    const ground::ReferenceRow& row = record.reference[i];
+// The part of a flight in which the reference flies the square, 1 m above the ground.
+record::Window at_height(const record::Flight& flight) {
+  record::Window window;
+  for (const record::ReferenceRow& row : flight.reference) {
     if (row.position_ned[2] > -0.999) continue;
     if (window.from_ns == 0) window.from_ns = row.stamp_ns;
     window.to_ns = row.stamp_ns;
@@ -124,7 +123,8 @@ TEST_F(VehicleTemplateInRealTime, FliesTheSquareThroughAPseudoTerminal) {
                                          "--localhost-only", "--domain", std::to_string(lock_.domain())},
                                         folder_.path(), kTimeout);
   ASSERT_EQ(fly.exit_code, 0) << fly.errors << plant_->errors() << microcontroller_->errors();
-  const auto errors = ground::tracking_errors(record_.truth, record_.reference, at_height(record_));
+  const record::Flight flight = telemetry_->flight();
+  const auto errors = record::tracking_errors(flight.truth, flight.reference, at_height(flight));
   EXPECT_LT(errors.rms_3d_m, 0.005);
   EXPECT_GT(errors.matched, 1000U) << "of about 1500";
   const msg::VehicleInfo info = client_->view().vehicle.message;

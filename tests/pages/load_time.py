@@ -22,7 +22,7 @@ def main(programs, work):
     install_browser(work)
     laps = "".join(f"  - {{kind: waypoint, position_m: [{x}, {y}, -1], speed_m_s: 1}}\n" for _ in range(LAPS) for x, y in CORNERS)
     (work / "long.yaml").write_text(HEAD + laps + "  - {kind: land, speed_m_s: 0.5}\n", encoding="utf-8")
-    run(programs / "swiftlet", "sim", "fly", "long.yaml", "--mcap", "--record", "long", "--replace", cwd=work)
+    run(programs / "swiftlet", "sim", "fly", "long.yaml", "--record", "long", "--replace", cwd=work)
     page = work / "long.html"
     run(programs / "swiftlet", "report", "long", "-o", page, "--replace", cwd=work)
     info = json.loads(run(programs / "swiftlet", "log", "info", "long/flight.mcap", "--json", cwd=work))

@@ -42,7 +42,7 @@ def require(holds, what):
 def check_flights(swiftlet, work):
     (work / "hop.yaml").write_text(MISSION, encoding="utf-8")
     for seed in (1, 2):
-        run(swiftlet, "fly", "hop.yaml", "--clock", "lockstep", "--localhost-only", "--seed", seed, "--mcap", "--record",
+        run(swiftlet, "fly", "hop.yaml", "--clock", "lockstep", "--localhost-only", "--seed", seed, "--record",
             work / f"hop{seed}", "--replace", cwd=work)
     run(swiftlet, "report", work / "hop1", "-o", work / "one.html", "--replace")
     run(swiftlet, "report", work / "hop1" / "flight.mcap", work / "hop2", "-o", work / "two.html", "--replace")

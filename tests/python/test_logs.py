@@ -18,7 +18,7 @@ class Records(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.record = pathlib.Path(cls.folder.name) / "A"
-        cls.flight = swiftlet.simulate("square", record=str(cls.record), mcap=True, sensors=True)
+        cls.flight = swiftlet.simulate("square", record=str(cls.record))
         cls.log = swiftlet.read_mcap(str(cls.record / "flight.mcap"))
 
     @classmethod
@@ -54,25 +54,14 @@ class Records(unittest.TestCase):
         with self.assertRaises(swiftlet.InputError):
             swiftlet.read_mcap(str(self.record / "none.mcap"))
 
-    def test_reads_flight_csv(self):
-        columns = swiftlet.read_flight_csv(self.record)
-        truth = self.flight.truth()
-        self.assertLessEqual({"mission", "disarmed"}, set(columns["mode"]))
-        self.assertTrue(np.isfinite(columns["x_ned [m]"]).all())
-        self.assertAlmostEqual(columns["x_ned [m]"].max(), truth["position_ned"][:, 0].max(), places=4)
-        with self.assertRaisesRegex(swiftlet.InputError, "mode"):
-            swiftlet.read_flight_csv(self.record / "sensors.csv")
-
-    def test_reads_sensors_from_both_files_alike(self):
-        csv = swiftlet.read_sensors(str(self.record / "sensors.csv"))
+    def test_reads_sensors_of_a_record_and_its_file_alike(self):
+        record = swiftlet.read_sensors(str(self.record))
         mcap = swiftlet.read_sensors(str(self.record / "flight.mcap"))
-        self.assertEqual(csv["throttle"].shape[1], 4)
-        rows = min(len(csv["time_s"]), len(mcap["time_s"]))
-        np.testing.assert_allclose(csv["specific_force_frd"][-rows:], mcap["specific_force_frd"][-rows:], rtol=1e-6)
-        self.assertEqual(csv["pose_q_ned_from_frd"].shape, (len(csv["pose_time_s"]), 4))
+        self.assertEqual(record["throttle"].shape[1], 4)
+        np.testing.assert_array_equal(record["specific_force_frd"], mcap["specific_force_frd"])
+        self.assertEqual(record["pose_q_ned_from_frd"].shape, (len(record["pose_time_s"]), 4))
 
     def test_becomes_a_table(self):
         table = swiftlet.to_pandas(self.log["/kl1/estimate"])
         self.assertEqual(len(table), len(self.log["/kl1/estimate"]["stamp_ns"]))
         np.testing.assert_array_equal(table["position_ned[2]"], self.log["/kl1/estimate"]["position_ned"][:, 2])
-        self.assertIn("mode", swiftlet.to_pandas(swiftlet.read_flight_csv(self.record)).columns)

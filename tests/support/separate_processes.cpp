@@ -9,14 +9,12 @@ namespace {
 namespace msg = ground::msg;
 using ground::View;
 
-constexpr std::size_t kRecordCapacity = 200'000;  // of truth: 400 s
-
 }  // namespace
 
 SeparateProcesses::SeparateProcesses()
-    : record_(kRecordCapacity),
-      client_(std::make_unique<ground::Client>(node("ground"), &record_)),
-      watcher_(std::make_unique<comms::Node>(node("watcher"))) {
+    : client_(std::make_unique<ground::Client>(node("ground"))),
+      watcher_(std::make_unique<comms::Node>(node("watcher"))),
+      telemetry_(std::make_unique<TelemetryLog>(*watcher_)) {
   status_ =
       watcher_->subscribe<msg::ControlStatus>(comms::topics::kControlStatus, [this](const auto& status) {
         mode_log_.put(std::string(ground::mode_name(status.mode())) + ": " + status.reason().c_str());
@@ -96,7 +94,7 @@ bool SeparateProcesses::reported(control::Mode mode, const std::string& reason,
 
 void SeparateProcesses::clear_history() {
   mode_log_.clear();
-  first_row_ = record_.truth.size();
+  telemetry_->clear();
 }
 
 std::string SeparateProcesses::mode_log() const {
@@ -132,12 +130,12 @@ double SeparateProcesses::distance_m(double x, double y, double z) const {
   return std::hypot(at[0] - x, at[1] - y, at[2] - z);
 }
 
-double tilt_rad(const ground::TruthRow& row) {
+double tilt_rad(const record::TruthRow& row) {
   const auto& q = row.q_ned_from_frd;
   return std::acos(std::clamp(1.0 - 2.0 * (q[1] * q[1] + q[2] * q[2]), -1.0, 1.0));
 }
 
-double fastest_rotor(const ground::TruthRow& row) {
+double fastest_rotor(const record::TruthRow& row) {
   return *std::max_element(row.rotor_speeds.begin(), row.rotor_speeds.end());
 }
 

@@ -17,6 +17,7 @@
 #include "tests/support/eventually.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/simulated_time.hpp"
+#include "tests/support/telemetry_log.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::tests {
@@ -47,9 +48,7 @@ class SeparateProcesses : public testing::Test {
   std::string mode_log() const;
 
   // The truth since the last clear_history().
-  std::vector<ground::TruthRow> truth() const {
-    return {record_.truth.begin() + first_row_, record_.truth.end()};
-  }
+  std::vector<record::TruthRow> truth() const { return telemetry_->flight().truth; }
   std::int64_t stamp_ns() const { return client_->view().truth.message.stamp_ns(); }
   bool wait_for_truth(const std::function<bool(const ground::msg::GroundTruth&)>& predicate,
                       std::chrono::milliseconds timeout = kTimeout) const;
@@ -62,16 +61,15 @@ class SeparateProcesses : public testing::Test {
   comms::DomainLock lock_;
   TemporaryFolder folder_;
   std::unique_ptr<Program> plant_, mocap_, control_;
-  ground::FlightRecord record_;
-  std::size_t first_row_ = 0;  // of truth(), in record_
   std::unique_ptr<ground::Client> client_;
   std::unique_ptr<comms::Node> watcher_;
+  std::unique_ptr<TelemetryLog> telemetry_;  // since the last clear_history()
   Inbox<std::string> mode_log_;
   comms::Subscription status_;
 };
 
 // Of one row of ground truth.
-double tilt_rad(const ground::TruthRow& row);
-double fastest_rotor(const ground::TruthRow& row);
+double tilt_rad(const record::TruthRow& row);
+double fastest_rotor(const record::TruthRow& row);
 
 }  // namespace swiftlet::tests

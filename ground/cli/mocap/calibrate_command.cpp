@@ -268,9 +268,8 @@ Command add_mocap_calibrate_command(runtime::CommandLine mocap) {
       app.add_flag("--hover", options->hover,
                    "From the vehicle in flight: it hovers, or better turns and flies short legs");
   runtime::Option log =
-      app.add_option(
-             "--log", options->log,
-             "From a recorded flight: a record with sensors.csv, or an MCAP file of 'swiftlet record'")
+      app.add_option("--log", options->log,
+                     "From a recorded flight: its record, or an MCAP file of 'swiftlet record'")
           .type_name("PATH");
   hover.excludes(log).excludes(rest).excludes(turn);
   log.excludes(rest).excludes(turn);

@@ -5,23 +5,20 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
-#include <map>
 #include <optional>
 #include <stdexcept>
 #include <utility>
-#include <variant>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/cli/check/sample_recorder.hpp"
 #include "swiftlet/ground/cli/mocap/mocap_commands.hpp"
-#include "swiftlet/ground/recording/log_table.hpp"
+#include "swiftlet/ground/logs/flight_log_files.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/configuration.hpp"
-#include "swiftlet/io/logs/flight_log_files.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
-#include "swiftlet/io/text_file.hpp"
+#include "swiftlet/math/time.hpp"
+#include "swiftlet/record/file/flight_reader.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -44,51 +41,17 @@ void add_pose(FlightLog& log, const identification::FlightPose& pose) {
   if (log.poses.empty() || pose.time_s > log.poses.back().time_s) log.poses.push_back(pose);
 }
 
-// The columns of a topic by their names.
-class TopicColumns {
- public:
-  TopicColumns(const mcap::Reader& file, std::string topic)
-      : file_name_(file.name()), topic_(std::move(topic)) {
-    const std::vector<mcap::Column> columns = columns_of(file, topic_);
-    for (std::size_t i = 0; i < columns.size(); ++i) index_[columns[i].name] = i;
-  }
-  double number(const std::vector<mcap::Value>& values, const std::string& column) const {
-    const auto found = index_.find(column);
-    if (found == index_.end()) throw runtime::ConfigError(file_name_, 0, topic_, "has no field " + column);
-    if (std::holds_alternative<std::string>(values[found->second]))
-      throw runtime::ConfigError(file_name_, 0, topic_, column + " is a text, must be a number");
-    return number_of(values[found->second]);
-  }
-  Eigen::Vector3d vector(const std::vector<mcap::Value>& values, const std::string& name) const {
-    return {number(values, name + "[0]"), number(values, name + "[1]"), number(values, name + "[2]")};
-  }
-
- private:
-  std::string file_name_;
-  std::string topic_;
-  std::map<std::string, std::size_t> index_;
-};
-
 FlightLog read_mcap(const std::string& name, const std::string& vehicle) {
   const mcap::Reader file(name);
+  const record::Flight flight = record::read_flight(file, record::recorded_vehicle(file, vehicle));
   FlightLog log;
   log.name = name;
-  const std::string imu = "/" + vehicle + "/imu";
-  const TopicColumns of_imu(file, imu);
-  for_each_row(file, {}, imu, [&](const mcap::Message&, const std::vector<mcap::Value>& values) {
-    add_imu(log, 1e-9 * of_imu.number(values, "stamp_ns"), of_imu.vector(values, "specific_force_frd"),
-            of_imu.vector(values, "body_rates_frd"));
-  });
-  const std::string pose = "/" + vehicle + "/mocap_pose";
-  const TopicColumns of_pose(file, pose);
-  for_each_row(file, {}, pose, [&](const mcap::Message&, const std::vector<mcap::Value>& values) {
-    if (of_pose.number(values, "tracked") == 0.0) return;
-    const auto q = [&](const char* index) {
-      return of_pose.number(values, "q_ned_from_frd" + std::string(index));
-    };
-    add_pose(log, {1e-9 * of_pose.number(values, "stamp_ns"), of_pose.vector(values, "position_ned"),
-                   Eigen::Quaterniond(q("[0]"), q("[1]"), q("[2]"), q("[3]")).normalized()});
-  });
+  for (const plant::ImuSample& imu : flight.imu)
+    add_imu(log, math::seconds(imu.stamp_ns), imu.specific_force_frd, imu.body_rates_frd);
+  for (const plant::PoseSample& pose : flight.poses) {
+    if (pose.tracked)
+      add_pose(log, {math::seconds(pose.stamp_ns), pose.position_ned, pose.q_ned_from_frd.normalized()});
+  }
   return log;
 }
 
@@ -106,31 +69,22 @@ FlightLog cut(const FlightLog& log, double from_s, double until_s) {
   return out;
 }
 
-// The record of this vehicle: a folder of several has one for each. Throws ConfigError if it is of another one.
-fs::path record_of(const fs::path& file, const std::string& vehicle) {
-  fs::path record = fs::is_directory(file / vehicle) ? file / vehicle : file;
-  const fs::path report = (fs::is_directory(record) ? record : record.parent_path()) / "report.json";
-  if (!fs::exists(report)) return record;
-  const auto json = nlohmann::json::parse(runtime::read_text_file(report.string()), nullptr, false);
-  const bool says = json.is_object() && json.contains("vehicle_name") && json["vehicle_name"].is_string();
-  const std::string of = says ? json["vehicle_name"].get<std::string>() : vehicle;
-  if (of != vehicle)
-    throw runtime::ConfigError(file.string(), 0, "", "is a flight of " + of + ", not of " + vehicle);
-  return record;
-}
-
 }  // namespace
 
 FlightLog read_motion(const std::string& file, const std::string& vehicle, std::optional<double> from_s,
                       std::optional<double> until_s) {
   FlightLog log;
-  if (fs::path(file).extension() == ".mcap") {
-    log = read_mcap(file, vehicle);
+  const record::FlightFile from = record::flight_file(file);
+  const fs::path& path = from.file;
+  if (!from.vehicle.empty() && from.vehicle != vehicle)
+    throw runtime::ConfigError(file, 0, "", "is a flight of " + from.vehicle + ", not of " + vehicle);
+  if (path.extension() == ".mcap") {
+    log = read_mcap(path.string(), vehicle);
   } else {
     // The commands, which a vehicle file translates, are not used.
     const plant::Vehicle any =
         runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, "kaylion"));
-    log = read_flight_log(record_of(file, vehicle), any, BodyAxes::kDetected).log;
+    log = read_flight_log(path, any, BodyAxes::kDetected).log;
   }
   if (log.poses.empty())
     throw std::runtime_error(file +

@@ -4,14 +4,14 @@
 #include <optional>
 #include <string>
 
-#include "swiftlet/recording/flight_log.hpp"
+#include "swiftlet/identification/flight_log.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/runtime/stop_signal.hpp"
 
 namespace swiftlet::ground {
 
-// From a record with sensors.csv or that file itself, a CSV log as for `swiftlet identify flight`, or an MCAP file by
-// `swiftlet record`. Of several vehicles only from what is this one's; a record of another one is refused. Only what lies
+// From the record of a flight, an MCAP file by `swiftlet record`, or a CSV log as for `swiftlet identify flight`. Of several
+// vehicles only what is this one's; a record of another one is refused. Only what lies
 // between from_s and until_s, by the clock of the log, s. Throws ConfigError, or std::runtime_error if there are no poses.
 identification::FlightLog read_motion(const std::string& file, const std::string& vehicle,
                                       std::optional<double> from_s, std::optional<double> until_s);

@@ -1,12 +1,14 @@
 // The events of the page, from the topics of a vehicle.
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
 #include "swiftlet/control/types/mode.hpp"
-#include "swiftlet/ground/pages/recorded/flight_topics.hpp"
+#include "swiftlet/ground/pages/recorded/flight_pieces.hpp"
 #include "swiftlet/math/time.hpp"
 
 namespace swiftlet::pages {
@@ -24,107 +26,94 @@ constexpr std::array<const char*, 7> kPoseFaults = {"none",    "not tracked",   
                                                     "outlier", "swapped markers", "frozen"};
 
 template <std::size_t kCount>
-std::string name_of(const std::array<const char*, kCount>& names, double value) {
-  const bool known = value >= 0.0 && value < static_cast<double>(kCount);
-  return known ? names[static_cast<std::size_t>(value)] : fmt::format("{:g}", value);
+std::string name_of(const std::array<const char*, kCount>& names, int value) {
+  const bool known = value >= 0 && value < static_cast<int>(kCount);
+  return known ? names[static_cast<std::size_t>(value)] : std::to_string(value);
 }
 
 class Events {
  public:
-  Events(const FlightTopics& topics, std::int64_t zero_ns, FlightLog& flight)
-      : topics_(topics), zero_ns_(zero_ns), flight_(flight) {}
+  Events(const record::Flight& recorded, std::int64_t zero_ns, FlightLog& flight)
+      : recorded_(recorded), zero_ns_(zero_ns), flight_(flight) {}
 
   void add_modes() {
-    const TopicTable& status = topics_.status;
-    double mode = -1.0;
-    for (std::size_t i = 0; i < status.rows(); ++i) {
-      if (status.number("mode", i) == mode) continue;
-      mode = status.number("mode", i);
+    int mode = -1;
+    for (const record::StatusRow& status : recorded_.status) {
+      if (status.mode == mode) continue;
+      mode = status.mode;
       const std::string name = control::to_string(static_cast<control::Mode>(mode));
-      flight_.modes.push_back({time_of(status, i), name});
-      add(status, i, "mode", name + ": " + status.text("reason", i));
+      flight_.modes.push_back({time_at(status.stamp_ns), name});
+      add(status.stamp_ns, "mode", name + ": " + status.reason);
     }
-    add_sentences(status, "source_conflict", "vehicle");
-    add_sentences(status, "setpoint_refusal", "request");
-    add_sentences(topics_.vehicle, "fault", "vehicle");
+    add_sentences(recorded_.status, &record::StatusRow::source_conflict, "vehicle");
+    add_sentences(recorded_.status, &record::StatusRow::setpoint_refusal, "request");
+    add_sentences(recorded_.vehicle, &record::VehicleRow::fault, "vehicle");
   }
 
   void add_mission() {
-    const TopicTable& mission = topics_.mission;
     std::string last;
-    for (std::size_t i = 0; i < mission.rows(); ++i) {
-      const double state = mission.number("state", i);
-      if (state == 0.0) continue;
-      std::string text = "mission " + name_of(kMissionStates, state);
-      if (state == 1.0)
-        text += fmt::format(", item {:g} of {:g}", mission.number("item_index", i) + 1.0,
-                            mission.number("item_count", i));
-      if (!mission.text("reason", i).empty()) text += ": " + mission.text("reason", i);
-      if (text != last) add(mission, i, "mission", text, state == 3.0);
+    for (const record::MissionRow& mission : recorded_.mission) {
+      const auto state = static_cast<control::MissionState>(mission.state);
+      if (state == control::MissionState::kNone) continue;
+      std::string text = "mission " + name_of(kMissionStates, mission.state);
+      if (state == control::MissionState::kRunning)
+        text += fmt::format(", item {} of {}", mission.item_index + 1, mission.item_count);
+      if (!mission.reason.empty()) text += ": " + mission.reason;
+      if (text != last) add(mission.stamp_ns, "mission", text, state == control::MissionState::kAborted);
       last = text;
     }
   }
 
   void add_requests() {
-    for (std::size_t i = 0; i < topics_.requests.rows(); ++i) {
-      // A request has no stamp.
-      add_at(topics_.requests.log_ns[i] - topics_.log_minus_stamp_ns, "request",
-             "request: " + name_of(kRequests, topics_.requests.number("kind", i)));
-    }
-    const TopicTable& results = topics_.request_results;
-    for (std::size_t i = 0; i < results.rows(); ++i) {
-      const std::string reason = results.text("reason", i);
-      if (results.number("accepted", i) != 0.0) continue;
-      add_at(results.log_ns[i] - topics_.log_minus_stamp_ns, "request", "request refused: " + reason, true);
+    for (const record::RequestRow& request : recorded_.requests)
+      add(stamp_of(request), "request", "request: " + name_of(kRequests, request.kind));
+    for (const record::RequestRow& answer : recorded_.answers) {
+      if (!answer.accepted) add(stamp_of(answer), "request", "request refused: " + answer.reason, true);
     }
   }
 
   void add_estimator() {
-    const TopicTable& estimate = topics_.estimate;
-    double fault = 0.0;
-    double resets = estimate.rows() > 0 ? estimate.number("resets", 0) : 0.0;
-    for (std::size_t i = 0; i < estimate.rows(); ++i) {
-      if (estimate.number("resets", i) > resets)
-        add(estimate, i, "estimator", "estimate reset to the poses", true);
-      resets = estimate.number("resets", i);
-      const double now = estimate.number("pose_fault", i);
-      if (now != fault && now > 0.0)
-        add(estimate, i, "estimator", "pose refused: " + name_of(kPoseFaults, now), true);
-      fault = now;
+    int fault = 0;
+    double resets = recorded_.estimate.empty() ? 0.0 : recorded_.estimate.front().resets;
+    for (const record::EstimateRow& estimate : recorded_.estimate) {
+      if (estimate.resets > resets) add(estimate.stamp_ns, "estimator", "estimate reset to the poses", true);
+      resets = estimate.resets;
+      if (estimate.pose_fault != fault && estimate.pose_fault > 0)
+        add(estimate.stamp_ns, "estimator", "pose refused: " + name_of(kPoseFaults, estimate.pose_fault),
+            true);
+      fault = estimate.pose_fault;
     }
   }
 
  private:
-  double time_of(const TopicTable& table, std::size_t row) const { return time_at(table.stamp_ns[row]); }
   double time_at(std::int64_t stamp_ns) const {
     return static_cast<double>(stamp_ns - zero_ns_) / math::kNsPerS;
   }
-  void add(const TopicTable& table, std::size_t row, const char* kind, std::string text,
-           bool warning = false) {
-    add_at(table.stamp_ns[row], kind, std::move(text), warning);
+  std::int64_t stamp_of(const record::RequestRow& request) const {
+    return request.log_ns - recorded_.log_minus_stamp_ns;
   }
-  void add_at(std::int64_t stamp_ns, const char* kind, std::string text, bool warning = false) {
+  void add(std::int64_t stamp_ns, const char* kind, std::string text, bool warning = false) {
     flight_.events.push_back({time_at(stamp_ns), kind, std::move(text), warning});
   }
   // A text that appears or changes.
-  void add_sentences(const TopicTable& table, const char* column, const char* kind) {
+  template <class Row>
+  void add_sentences(const std::vector<Row>& rows, std::string Row::*text, const char* kind) {
     std::string last;
-    for (std::size_t i = 0; i < table.rows(); ++i) {
-      const std::string text = table.text(column, i);
-      if (text != last && !text.empty()) add(table, i, kind, text, true);
-      last = text;
+    for (const Row& row : rows) {
+      if (row.*text != last && !(row.*text).empty()) add(row.stamp_ns, kind, row.*text, true);
+      last = row.*text;
     }
   }
 
-  const FlightTopics& topics_;
+  const record::Flight& recorded_;
   const std::int64_t zero_ns_;
   FlightLog& flight_;
 };
 
 }  // namespace
 
-void add_events(const FlightTopics& topics, std::int64_t zero_ns, FlightLog& flight) {
-  Events events(topics, zero_ns, flight);
+void add_events(const record::Flight& recorded, const RecordedClock& clock, FlightLog& flight) {
+  Events events(recorded, clock.zero_ns, flight);
   events.add_modes();
   events.add_mission();
   events.add_requests();

@@ -7,7 +7,9 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/ground/pages/recorded/flight_topics.hpp"
+#include "swiftlet/ground/pages/recorded/flight_pieces.hpp"
+#include "swiftlet/record/evaluation.hpp"
+#include "swiftlet/record/file/flight_reader.hpp"
 
 namespace swiftlet::pages {
 namespace {
@@ -24,12 +26,6 @@ std::vector<double> values_of(const FlightLog& flight, const char* table, const 
   std::copy_if(column->second.begin(), column->second.end(), std::back_inserter(values),
                [](double value) { return std::isfinite(value); });
   return values;
-}
-
-double rms(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
 double largest(const std::vector<double>& values) {
@@ -61,17 +57,15 @@ double flying_time_s(const FlightLog& flight) {
 }
 
 // The share of the commands with running rotors in which a rotor is at its limit.
-std::string saturation(const FlightTopics& topics) {
+std::string saturation(const record::Flight& recorded) {
   std::size_t running = 0;
   std::size_t saturated = 0;
-  for (std::size_t i = 0; i < topics.command.rows(); ++i) {
-    if (topics.command.number("rotor_state", i) == 0.0) continue;
+  for (const plant::ActuatorCommand& command : recorded.commands) {
+    if (command.rotor_state == plant::RotorState::kOff) continue;
     ++running;
-    bool limited = false;
-    for (int k = 0; k < topics.command.number("rotor_count", i); ++k) {
-      const double throttle = topics.command.number("throttle[" + std::to_string(k) + "]", i);
-      limited = limited || throttle <= 0.0 || throttle >= 1.0;
-    }
+    const auto end = command.throttle.begin() + command.rotor_count;
+    const bool limited = std::any_of(command.throttle.begin(), end,
+                                     [](double throttle) { return throttle <= 0.0 || throttle >= 1.0; });
     saturated += limited ? 1 : 0;
   }
   if (running == 0) return kMissing;
@@ -86,12 +80,10 @@ std::string battery(const FlightLog& flight) {
                      *std::min_element(voltage.begin(), voltage.end()));
 }
 
-std::string poses(const FlightTopics& topics) {
-  if (topics.estimate.rows() == 0) return kMissing;
-  const std::size_t last = topics.estimate.rows() - 1;
-  return fmt::format(
-      "{:.0f} of {:.0f}", topics.estimate.number("poses_refused", last),
-      topics.estimate.number("poses_refused", last) + topics.estimate.number("poses_accepted", last));
+std::string poses(const record::Flight& recorded) {
+  if (recorded.estimate.empty()) return kMissing;
+  const record::EstimateRow& last = recorded.estimate.back();
+  return fmt::format("{:.0f} of {:.0f}", last.poses_refused, last.poses_refused + last.poses_accepted);
 }
 
 // The share of the samples of a deviation within its bound, over all axes.
@@ -117,40 +109,46 @@ std::string within_bounds(const FlightLog& flight, const char* table, const char
 }
 
 std::string counts(const mcap::Reader& file) {
-  for (const mcap::Metadata& metadata : file.metadata()) {
-    const auto lost = metadata.values.find("lost");
-    const auto dropped = metadata.values.find("dropped");
-    if (metadata.name == "swiftlet/counts" && lost != metadata.values.end() &&
-        dropped != metadata.values.end())
-      return lost->second + " lost, " + dropped->second + " dropped";
-  }
-  return "not counted: the recorder was killed";
+  const auto counted = record::metadata_of(file, "swiftlet/counts");
+  const auto lost = counted.find("lost");
+  const auto dropped = counted.find("dropped");
+  if (lost == counted.end() || dropped == counted.end()) return "not counted: the recorder was killed";
+  return lost->second + " lost, " + dropped->second + " dropped";
+}
+
+// Of the ground truth, or of the estimate if nobody knows the true position.
+record::TrackingErrors errors_of(const record::Flight& recorded) {
+  const record::Evaluation flown = record::evaluate(recorded);
+  if (!recorded.truth.empty() || !flown.window) return flown.errors;
+  return record::tracking_errors(recorded.estimate, recorded.reference, *flown.window);
+}
+
+std::string millimetres(const record::TrackingErrors& errors, double metres) {
+  return errors.matched == 0 ? kMissing : fmt::format("{:.2f} mm", 1e3 * metres);
 }
 
 }  // namespace
 
-void add_summary(const mcap::Reader& file, const FlightTopics& topics, FlightLog& flight) {
+void add_summary(const mcap::Reader& file, const record::Flight& recorded, FlightLog& flight) {
   auto& rows = flight.summary;
-  const std::size_t infos = topics.vehicle.rows();
+  const record::TrackingErrors errors = errors_of(recorded);
   const std::vector<double> latency = values_of(flight, "latency", "imu_to_command");
   rows.emplace_back("vehicle",
-                    flight.vehicle + (infos == 0 ? "" : ", " + topics.vehicle.text("name", infos - 1)));
-  for (const mcap::Metadata& metadata : file.metadata()) {
-    if (metadata.name != "swiftlet/flight") continue;
-    for (const char* const key : {"missions", "control", "simulation", "clock", "seed"}) {
-      const auto found = metadata.values.find(key);
-      if (found != metadata.values.end()) rows.emplace_back(key, found->second);
-    }
+                    flight.vehicle + (recorded.vehicle.empty() ? "" : ", " + recorded.vehicle.back().name));
+  const auto metadata = record::metadata_of(file, "swiftlet/flight");
+  for (const char* const key : {"missions", "control", "simulation", "clock", "seed"}) {
+    const auto found = metadata.find(key);
+    if (found != metadata.end()) rows.emplace_back(key, found->second);
   }
   rows.emplace_back("recorded", fmt::format("{:.1f} s", flight.end_s - flight.start_s));
   rows.emplace_back("in flight", fmt::format("{:.1f} s", flying_time_s(flight)));
   rows.emplace_back("position from", flight.has_truth ? "ground truth" : "estimate");
-  rows.emplace_back("error 3-D, RMS", number(values_of(flight, "reference", "error_3d"), rms, "mm", 2));
-  rows.emplace_back("error 3-D, peak", number(values_of(flight, "reference", "error_3d"), largest, "mm", 2));
+  rows.emplace_back("error 3-D, RMS", millimetres(errors, errors.rms_3d_m));
+  rows.emplace_back("error 3-D, peak", millimetres(errors, errors.peak_3d_m));
   rows.emplace_back("top speed", number(values_of(flight, "path", "speed"), largest, "m/s", 2));
   rows.emplace_back("battery", battery(flight));
-  rows.emplace_back("rotors at a limit", saturation(topics));
-  rows.emplace_back("poses refused", poses(topics));
+  rows.emplace_back("rotors at a limit", saturation(recorded));
+  rows.emplace_back("poses refused", poses(recorded));
   rows.emplace_back("position estimate within 3 σ",
                     within_bounds(flight, "estimate", "deviation_", {"north", "east", "down"}));
   rows.emplace_back("position innovation within 3 σ",

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "swiftlet/ground/recording/process_log.hpp"
 #include "swiftlet/math/time.hpp"
+#include "swiftlet/record/file/process_log.hpp"
 
 namespace swiftlet::pages {
 namespace {
@@ -16,7 +16,7 @@ constexpr double kAround_s = 10.0;  // before the first message and after the la
 void add_process_logs(const std::filesystem::path& folder, FlightLog& flight) {
   if (flight.wall_start_s == 0.0) return;
   const auto zero_ns = static_cast<std::int64_t>(std::llround(flight.wall_start_s * math::kNsPerS));
-  for (const ground::ProcessLogLine& line : ground::process_log_lines(folder, zero_ns)) {
+  for (const record::ProcessLogLine& line : record::process_log_lines(folder, zero_ns)) {
     const double time_s = static_cast<double>(line.time_ns - zero_ns) / math::kNsPerS;
     if (time_s < flight.start_s - kAround_s || time_s > flight.end_s + kAround_s) continue;
     const bool warning = line.level != "info" && line.level != "debug";

@@ -2,35 +2,21 @@
 
 #include <algorithm>
 #include <limits>
-#include <set>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "swiftlet/ground/pages/recorded/flight_topics.hpp"
-#include "swiftlet/ground/recording/log_table.hpp"
+#include "swiftlet/ground/pages/recorded/flight_pieces.hpp"
 #include "swiftlet/io/config_error.hpp"
-#include "swiftlet/io/natural_order.hpp"
+#include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/flat_yaml.hpp"
 #include "swiftlet/math/time.hpp"
+#include "swiftlet/record/file/flight_reader.hpp"
+#include "swiftlet/record/mcap/attached_file.hpp"
 
 namespace swiftlet::pages {
 namespace {
-
-// Those whose topics /<vehicle>/estimate or /<vehicle>/ground_truth have messages.
-std::vector<std::string> vehicles_of(const mcap::Reader& file) {
-  std::set<std::string> vehicles;
-  for (const auto& [id, channel] : file.channels()) {
-    const std::size_t end = channel.topic.find('/', 1);
-    if (end == std::string::npos) continue;
-    const std::string topic = channel.topic.substr(end + 1);
-    const auto count = file.statistics().messages_by_channel.find(id);
-    const bool empty = count == file.statistics().messages_by_channel.end() || count->second == 0;
-    if (!empty && (topic == "estimate" || topic == "ground_truth"))
-      vehicles.insert(channel.topic.substr(1, end - 1));
-  }
-  std::vector<std::string> names(vehicles.begin(), vehicles.end());
-  std::sort(names.begin(), names.end(), runtime::comes_before);
-  return names;
-}
 
 void set_range(FlightLog& flight) {
   flight.start_s = std::numeric_limits<double>::max();
@@ -42,33 +28,57 @@ void set_range(FlightLog& flight) {
   }
 }
 
-FlightLog flight_of(const mcap::Reader& file, const std::string& vehicle) {
-  const FlightTopics topics = read_flight_topics(file, vehicle);
-  const std::int64_t zero_ns = zero_of(topics);
+std::int64_t zero_of(const record::Flight& recorded) {
+  const auto flying = std::find_if(recorded.status.begin(), recorded.status.end(),
+                                   [](const record::StatusRow& row) { return is_flying(row.mode); });
+  if (flying != recorded.status.end()) return flying->stamp_ns;
+  return recorded.estimate.empty() ? recorded.truth.front().stamp_ns : recorded.estimate.front().stamp_ns;
+}
+
+// Of the control settings that the recorder attaches.
+PoseDeviation pose_deviation(const mcap::Reader& file, const std::string& vehicle) {
+  PoseDeviation deviation;
+  const std::optional<std::string> settings = mcap::attached_file(file, vehicle, "control.yaml");
+  if (!settings) return deviation;
+  for (const auto& [key, value] : runtime::flatten_yaml(*settings, file.name() + "/control.yaml")) {
+    if (key == "estimator.mocap_position_m")
+      deviation.position_m = runtime::parse_number(value).value_or(0.0);
+    if (key == "estimator.mocap_orientation_rad")
+      deviation.rotation_rad = runtime::parse_number(value).value_or(0.0);
+  }
+  return deviation;
+}
+
+FlightLog flight_of(const mcap::Reader& file, const std::string& vehicle, const record::Flight& recorded) {
+  const auto recorder = record::metadata_of(file, "swiftlet/recorder");
+  const auto time = recorder.find("time");
+  const RecordedClock clock{zero_of(recorded), time != recorder.end() && time->second == "vehicle"};
   FlightLog flight;
   flight.vehicle = vehicle;
-  flight.has_truth = topics.truth.rows() > 0;
-  if (!topics.simulated_time)
-    flight.wall_start_s = static_cast<double>(zero_ns + topics.log_minus_stamp_ns) / math::kNsPerS;
-  add_signals(topics, zero_ns, flight);
-  add_events(topics, zero_ns, flight);
+  flight.has_truth = !recorded.truth.empty();
+  if (!clock.simulated_time)
+    flight.wall_start_s = static_cast<double>(clock.zero_ns + recorded.log_minus_stamp_ns) / math::kNsPerS;
+  add_signals(recorded, clock, pose_deviation(file, vehicle), flight);
+  add_events(recorded, clock, flight);
   set_range(flight);
-  add_summary(file, topics, flight);
+  add_summary(file, recorded, flight);
   return flight;
 }
 
 }  // namespace
 
 std::vector<FlightLog> flights_in(const mcap::Reader& file, const std::string& name) {
-  const std::vector<std::string> vehicles = vehicles_of(file);
-  if (vehicles.empty())
+  std::vector<FlightLog> flights;
+  const std::map<std::string, record::Flight> recorded = record::read_flights(file);
+  for (const std::string& vehicle : record::recorded_vehicles(file)) {
+    const record::Flight& flight = recorded.at(vehicle);
+    if (!flight.truth.empty() || !flight.estimate.empty())
+      flights.push_back(flight_of(file, vehicle, flight));
+  }
+  if (flights.empty())
     throw runtime::ConfigError(file.name(), 0, "",
                                "holds no flight: no topic /<vehicle>/estimate or ground_truth");
-  std::vector<FlightLog> flights;
-  for (const std::string& vehicle : vehicles) {
-    flights.push_back(flight_of(file, vehicle));
-    flights.back().name = vehicles.size() == 1 ? name : name + " " + vehicle;
-  }
+  for (FlightLog& flight : flights) flight.name = flights.size() == 1 ? name : name + " " + flight.vehicle;
   return flights;
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "swiftlet/ground/pages/flight_log.hpp"
-#include "swiftlet/io/mcap/reader.hpp"
+#include "swiftlet/record/mcap/reader.hpp"
 
 namespace swiftlet::pages {
 

@@ -10,8 +10,7 @@
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
-#include "swiftlet/recording/flight_window.hpp"
-#include "swiftlet/recording/tracking.hpp"
+#include "swiftlet/record/evaluation.hpp"
 #include "swiftlet/simulation/simulated_flight.hpp"
 #include "tests/support/malloc_guard.hpp"
 #include "tests/support/paths.hpp"
@@ -58,13 +57,11 @@ struct Flown : ground::SimulatedFlight {
 
 Flown fly(ClosedLoop& loop, const Mission& mission) {
   constexpr double kPlannedS = 100.0;
-  constexpr std::size_t kCapacity = 200'000;
-  ground::FlightRecord record(kCapacity);
-  Flown flown{ground::fly(loop, mission, kPlannedS, {&record, nullptr, {}})};
-  if (const auto window = ground::mission_window(record, mission.id, mission)) {
-    flown.rms_3d_m = ground::tracking_errors(record.truth, record.reference, *window).rms_3d_m;
-    flown.duration_s = window->duration_s();
-  }
+  record::Flight flight;
+  Flown flown{ground::fly(loop, mission, kPlannedS, {&flight, nullptr, {}})};
+  const record::Evaluation result = record::evaluate(flight);
+  flown.rms_3d_m = result.errors.rms_3d_m;
+  flown.duration_s = result.window ? result.window->duration_s() : 0.0;
   return flown;
 }
 

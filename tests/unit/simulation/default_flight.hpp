@@ -8,8 +8,7 @@
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
-#include "swiftlet/recording/flight_window.hpp"
-#include "swiftlet/recording/tracking.hpp"
+#include "swiftlet/record/evaluation.hpp"
 #include "swiftlet/simulation/simulated_flight.hpp"
 
 namespace swiftlet::ground {
@@ -42,17 +41,16 @@ class DefaultFlight : public testing::Test {
   static control::Mode mode(const ClosedLoop& loop) { return loop.controller.status().mode; }
 
   // Tracking errors from take-off to the start of the landing.
-  static TrackingErrors fly_square(ClosedLoop& loop, const control::ControlSettings& settings) {
+  static record::TrackingErrors fly_square(ClosedLoop& loop, const control::ControlSettings& settings) {
     control::Mission mission =
         load_mission_file(runtime::find_config("missions/square.yaml"), settings.limits).mission;
     mission.id = 1;
-    FlightRecord record(60'000);
+    record::Flight flight;
     const SimulatedFlight done =
-        fly(loop, mission, planned_duration_s(mission, settings.limits), {&record, nullptr, {}});
+        fly(loop, mission, planned_duration_s(mission, settings.limits), {&flight, nullptr, {}});
     EXPECT_TRUE(done.completed) << done.reason;
     EXPECT_LT(loop.plant.state().position_ned.norm(), 0.1) << "landed elsewhere";
-    return tracking_errors(record.truth, record.reference,
-                           mission_window(record, mission.id, mission).value());
+    return record::evaluate(flight).errors;
   }
 
   plant::Vehicle vehicle_ = runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml"));

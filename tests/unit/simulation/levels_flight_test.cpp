@@ -18,16 +18,16 @@ class Levels : public DefaultFlight, public testing::WithParamInterface<ControlL
   Levels() { world_.control_levels = GetParam(); }
 
   bool own_position_loop() const { return GetParam() == ControlLevel::kTrajectory; }
-  TrackingErrors fly_square_with(const plant::Vehicle& vehicle) const {
+  record::TrackingErrors fly_square_with(const plant::Vehicle& vehicle) const {
     ClosedLoop loop(vehicle, world_, settings_, 1);
-    const TrackingErrors errors = fly_square(loop, settings_);
+    const record::TrackingErrors errors = fly_square(loop, settings_);
     EXPECT_EQ(plant::level_of(loop.sent), GetParam());
     return errors;
   }
 };
 
 TEST_P(Levels, TheSquareIsTracked) {
-  const TrackingErrors errors = fly_square_with(vehicle_);
+  const record::TrackingErrors errors = fly_square_with(vehicle_);
   EXPECT_LT(errors.rms_3d_m, own_position_loop() ? 0.05 : 0.01);
   EXPECT_LT(errors.peak_3d_m, own_position_loop() ? 0.15 : 0.05);
 }
@@ -246,7 +246,7 @@ TEST_P(LevelsOverARadio, TrackTheSquare) {
   const plant::Vehicle crazyflie = runtime::load_vehicle(runtime::find_config("vehicles/crazyflie2.yaml"));
   for (const double delay_s : {0.01, 0.04}) {
     world_.radio = {delay_s, 0.004, 0.02};
-    const TrackingErrors errors = fly_square_with(crazyflie);
+    const record::TrackingErrors errors = fly_square_with(crazyflie);
     EXPECT_LT(errors.rms_3d_m, own_position_loop() ? 0.05 : 0.01) << delay_s;
   }
 }

@@ -73,7 +73,7 @@ TEST_P(OdometrySquare, IsTracked) {
   world_.control_levels = level;
   settings_.estimator.odometry.use = use;
   ClosedLoop loop(vehicle_, world_, settings_, 1);
-  const TrackingErrors errors = fly_square(loop, settings_);
+  const record::TrackingErrors errors = fly_square(loop, settings_);
   EXPECT_EQ(plant::level_of(loop.sent), level);
   EXPECT_LT(errors.rms_3d_m, 0.01);
   EXPECT_EQ(odometry(loop).in_force, use == OdometryUse::kVehicle);
@@ -100,7 +100,7 @@ TEST_P(OdometryDrift, DoesNotShowInTheSquare) {
   world_.odometry.position_drift_m = 0.5;
   world_.odometry.heading_drift_rad = 0.2;
   ClosedLoop loop(vehicle_, world_, settings_, 1);
-  const TrackingErrors errors = fly_square(loop, settings_);
+  const record::TrackingErrors errors = fly_square(loop, settings_);
   EXPECT_LT(errors.rms_3d_m, 0.02);
   RecordProperty("rms_mm", std::to_string(1e3 * errors.rms_3d_m));
 }

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "swiftlet/ground/recording/log_diff.hpp"
-#include "swiftlet/io/mcap/reader.hpp"
+#include "swiftlet/record/mcap/reader.hpp"
 
 namespace swiftlet::ground {
 

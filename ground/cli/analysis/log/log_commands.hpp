@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "swiftlet/ground/command_line/command.hpp"
-#include "swiftlet/io/mcap/reader.hpp"
+#include "swiftlet/record/mcap/reader.hpp"
 
 namespace swiftlet::ground {
 
@@ -24,6 +24,8 @@ Command add_log_replay_command(runtime::CommandLine log);
 struct TimeRange {
   double from_s = 0.0;
   double to_s = 1e12;
+
+  bool is_given() const { return from_s != 0.0 || to_s != 1e12; }
 };
 void add_time_range_options(runtime::CommandLine app, TimeRange& range);
 mcap::Selection selection_of(const TimeRange& range, const mcap::Reader& file);

@@ -1,15 +1,18 @@
 #include <memory>
 
 #include "swiftlet/ground/cli/analysis/log/log_commands.hpp"
+#include "swiftlet/ground/recording/flight_csv.hpp"
 #include "swiftlet/ground/recording/log_table.hpp"
 #include "swiftlet/io/csv_writer.hpp"
+#include "swiftlet/record/file/flight_reader.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
 struct LogCsvOptions {
   std::string file;
-  std::string topic;
+  std::string topic;    // empty: the flight
+  std::string vehicle;  // of the flight; empty: the only one
   std::string output;
   bool replace = false;
   TimeRange range;
@@ -28,8 +31,19 @@ void add_cell(runtime::CsvWriter& csv, const mcap::Value& value) {
 }
 
 int csv(const LogCsvOptions& options) {
-  require_new(options.output, options.replace, {options.file});
-  const mcap::Reader file(options.file);
+  const record::FlightFile from = record::flight_file(options.file);
+  const std::string name = from.file.string();
+  require_new(options.output, options.replace, {name});
+  const mcap::Reader file(name);
+  if (options.topic.empty()) {
+    if (options.range.is_given())
+      throw InputError("--from, --to: are of the messages of a topic; name a TOPIC");
+    write_flight_csv(
+        options.output,
+        record::read_flight(
+            file, record::recorded_vehicle(file, options.vehicle.empty() ? from.vehicle : options.vehicle)));
+    return kDone;
+  }
   std::vector<std::string> names = {"log_time_ns", "publish_time_ns"};
   for (const mcap::Column& column : columns_of(file, options.topic)) names.push_back(column.name);
   runtime::CsvWriter csv(options.output, names);
@@ -48,15 +62,21 @@ int csv(const LogCsvOptions& options) {
 Command add_log_csv_command(runtime::CommandLine log) {
   const auto options = std::make_shared<LogCsvOptions>();
   const runtime::CommandLine app =
-      log.add_subcommand("csv", "Write the messages of a topic as a CSV table, one row each");
-  app.add_option("file", options->file, "MCAP file").type_name("FILE").required();
-  app.add_option("topic", options->topic, "the topic").type_name("TOPIC").required();
+      log.add_subcommand("csv", "Write a flight, or the messages of a topic, as a CSV table");
+  app.add_option("file", options->file, "MCAP file, or the record of a flight").type_name("FILE").required();
+  app.add_option("topic", options->topic,
+                 "the topic, of which each message is a row; default: ground truth, reference, estimate and "
+                 "rotors of "
+                 "the flight at 100 Hz, which `swiftlet fly` flies again")
+      .type_name("TOPIC");
+  app.add_option("--vehicle-name", options->vehicle, "of the vehicles in the file; default: the only one");
   app.add_option("-o,--output", options->output, "the file to write").type_name("FILE").required();
   app.add_flag("--replace", options->replace, "overwrite the file");
   add_time_range_options(app, options->range);
   app.footer(
       "Numbers have the shortest form that reads back as the same value. Of a sequence only its length is "
-      "written.\n\nexample: swiftlet log csv flight.mcap /kl1/estimate -o estimate.csv");
+      "written.\n\nexample: swiftlet log csv flights/20261121-093909-square -o square.csv\n"
+      "example: swiftlet log csv flight.mcap /kl1/estimate -o estimate.csv");
   return {app, [options] { return csv(*options); }};
 }
 

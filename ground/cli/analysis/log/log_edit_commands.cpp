@@ -6,7 +6,7 @@
 
 #include "swiftlet/ground/cli/analysis/log/log_commands.hpp"
 #include "swiftlet/ground/cli/compression_option.hpp"
-#include "swiftlet/io/mcap/merge.hpp"
+#include "swiftlet/record/mcap/merge.hpp"
 
 namespace swiftlet::ground {
 namespace {

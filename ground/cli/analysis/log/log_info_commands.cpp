@@ -9,7 +9,7 @@
 
 #include "swiftlet/ground/cli/analysis/log/log_commands.hpp"
 #include "swiftlet/ground/recording/log_table.hpp"
-#include "swiftlet/io/mcap/reader.hpp"
+#include "swiftlet/record/mcap/reader.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -5,7 +5,7 @@
 #include "swiftlet/ground/cli/analysis/log/log_commands.hpp"
 #include "swiftlet/ground/recording/log_table.hpp"
 #include "swiftlet/ground/recording/npz_writer.hpp"
-#include "swiftlet/io/mcap/signal_arrays.hpp"
+#include "swiftlet/record/mcap/signal_arrays.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -14,7 +14,7 @@
 #include "swiftlet/ground/recording/log_replay.hpp"
 #include "swiftlet/ground/terminal/progress_line.hpp"
 #include "swiftlet/io/configuration.hpp"
-#include "swiftlet/io/logs/recorded_flight.hpp"
+#include "swiftlet/record/file/flight_reader.hpp"
 #include "swiftlet/services/dds/discovery/flight_reservation.hpp"
 #include "swiftlet/services/dds/vehicle_list.hpp"
 
@@ -37,8 +37,8 @@ struct LogReplayOptions {
 
 // By the vehicles of the file: the names under which they are published.
 std::map<std::string, std::string> names_of(const LogReplayOptions& options, const mcap::Reader& file) {
-  const std::vector<std::string> recorded = recorded_vehicles(file);
-  if (recorded.empty()) (void)recorded_vehicle(file, "");  // says so
+  const std::vector<std::string> recorded = record::recorded_vehicles(file);
+  if (recorded.empty()) (void)record::recorded_vehicle(file, "");  // says so
   const std::vector<std::string> names =
       options.vehicle_names.empty() ? recorded : comms::vehicles_of_list(options.vehicle_names);
   if (names.size() != recorded.size())
@@ -132,7 +132,7 @@ nlohmann::ordered_json to_json(const LogReplayOptions& options, const ControlRep
 
 int into_control(const LogReplayOptions& options, const mcap::Reader& file) {
   ControlReplaySettings settings;
-  settings.vehicle = recorded_vehicle(file, options.vehicle_names);
+  settings.vehicle = record::recorded_vehicle(file, options.vehicle_names);
   if (!options.vehicle.empty())
     settings.vehicle_file = runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle);
   if (!options.control.empty())

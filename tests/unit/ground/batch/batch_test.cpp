@@ -75,8 +75,8 @@ class BatchTest : public testing::Test {
     how.seed = seed;
     const LaunchConfiguration plan = plan_flight(how);
     ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
-    FlightRecord record(plan.record_capacity());
-    return fly_in_process(loop, plan, plan.seed, record, nullptr, never).report;
+    record::Flight flight;
+    return fly_in_process(loop, plan, plan.seed, flight, nullptr, never);
   }
 
   void expect_failures_to_repeat(const std::string& parameters, const BatchReport& report) const {

@@ -25,8 +25,8 @@ class ForeignFlight : public testing::Test {
   }
   FlightReport fly() {
     ClosedLoop loop = closed_loop(plan_, draw(plan_, plan_.seed).world, plan_.seed);
-    FlightRecord record(plan_.record_capacity());
-    return fly_in_process(loop, plan_, plan_.seed, record, nullptr, {}).report;
+    record::Flight flight;
+    return fly_in_process(loop, plan_, plan_.seed, flight, nullptr, {});
   }
   // The path is feasible down to the low battery voltage.
   void expect_feasible() const {

@@ -48,8 +48,8 @@ class LaunchConfigurationTest : public testing::Test {
   }
   static FlightReport fly(const LaunchConfiguration& plan) {
     ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
-    FlightRecord record(plan.record_capacity());
-    return fly_in_process(loop, plan, plan.seed, record, nullptr, {}).report;
+    record::Flight flight;
+    return fly_in_process(loop, plan, plan.seed, flight, nullptr, {});
   }
 
   tests::TemporaryFolder folder_;

@@ -179,12 +179,12 @@ TEST(RecordSpace, GrowsWithDurationRateAndFiles) {
   LaunchConfiguration plan;
   plan.planned_duration_s = 60.0;
   plan.simulation.imu.rate_hz = 500;
-  const std::uintmax_t telemetry = plan.record_bytes();
-  plan.sensors = true;
-  const std::uintmax_t sensors = plan.record_bytes();
-  EXPECT_GT(sensors, telemetry + std::uintmax_t{60} * 500 * 200);
+  const std::uintmax_t messages = plan.record_bytes();
+  plan.trace = true;
+  const std::uintmax_t traced = plan.record_bytes();
+  EXPECT_GT(traced, messages + std::uintmax_t{60} * 500 * 200);
   plan.simulation.imu.rate_hz = 1000;
-  EXPECT_GT(plan.record_bytes(), sensors + std::uintmax_t{60} * 500 * 200);
+  EXPECT_GT(plan.record_bytes(), traced + std::uintmax_t{60} * 500 * 200);
 }
 
 }  // namespace swiftlet::ground::record_folder_test

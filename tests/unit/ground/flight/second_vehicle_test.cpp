@@ -30,8 +30,8 @@ FlightReport fly(const std::string& mission, const std::string& control) {
   options.record = folder.path().string();
   const LaunchConfiguration plan = plan_flight(options);
   ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
-  FlightRecord record(plan.record_capacity());
-  return fly_in_process(loop, plan, plan.seed, record, nullptr, {}).report;
+  record::Flight flight;
+  return fly_in_process(loop, plan, plan.seed, flight, nullptr, {});
 }
 
 TEST(SecondVehicle, FliesTheSquare) {

@@ -63,8 +63,8 @@ LaunchConfiguration plan_of(const std::string& vehicle, const tests::TemporaryFo
 
 FlightReport fly(const LaunchConfiguration& plan, const plant::Vehicle& truth, std::uint64_t seed) {
   ClosedLoop loop(truth, plan.vehicle, plan.simulation, plan.control, seed);
-  FlightRecord record(plan.record_capacity());
-  return fly_in_process(loop, plan, seed, record, nullptr, {}).report;
+  record::Flight flight;
+  return fly_in_process(loop, plan, seed, flight, nullptr, {});
 }
 
 class BenchToFlight : public testing::TestWithParam<std::uint64_t> {

@@ -11,8 +11,8 @@
 
 #include "swiftlet/ground/flight/in_process_flight.hpp"
 #include "swiftlet/ground/flight/launch_configuration.hpp"
+#include "swiftlet/ground/logs/flight_log_files.hpp"
 #include "swiftlet/identification/flight/flight.hpp"
-#include "swiftlet/io/logs/flight_log_files.hpp"
 #include "swiftlet/math/random.hpp"
 #include "swiftlet/simulation/simulated_flight.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -45,13 +45,13 @@ inline plant::Vehicle perturbed(const plant::Vehicle& nominal, std::uint64_t see
 inline identification::FlightLog flown(const LaunchConfiguration& plan, const plant::Vehicle& truth,
                                        std::uint64_t seed) {
   ClosedLoop loop(truth, plan.vehicle, plan.simulation, plan.control, seed);
-  SensorRecord record(plan.record_capacity());
-  loop.sensors = &record;
+  record::Flight recorded;
+  loop.sensors = &recorded;
   control::Mission mission = plan.mission.mission;
   mission.id = 1;
   const SimulatedFlight flight = fly(loop, mission, plan.planned_duration_s, {});
   EXPECT_TRUE(flight.completed) << flight.reason;
-  return flight_log_of(record);
+  return flight_log_of(recorded);
 }
 
 // Delays the commands to the motors.

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/io/config_error.hpp"
-#include "swiftlet/io/mcap/writer.hpp"
+#include "swiftlet/record/mcap/writer.hpp"
 #include "swiftlet/services/dds/payload.hpp"
 #include "swiftlet/services/messages/schemas.hpp"
 #include "tests/support/temporary_folder.hpp"

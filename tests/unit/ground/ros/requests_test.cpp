@@ -6,14 +6,14 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/ground/recording/cdr_writer.hpp"
+#include "swiftlet/record/file/cdr_writer.hpp"
 
 namespace swiftlet::ros::requests_test {
 
 constexpr double kQuarterTurn = 1.5707963267948966;
 
 Bytes pose(const std::string& frame, const Eigen::Vector3d& enu, double yaw_enu, double length = 1.0) {
-  ground::CdrWriter out;
+  record::CdrWriter out;
   out.put(std::int32_t{12}).put(std::uint32_t{34}).text(frame);
   out.put(enu.x()).put(enu.y()).put(enu.z());
   out.put(0.0).put(0.0).put(length * std::sin(yaw_enu / 2.0)).put(length * std::cos(yaw_enu / 2.0));
@@ -21,7 +21,7 @@ Bytes pose(const std::string& frame, const Eigen::Vector3d& enu, double yaw_enu,
 }
 
 Bytes twist(const Eigen::Vector3d& linear, const Eigen::Vector3d& angular) {
-  ground::CdrWriter out;
+  record::CdrWriter out;
   for (const Eigen::Vector3d& v : {linear, angular}) out.put(v.x()).put(v.y()).put(v.z());
   return out.take();
 }

@@ -210,7 +210,7 @@ TEST(FlightTable, IsRefusedWithoutAFlight) {
       "s.csv: has no reference between a take-off and a landing: it is never at rest at least 0.2 m above "
       "the ground");
   EXPECT_EQ(refusal([] { samples("t,mode,ref_px\n0,4,1\n"); }),
-            "s.csv:1: header: has no column ref_py, which the flight.csv of a record has");
+            "s.csv:1: header: has no column ref_py, which the table of a flight has");
 }
 
 class BadSampledCsv : public testing::TestWithParam<Fault> {};

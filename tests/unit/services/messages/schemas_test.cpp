@@ -15,7 +15,7 @@
 #include "swiftlet_msgs/msg/MissionPubSubTypes.h"
 #include "swiftlet_msgs/msg/ReferencePubSubTypes.h"
 
-#include "swiftlet/io/mcap/message_decoder.hpp"
+#include "swiftlet/record/mcap/message_decoder.hpp"
 #include "swiftlet/services/messages/all_topics.hpp"
 #include "swiftlet/services/messages/topic_roles.hpp"
 #include "tests/support/serialization.hpp"

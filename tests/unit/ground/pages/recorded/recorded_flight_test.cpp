@@ -5,10 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/ground/pages/flight_page.hpp"
-#include "swiftlet/ground/pages/recorded/flight_topics.hpp"
-#include "swiftlet/ground/recording/cdr_writer.hpp"
 #include "swiftlet/io/config_error.hpp"
-#include "swiftlet/io/mcap/writer.hpp"
+#include "swiftlet/record/file/cdr_writer.hpp"
+#include "swiftlet/record/mcap/writer.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::pages::recorded_flight_test {
@@ -25,11 +24,11 @@ class FlightFile {
   FlightFile& operator=(const FlightFile&) = delete;
 
   void add(const std::string& topic, const std::string& definition, std::int64_t stamp_ns,
-           ground::CdrWriter payload) {
+           record::CdrWriter payload) {
     auto channel = channels_.find(topic);
     if (channel == channels_.end()) {
       const std::uint16_t schema =
-          file_.add_schema("test/msg/T" + std::to_string(channels_.size()), "ros2msg", definition);
+          file_.add_schema("swiftlet_msgs/msg/T" + std::to_string(channels_.size()), "ros2msg", definition);
       channel = channels_.emplace(topic, file_.add_channel(topic, schema, "cdr", {})).first;
     }
     const mcap::Bytes bytes = payload.take();
@@ -52,29 +51,39 @@ class FlightFile {
     }
   }
 
+  void add_pose(const std::string& vehicle, std::int64_t stamp_ns) {
+    record::CdrWriter payload;
+    payload.put(stamp_ns).put(std::uint64_t{1}).put(std::uint64_t{1});
+    for (const double value : {0.0, 0.0, -0.05, 1.0, 0.0, 0.0, 0.0}) payload.put(value);
+    add(vehicle + "/mocap_pose",
+        "int64 stamp_ns\nuint64 sequence_number\nuint64 tracked\nfloat64[3] position_ned\n"
+        "float64[4] q_ned_from_frd\n",
+        stamp_ns, std::move(payload));
+  }
+
   void attach(const std::string& name, const std::string& text) {
     file_.write(mcap::Attachment{0, 0, name, "application/yaml", text});
   }
 
   void add_mode(const std::string& vehicle, std::int64_t stamp_ns, std::uint8_t mode,
                 const std::string& reason) {
-    ground::CdrWriter payload;
+    record::CdrWriter payload;
     payload.put(stamp_ns).put(mode).text(reason);
     add(vehicle + "/control_status", "int64 stamp_ns\nuint8 mode\nstring reason\n", stamp_ns,
         std::move(payload));
   }
 
  private:
-  static ground::CdrWriter estimate(std::int64_t stamp_ns, double height) {
-    ground::CdrWriter payload;
+  static record::CdrWriter estimate(std::int64_t stamp_ns, double height) {
+    record::CdrWriter payload;
     payload.put(stamp_ns);
     for (const double value : {0.0, 0.0, -height, 0.0, 0.0, -1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0})
       payload.put(value);
     for (int i = 0; i < 15; ++i) payload.put(1e-3);
     return payload;
   }
-  static ground::CdrWriter reference(std::int64_t stamp_ns, double height) {
-    ground::CdrWriter payload;
+  static record::CdrWriter reference(std::int64_t stamp_ns, double height) {
+    record::CdrWriter payload;
     payload.put(stamp_ns).put(std::uint8_t{2});
     for (const double value : {0.0, 0.0, -height, 0.0, 0.0, -1.0, 1.0, 0.0, 0.0, 0.0}) payload.put(value);
     return payload;
@@ -143,19 +152,25 @@ TEST_F(FlightPage, HoldsEachVehicleAndEscapesTexts) {
 TEST_F(FlightPage, KnowsMotionCaptureFromTheAttachedSettingsOfTheVehicle) {
   {
     FlightFile file(path_);
-    for (const char* const vehicle : {"/a", "/b"}) file.add_climb(vehicle, 20);
+    for (const char* const vehicle : {"/a", "/b"}) {
+      file.add_climb(vehicle, 20);
+      file.add_pose(vehicle, kFirstNs + 50 * kMs);
+    }
     file.attach("control.yaml", "estimator: {mocap_position_m: 0.002, mocap_orientation_rad: 0.01}\n");
     file.attach("b/control.yaml", "estimator: {mocap_position_m: 0.004, mocap_orientation_rad: 0.02}\n");
     file.attach("motor_lag.yaml", "estimator: {mocap_position_m: 1}\n");
   }
-  const mcap::Reader file(path_);
-  EXPECT_EQ(read_flight_topics(file, "a").pose_deviation_m, 0.002);
-  EXPECT_EQ(read_flight_topics(file, "a").pose_deviation_rad, 0.01);
-  EXPECT_EQ(read_flight_topics(file, "b").pose_deviation_m, 0.004);
+  const std::vector<FlightLog> both = flights();
+  // 3 sigma of an estimate with 1 mm and of motion capture together.
+  const auto bound_mm = [&](std::size_t vehicle) {
+    return both.at(vehicle).tables.at("innovation").signals.at("bound_down").at(0);
+  };
+  EXPECT_NEAR(bound_mm(0), 3.0 * std::hypot(1.0, 2.0), 1e-9);
+  EXPECT_NEAR(bound_mm(1), 3.0 * std::hypot(1.0, 4.0), 1e-9);
 }
 
 TEST_F(FlightPage, NamesASignalOfAnotherType) {
-  const auto fault_of = [&](const std::string& definition, ground::CdrWriter payload) -> std::string {
+  const auto fault_of = [&](const std::string& definition, record::CdrWriter payload) -> std::string {
     {
       FlightFile file(path_);
       file.add_climb("/kl1", 20);
@@ -168,25 +183,25 @@ TEST_F(FlightPage, NamesASignalOfAnotherType) {
     }
     return "";
   };
-  ground::CdrWriter payload;
+  record::CdrWriter payload;
   payload.put(kFirstNs).text("holding").put(2.0);
   EXPECT_NE(fault_of("int64 stamp_ns\nstring mode\nfloat64 x\n", std::move(payload))
                 .find("/kl1/control_status: mode is a text, must be a number"),
             std::string::npos);
-  payload = ground::CdrWriter();
+  payload = record::CdrWriter();
   payload.put(kFirstNs).put(std::uint8_t{2}).put(2.0);
   EXPECT_NE(fault_of("int64 stamp_ns\nuint8 mode\nfloat64 reason\n", std::move(payload))
                 .find("/kl1/control_status: reason is a number, must be a text"),
             std::string::npos);
-  payload = ground::CdrWriter();
+  payload = record::CdrWriter();
   payload.put(kFirstNs).put(std::uint32_t{0});
   EXPECT_NE(fault_of("int64 stamp_ns\nuint8[] mode\n", std::move(payload))
                 .find("/kl1/control_status: mode is a sequence, must be a number"),
             std::string::npos);
-  payload = ground::CdrWriter();
+  payload = record::CdrWriter();
   payload.text("now").put(std::uint8_t{2});
   EXPECT_NE(fault_of("string stamp_ns\nuint8 mode\n", std::move(payload))
-                .find("/kl1/control_status: stamp_ns is a text, must be an integer"),
+                .find("/kl1/control_status: stamp_ns is a text, must be a number"),
             std::string::npos);
 }
 

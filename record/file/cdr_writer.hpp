@@ -1,0 +1,37 @@
+// Writes a message as CDR, little-endian, with the encapsulation header.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "swiftlet/record/mcap/records.hpp"
+
+namespace swiftlet::record {
+
+class CdrWriter {
+ public:
+  template <class Number>
+  CdrWriter& put(Number number) {
+    while ((bytes_.size() - kHeaderBytes) % sizeof(number) != 0) bytes_.push_back(0);
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &number, sizeof(number));
+    for (std::size_t i = 0; i < sizeof(number); ++i, bits >>= 8U)
+      bytes_.push_back(static_cast<std::uint8_t>(bits));
+    return *this;
+  }
+  CdrWriter& text(const std::string& text) {
+    put(static_cast<std::uint32_t>(text.size() + 1));
+    bytes_.insert(bytes_.end(), text.begin(), text.end());
+    bytes_.push_back(0);
+    return *this;
+  }
+  mcap::Bytes take() { return std::move(bytes_); }
+
+ private:
+  static constexpr std::size_t kHeaderBytes = 4;
+  mcap::Bytes bytes_ = {0, 1, 0, 0};
+};
+
+}  // namespace swiftlet::record
