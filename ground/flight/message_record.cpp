@@ -64,10 +64,9 @@ std::string MessageRecord::finish() {
   }
   recorder_.stop();
   if (const auto fault = recorder_.fault()) return *fault;
-  const record::RecorderTotals totals = recorder_.totals();
-  if (totals.dropped + totals.lost == 0) return {};
-  return fmt::format("{}: {} messages dropped because the disk is too slow, {} lost on their way",
-                     record::kFlightFile, totals.dropped, totals.lost);
+  const std::uint64_t dropped = recorder_.totals().dropped;
+  if (dropped == 0) return {};
+  return fmt::format("{}: {} messages dropped because the disk is too slow", record::kFlightFile, dropped);
 }
 
 }  // namespace swiftlet::ground

@@ -29,7 +29,7 @@ class MessageRecord {
   void on_motion(const std::string& vehicle, std::function<void(std::int64_t stamp_ns)> use);
 
   // Adds the lines of the processes' logs to a file in real time, and ends it. The processes have ended.
-  // Returns a sentence if it is not complete.
+  // Returns a sentence if it lacks what was received. What a network has lost is counted in the file, and is no fault.
   std::string finish();
 
  private:

@@ -97,7 +97,7 @@ std::vector<RecordedFlight> load_record(const fs::path& record) {
   const bool in_folder = from.file.filename() == record::kFlightFile;
   const fs::path folder = fs::absolute(from.file).parent_path();
   const fs::path name = in_folder ? folder.filename() : from.file.filename();
-  const std::map<std::string, record::Flight> flights = record::read_flights(file);
+  std::map<std::string, record::Flight> flights = record::read_flights(file);
   if (flights.empty()) (void)record::recorded_vehicle(file, "");  // says so
   std::vector<RecordedFlight> loaded;
   for (const std::string& vehicle : record::recorded_vehicles(file)) {
@@ -109,6 +109,9 @@ std::vector<RecordedFlight> load_record(const fs::path& record) {
     if (in_folder)
       add_written(flights.size() > 1 ? folder / vehicle / kReport : folder / kReport, flight.report);
     flight.settings = settings_of(file, vehicle);
+    flight.vehicle = vehicle;
+    flight.file = from.file;
+    flight.flown = std::move(flights.at(vehicle));
     loaded.push_back(std::move(flight));
   }
   return loaded;

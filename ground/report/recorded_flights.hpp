@@ -8,6 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/record/flight.hpp"
+
 namespace swiftlet::ground {
 
 struct RecordedFlight {  // NOLINT(bugprone-exception-escape): ordered_json is moved without one
@@ -17,6 +19,9 @@ struct RecordedFlight {  // NOLINT(bugprone-exception-escape): ordered_json is m
       report;  // as report.json, from the messages; of a flight of `swiftlet fly` with its timing
   // Of the files of the flight, such as "control.position.x.omega_n" and "2.0".
   std::vector<std::pair<std::string, std::string>> settings;
+  std::string vehicle;
+  std::filesystem::path file;  // of its messages
+  record::Flight flown;
 };
 
 // The flights of a record, one for each vehicle; of the folder of a vehicle that one. Throws runtime::ConfigError

@@ -89,6 +89,7 @@ bool is_not_older(const std::vector<Row>& rows, std::int64_t stamp_ns) {
 }
 
 void read_truth(const Series& series, Flight& flight) {
+  flight.truth.reserve(series.size());
   const Required<3> position(series, "position_ned"), velocity(series, "velocity_ned");
   const Numbers<3> rates(series, "body_rates_frd");
   const Numbers<4> attitude(series, "q_ned_from_frd");
@@ -104,6 +105,7 @@ void read_truth(const Series& series, Flight& flight) {
 }
 
 void read_reference(const Series& series, Flight& flight) {
+  flight.reference.reserve(series.size());
   const Number mode(series, "mode"), yaw(series, "yaw"), thrust(series, "thrust_setpoint");
   const Required<3> position(series, "position_ned"), velocity(series, "velocity_ned");
   const Numbers<3> acceleration(series, "acceleration_ned"), moment(series, "moment_setpoint");
@@ -117,6 +119,7 @@ void read_reference(const Series& series, Flight& flight) {
 }
 
 void read_estimate(const Series& series, Flight& flight) {
+  flight.estimate.reserve(series.size());
   const Required<3> position(series, "position_ned"), velocity(series, "velocity_ned");
   const Numbers<3> rates(series, "body_rates_frd"), gyro_bias(series, "gyro_bias"),
       accelerometer_bias(series, "accelerometer_bias");
@@ -146,6 +149,7 @@ void read_mission(const Series& series, Flight& flight) {
 }
 
 void read_imu(const Series& series, Flight& flight) {
+  flight.imu.reserve(series.size());
   const Number sequence(series, "sequence_number");
   const Required<3> force(series, "specific_force_frd"), rates(series, "body_rates_frd");
   for (std::size_t i = 0; i < series.size(); ++i) {
@@ -187,6 +191,7 @@ void read_battery(const Series& series, Flight& flight) {
 }
 
 void read_rotor_speeds(const Series& series, Flight& flight) {
+  flight.rotor_speeds.reserve(series.size());
   const Number sequence(series, "sequence_number"), rotors(series, "rotor_count");
   const Numbers<8> speeds(series, "speeds");
   for (std::size_t i = 0; i < series.size(); ++i) {
@@ -198,6 +203,7 @@ void read_rotor_speeds(const Series& series, Flight& flight) {
 }
 
 void read_commands(const Series& series, Flight& flight) {
+  flight.commands.reserve(series.size());
   const Number sequence(series, "sequence_number"), imu(series, "imu_sequence_number"),
       mocap(series, "mocap_sequence_number"), state(series, "rotor_state"), rotors(series, "rotor_count");
   const Required<8> throttle(series, "throttle");
@@ -302,18 +308,16 @@ std::map<std::string, Flight> read(const mcap::Reader& file, const std::set<std:
   std::map<std::string, Flight> flights;
   for (const std::string& vehicle : vehicles) flights[vehicle];
   if (selection.topics.empty()) return flights;
-  const std::map<std::string, Series> all = mcap::read_series(file, selection);
-  for (const auto& [name, series] : all) {
-    const auto topic = topic_name(name);
+  std::map<std::string, Series> all = mcap::read_series(file, selection);
+  for (auto at = all.begin(); at != all.end(); at = all.erase(at)) {  // its memory serves the next one
+    const Series& series = at->second;
+    const auto topic = topic_name(at->first);
+    Flight& flight = flights.at(topic->vehicle);
     (void)series.find_numbers("stamp_ns");  // or it is refused
-    kTopics.at(topic->name)(series, flights.at(topic->vehicle));
-  }
-  for (auto& [vehicle, flight] : flights) {
-    for (const char* const name : {"ground_truth", "estimate"}) {
-      const auto series = all.find("/" + vehicle + "/" + name);
-      if (series != all.end() && series->second.size() > 0)
-        flight.log_minus_stamp_ns = least_delay_ns(series->second);
-    }
+    kTopics.at(topic->name)(series, flight);
+    const bool tells_delay =
+        topic->name == "estimate" || (topic->name == "ground_truth" && flight.estimate.empty());
+    if (tells_delay && series.size() > 0) flight.log_minus_stamp_ns = least_delay_ns(series);
   }
   return flights;
 }

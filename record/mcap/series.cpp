@@ -36,6 +36,16 @@ Series::Series(std::string file, std::string topic, const std::vector<Column>& c
   }
 }
 
+void Series::reserve(std::size_t rows) {
+  log_time_ns_.reserve(rows);
+  publish_time_ns_.reserve(rows);
+  if (stamp_column_ >= 0) stamp_ns_.reserve(rows);
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    if (is_number(columns_[i].kind)) numbers_[i].reserve(rows);
+    if (is_unsigned(columns_[i].kind)) integers_[i].reserve(rows);
+  }
+}
+
 void Series::append(const Message& message, const std::vector<Value>& values) {
   log_time_ns_.push_back(message.log_time_ns);
   publish_time_ns_.push_back(message.publish_time_ns);
@@ -103,6 +113,18 @@ const std::vector<std::string>* Series::find_texts(const std::string& column) co
   return has_as(column, is_text, "a text") ? &texts(column) : nullptr;
 }
 
+namespace {
+
+std::size_t messages_of(const Reader& file, const std::string& topic) {
+  std::size_t sum = 0;
+  for (const auto& [id, count] : file.statistics().messages_by_channel) {
+    if (file.channels().at(id).topic == topic) sum += count;
+  }
+  return sum;
+}
+
+}  // namespace
+
 std::map<std::string, Series> read_series(const Reader& file, const Selection& selection) {
   Selection selected = selection;
   if (selected.topics.empty()) {
@@ -113,7 +135,8 @@ std::map<std::string, Series> read_series(const Reader& file, const Selection& s
   std::map<std::string, Series> series;
   for (const std::string& topic : selected.topics) {
     const TopicDecoder& decoder = decoders.try_emplace(topic, file, topic).first->second;
-    series.try_emplace(topic, file.name(), topic, decoder.columns());
+    series.try_emplace(topic, file.name(), topic, decoder.columns())
+        .first->second.reserve(messages_of(file, topic));
   }
   Messages messages(file, selected);
   std::vector<Value> values;

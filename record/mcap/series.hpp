@@ -45,6 +45,7 @@ class Series {
   const std::vector<double>* find_numbers(const std::string& column) const;
   const std::vector<std::string>* find_texts(const std::string& column) const;
 
+  void reserve(std::size_t rows);
   void append(const Message& message, const std::vector<Value>& values);
 
  private:

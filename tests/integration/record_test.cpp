@@ -1,9 +1,11 @@
 // Flight records from end to end: folders, full disks, and flights flown again.
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <set>
+#include <sstream>
 #include <string>
 #include <sys/resource.h>
 #include <vector>
@@ -147,6 +149,33 @@ TEST_F(Record, CanBeFlownAgain) {
       << again.errors;
   const ProgramResult checked = run_program("swiftlet", {"mission", "check", table}, folder_.path());
   EXPECT_EQ(checked.exit_code, 0) << checked.errors << checked.output;
+}
+
+// GIVEN a flight WHEN its file is read alone, without the report beside it THEN all figures are those of the flight.
+TEST_F(Record, HasTheSameFiguresWhereverTheyArePrinted) {
+  const ProgramResult flight = fly(hop_, {"--record", record()});
+  ASSERT_EQ(flight.exit_code, 0) << flight.errors;
+  const json flown = json::parse(flight.output);
+  const fs::path alone = folder_.path() / "alone.mcap";
+  fs::copy_file(record() / "flight.mcap", alone);
+
+  const ProgramResult read = run_program("swiftlet", {"report", alone, "--json"}, folder_.path());
+  ASSERT_EQ(read.exit_code, 0) << read.errors;
+  const json report = json::parse(read.output).at("flights").at(0).at("report");
+  for (const char* const key : {"completed", "rms_3d_m", "peak_3d_m", "matched_samples", "duration_s"})
+    EXPECT_EQ(report.at(key), flown.at(key)) << key;
+
+  char rms[32], peak[32];
+  std::snprintf(rms, sizeof rms, "%.2f", 1e3 * flown.at("rms_3d_m").get<double>());
+  std::snprintf(peak, sizeof peak, "%.2f", 1e3 * flown.at("peak_3d_m").get<double>());
+  const ProgramResult table = run_program("swiftlet", {"report", alone}, folder_.path());
+  EXPECT_NE(table.output.find(std::string("RMS 3-D, mm   ") + rms), std::string::npos) << table.output;
+  EXPECT_NE(table.output.find(std::string("peak 3-D, mm  ") + peak), std::string::npos) << table.output;
+  ASSERT_EQ(run_program("swiftlet", {"report", record()}, folder_.path()).exit_code, 0);
+  std::ostringstream page;
+  page << std::ifstream(record() / "flight.html").rdbuf();
+  EXPECT_NE(page.str().find(std::string("<td>") + rms + " mm</td>"), std::string::npos) << rms;
+  EXPECT_NE(page.str().find(std::string("<td>") + peak + " mm</td>"), std::string::npos) << peak;
 }
 
 // One table, with its frame in the header or by the option, means the same to every command.

@@ -35,20 +35,12 @@ struct ReportOptions {
   bool json = false;
 };
 
-// "20261121-093909-square" of .../20261121-093909-square/flight.mcap, "hover" of hover.mcap.
-std::string name_of(const fs::path& file) {
-  const fs::path whole = fs::absolute(file);
-  return file.filename() == record::kFlightFile ? whole.parent_path().filename() : file.stem();
-}
-
-void write_page(const std::vector<std::string>& files, const std::string& page) {
+void write_page(const std::vector<RecordedFlight>& recorded, const std::string& page) {
   std::vector<pages::FlightLog> flights;
-  for (const std::string& file : files) {
-    const fs::path path = fs::absolute(file);
-    for (pages::FlightLog& flight : pages::flights_in(mcap::Reader(file), name_of(file))) {
-      if (path.filename() == record::kFlightFile) pages::add_process_logs(path.parent_path(), flight);
-      flights.push_back(std::move(flight));
-    }
+  for (const RecordedFlight& one : recorded) {
+    flights.push_back(pages::flight_log(mcap::Reader(one.file.string()), one.vehicle, one.flown, one.name));
+    if (one.file.filename() == record::kFlightFile)
+      pages::add_process_logs(fs::absolute(one.file).parent_path(), flights.back());
   }
   std::string title = flights.size() == 1 ? "Flight" : "Flights";
   for (std::size_t i = 0; i < flights.size(); ++i) title += (i == 0 ? " " : ", ") + flights[i].name;
@@ -74,20 +66,20 @@ int report(const ReportOptions& options) {
   if (records.empty()) records.push_back(newest_record("flights"));
   std::vector<std::string> files;
   for (const fs::path& record : records) files.push_back(record::flight_file(record).file);
-  if (!options.page.empty()) {
-    require_new(options.page, options.replace, files);
-    write_page(files, options.page);
-    return kDone;
-  }
+  if (!options.page.empty()) require_new(options.page, options.replace, files);
   std::vector<RecordedFlight> flights;
   for (const fs::path& record : records) {
     for (RecordedFlight& flight : load_record(record)) flights.push_back(std::move(flight));
+  }
+  if (!options.page.empty()) {
+    write_page(flights, options.page);
+    return kDone;
   }
   const std::string text = options.json ? comparison_json(flights).dump(2) + "\n" : comparison_table(flights);
   std::fputs(text.c_str(), stdout);
   if (options.json || records.size() > 1 || !fs::is_directory(records.front())) return kDone;
   const std::string page = fs::path(files.front()).parent_path() / kPage;
-  write_page(files, page);
+  write_page(flights, page);
   show(page);
   return kDone;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,11 +48,18 @@ PoseDeviation pose_deviation(const mcap::Reader& file, const std::string& vehicl
   return deviation;
 }
 
-FlightLog flight_of(const mcap::Reader& file, const std::string& vehicle, const record::Flight& recorded) {
+}  // namespace
+
+FlightLog flight_log(const mcap::Reader& file, const std::string& vehicle, const record::Flight& recorded,
+                     const std::string& name) {
+  if (recorded.truth.empty() && recorded.estimate.empty())
+    throw runtime::ConfigError(file.name(), 0, vehicle,
+                               "holds no flight: has neither estimate nor ground_truth");
   const auto recorder = record::metadata_of(file, "swiftlet/recorder");
   const auto time = recorder.find("time");
   const RecordedClock clock{zero_of(recorded), time != recorder.end() && time->second == "vehicle"};
   FlightLog flight;
+  flight.name = name;
   flight.vehicle = vehicle;
   flight.has_truth = !recorded.truth.empty();
   if (!clock.simulated_time)
@@ -63,23 +69,6 @@ FlightLog flight_of(const mcap::Reader& file, const std::string& vehicle, const 
   set_range(flight);
   add_summary(file, recorded, flight);
   return flight;
-}
-
-}  // namespace
-
-std::vector<FlightLog> flights_in(const mcap::Reader& file, const std::string& name) {
-  std::vector<FlightLog> flights;
-  const std::map<std::string, record::Flight> recorded = record::read_flights(file);
-  for (const std::string& vehicle : record::recorded_vehicles(file)) {
-    const record::Flight& flight = recorded.at(vehicle);
-    if (!flight.truth.empty() || !flight.estimate.empty())
-      flights.push_back(flight_of(file, vehicle, flight));
-  }
-  if (flights.empty())
-    throw runtime::ConfigError(file.name(), 0, "",
-                               "holds no flight: no topic /<vehicle>/estimate or ground_truth");
-  for (FlightLog& flight : flights) flight.name = flights.size() == 1 ? name : name + " " + flight.vehicle;
-  return flights;
 }
 
 }  // namespace swiftlet::pages

@@ -7,6 +7,7 @@
 #include "swiftlet/ground/pages/flight_page.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/record/file/cdr_writer.hpp"
+#include "swiftlet/record/file/flight_reader.hpp"
 #include "swiftlet/record/mcap/writer.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -102,7 +103,14 @@ std::string value_of(const FlightLog& flight, const std::string& label) {
 
 class FlightPage : public testing::Test {
  protected:
-  std::vector<FlightLog> flights() const { return flights_in(mcap::Reader(path_), "test"); }
+  std::vector<FlightLog> flights() const {
+    const mcap::Reader file(path_);
+    const auto recorded = record::read_flights(file);
+    std::vector<FlightLog> flights;
+    for (const std::string& vehicle : record::recorded_vehicles(file))
+      flights.push_back(flight_log(file, vehicle, recorded.at(vehicle), vehicle));
+    return flights;
+  }
 
   tests::TemporaryFolder folder_;
   const std::string path_ = folder_.path() / "flight.mcap";
@@ -116,7 +124,7 @@ TEST_F(FlightPage, HasErrorsAgainstTheReferenceOverTheTimeSinceTakeOff) {
     file.add_mode("/kl1", kFirstNs + 100 * kMs, 2, "requested");
   }
   const FlightLog flight = flights().at(0);
-  EXPECT_EQ(flight.name, "test");
+  EXPECT_EQ(flight.name, "kl1");
   EXPECT_EQ(flight.vehicle, "kl1");
   EXPECT_FALSE(flight.has_truth);
   EXPECT_NEAR(flight.start_s, -0.1, 1e-9);
@@ -141,7 +149,7 @@ TEST_F(FlightPage, HoldsEachVehicleAndEscapesTexts) {
   }
   const std::vector<FlightLog> both = flights();
   ASSERT_EQ(both.size(), 2U);
-  EXPECT_EQ(both[1].name, "test b");
+  EXPECT_EQ(both[1].name, "b");
   const std::string page = flight_page("Flights <of> test", "note", both);
   EXPECT_NE(page.find("<title>Flights &lt;of&gt; test</title>"), std::string::npos);
   EXPECT_EQ(page.find("</script><b>"), std::string::npos);
