@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 #include "swiftlet/services/dds/datagram/guarded_transport.hpp"
 #include "swiftlet/services/dds/dds_profile.hpp"
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
-#include "swiftlet/services/dds/discovery/repeated_discovery.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/network_qos.hpp"
 #include "swiftlet/services/dds/qos/duration.hpp"
@@ -21,8 +19,7 @@ namespace dds = eprosima::fastdds::dds;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 
 dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uint32_t announced_ports,
-                                          const std::shared_ptr<DatagramGuard>& guard,
-                                          std::shared_ptr<const std::atomic<bool>> listening) {
+                                          const std::shared_ptr<DatagramGuard>& guard) {
   const std::string& file = settings.network.dds_profile;
   const DdsProfile profile = file.empty() ? DdsProfile{} : load_dds_profile(file);
   dds::DomainParticipantQos qos = profile.participant;
@@ -77,9 +74,7 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
   auto& addresses = qos.wire_protocol().default_unicast_locator_list;
   if (addresses.empty()) addresses = own_locators(settings, 0);
   qos.transport().use_builtin_transports = false;
-  const bool loses_nothing = settings.on_loopback();
-  qos.transport().user_transports.push_back(
-      repeat_discovery(guarded(udp, guard), settings.domain, guard, std::move(listening), loses_nothing));
+  qos.transport().user_transports.push_back(guarded(udp, guard, settings.domain));
   return qos;
 }
 

@@ -1,7 +1,6 @@
 // The QoS of a participant: discovery, transport and name.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 
@@ -13,10 +12,10 @@
 namespace swiftlet::comms {
 
 // announced_ports: number of ports to which it announces itself without multicast (discovery_ports.hpp).
-// guard: checks the datagrams that it receives. listening: announcements are held back until it is true. Throws
-// std::runtime_error for an unknown host or interface, and runtime::ConfigError for an invalid profile.
-eprosima::fastdds::dds::DomainParticipantQos participant_qos(
-    const NodeSettings& settings, std::uint32_t announced_ports, const std::shared_ptr<DatagramGuard>& guard,
-    std::shared_ptr<const std::atomic<bool>> listening);
+// guard: checks the datagrams that it receives. Throws std::runtime_error for an unknown host or interface, and
+// runtime::ConfigError for an invalid profile.
+eprosima::fastdds::dds::DomainParticipantQos participant_qos(const NodeSettings& settings,
+                                                             std::uint32_t announced_ports,
+                                                             const std::shared_ptr<DatagramGuard>& guard);
 
 }  // namespace swiftlet::comms

@@ -1,7 +1,6 @@
 #include "swiftlet/services/dds/participant_session.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -32,13 +31,13 @@ dds::DomainParticipant* create_participant(const NodeSettings& settings, const A
                                            const std::shared_ptr<DatagramGuard>& guard,
                                            dds::DomainParticipantListener* listener,
                                            std::uint32_t announced) {
-  const auto listening = std::make_shared<std::atomic<bool>>(false);
-  dds::DomainParticipantQos qos = participant_qos(settings, announced, guard, listening);
+  dds::DomainParticipantQos qos = participant_qos(settings, announced, guard);
   qos.user_data().data_vec(to_user_data(announcement));
+  guard->listen(false);
   auto* const participant = dds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(settings.domain), qos, listener,
       dds::StatusMask::requested_incompatible_qos() << dds::StatusMask::offered_incompatible_qos());
-  *listening = true;
+  guard->listen(true);
   return participant;
 }
 

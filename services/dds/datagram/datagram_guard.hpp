@@ -46,7 +46,7 @@ class DatagramGuard {
   // Counts a refusal; the result then has a fault. port: the local one.
   CheckedDatagram admit(const std::uint8_t* data, std::size_t size, const SenderAddress& sender,
                         std::uint32_t port, const Now& now);
-  // Until then, the transport drops what it receives. By default it listens from the start.
+  // Until then, the transport drops what it receives, and a participant does not announce itself. By default it listens.
   void listen(bool listens) { listens_ = listens; }
   bool listens() const { return listens_; }
   void refuse(const SenderAddress& sender, const char* rule) { refusals_.note(sender, rule); }

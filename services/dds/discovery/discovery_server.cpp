@@ -79,7 +79,7 @@ dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings,
   if (!settings.interfaces.empty() || !in_a_network)
     udp.interfaceWhiteList.emplace_back(kLoopback);  // for clients of this host
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(guarded(udp, guard, true));
+  qos.transport().user_transports.push_back(guarded(udp, guard, std::nullopt));
   qos.allocation().participants = {0, kMostParticipants, 1};
   return qos;
 }
