@@ -23,7 +23,6 @@ namespace dds = eprosima::fastdds::dds;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kCheckPeriod{250};
-constexpr std::chrono::milliseconds kHandshakePatience{1500};  // three attempts of Fast DDS
 
 void check(const NodeSettings& settings) {
   if (settings.domain < 0 || settings.domain > 232) {
@@ -76,16 +75,11 @@ rtps::GUID_t participant_guid(const rtps::GuidPrefix_t& participant) {
   return {participant, rtps::c_EntityId_RTPSParticipant};
 }
 
-rtps::GUID_t participant_guid(const GuidPrefix& participant) {
-  rtps::GuidPrefix_t prefix;
-  std::copy(participant.begin(), participant.end(), prefix.value);
-  return participant_guid(prefix);
-}
-
-GuidPrefix bytes_of(const rtps::GuidPrefix_t& participant) {
-  GuidPrefix bytes;
-  std::copy_n(participant.value, bytes.size(), bytes.begin());
-  return bytes;
+// Anybody may announce itself under any name: logs and terminals get no control characters of it.
+std::string in_one_line(const std::string& name) {
+  std::string line = runtime::printable(name);
+  std::replace(line.begin(), line.end(), '\n', '?');
+  return line;
 }
 
 }  // namespace
@@ -96,8 +90,6 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
       announcement_(announcement_of(node_settings, vehicles)),
       patience_(random_share()) {
   check(settings);
-  if (!settings.security.empty()) refused_peers_.emplace();
-  joined_ns_ = Now::read().steady_ns;
   guard_->set_own_interfaces(interfaces_up());
   guard_->ignore_apart_from(to_user_data(announcement_));
   if (settings.network.discovery_servers.empty()) introduced_at_ = Clock::now();
@@ -107,17 +99,10 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
     const runtime::RealtimeScope task_scope = realtime();
     rejoin_if_rediscovery_failed();
     end_source_watch_when_due();
-    {
-      const std::lock_guard<std::mutex> session_lock(session_mutex_);
-      follow_addresses();
-      announce_when_due();
-    }
     guard_->refusals().write_due(Clock::now());
     const std::lock_guard<std::mutex> session_lock(session_mutex_);
-    const std::lock_guard<std::mutex> lock(peers_mutex_);
-    if (session_ != nullptr) refuse_silent_strangers(session_->participant->guid());
-    if (refused_peers_) refused_peers_->write_due(Clock::now());
-    conflict_log_.write_due(Clock::now());
+    follow_addresses();
+    announce_when_due();
   });
 }
 
@@ -244,11 +229,8 @@ void Participant::Impl::leave() {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   peers_.clear();
   strangers_.clear();
-  joined_ns_ = Now::read().steady_ns;
-  authenticated_.clear();
   writers_.clear();
   readers_.clear();
-  conflict_log_.clear();
   rediscovery_.clear();
 }
 
@@ -312,74 +294,31 @@ void Participant::Impl::listen(const Node* node, const std::string& vehicle,
   }
 }
 
-// Anybody may announce itself under any name: logs and terminals get no control characters of it.
-Participant::Impl::Peer Participant::Impl::announced(const std::string& name,
-                                                     const std::vector<std::uint8_t>& user_data) {
-  const auto in_one_line = [](const std::string& text) {
-    std::string line = runtime::printable(text);
-    std::replace(line.begin(), line.end(), '\n', '?');
-    return line;
-  };
-  Peer peer{in_one_line(name), from_user_data(user_data)};
-  peer.announced.host = in_one_line(peer.announced.host);
-  return peer;
-}
-
 void Participant::Impl::on_participant(const Guid& guid, const std::string& name,
                                        const std::vector<std::uint8_t>& user_data) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   if (!introduced_at_ && is_discovery_server(bytes_of(guid.guidPrefix))) introduced_at_ = Clock::now();
-  const Peer peer = announced(name, user_data);
-  if (is_authenticated(guid)) return update_peer(guid, peer);
+  Peer peer{in_one_line(name), from_user_data(user_data)};
+  peer.announced.host = in_one_line(peer.announced.host);
+  if (settings.security.empty() || peers_.count(guid) > 0) return update_peer(guid, peer);
   strangers_[guid] = peer;
 }
 
 void Participant::Impl::on_participant_gone(const Guid& guid, bool said_goodbye) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   strangers_.erase(guid);
-  authenticated_.erase(guid);
   drop_peer(guid, said_goodbye);
 }
 
-bool Participant::Impl::is_authenticated(const Guid& guid) const {
-  return settings.security.empty() || authenticated_.count(guid) > 0;
-}
-
-// Before or after its discovery.
+// Before or after its discovery. Fast DDS names who is refused by GUID only, and logs the reason without it.
 void Participant::Impl::on_authentication(const Guid& guid, bool authenticated) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
-  const auto stranger = strangers_.find(guid);
-  if (authenticated) {
-    authenticated_.insert(guid);
-    if (stranger == strangers_.end()) return;
-    update_peer(guid, stranger->second);
-    strangers_.erase(stranger);
-  } else {
-    const auto heard = guard_->announcements(Now::read());
-    const auto said = heard.find(bytes_of(guid.guidPrefix));
-    refuse(guid, said == heard.end() ? Peer{} : announced(said->second.name, said->second.user_data), "");
-  }
-}
-
-void Participant::Impl::refuse(const Guid& guid, const Peer& peer, const char* reason) {
-  if (!refused_peers_) return;
-  const std::string process =
-      peer.announced.host.empty()
-          ? named(peer.name, guid.guidPrefix)
-          : ProcessIdentity{peer.name, peer.announced.host, peer.announced.pid}.to_string();
-  refused_peers_->note(guid, process, reason, Clock::now());
-}
-
-// Who refuses this process does not answer it. Neither is told why.
-void Participant::Impl::refuse_silent_strangers(const Guid& own) {
-  if (!refused_peers_) return;
-  const Now now = Now::read();
-  for (const auto& [participant, said] : guard_->announcements(now)) {
-    const Guid guid = participant_guid(participant);
-    if (guid == own || is_authenticated(guid)) continue;
-    if (now.steady_ns - std::max(said.since_ns, joined_ns_) >
-        kHandshakePatience / std::chrono::nanoseconds(1))
-      refuse(guid, announced(said.name, said.user_data), ": it does not complete the handshake");
+  if (!authenticated) {
+    const std::string name = in_one_line(guard_->name_of(bytes_of(guid.guidPrefix)));
+    log_.warn("refused " + named(name, guid.guidPrefix) + ": see the log of Fast DDS", Clock::now());
+  } else if (peers_.count(guid) == 0) {
+    update_peer(guid, strangers_[guid]);
+    strangers_.erase(guid);
   }
 }
 
@@ -405,7 +344,6 @@ void Participant::Impl::drop_peer(const Guid& guid, bool said_goodbye) {
     for (auto it = remote->begin(); it != remote->end();)
       it = it->first.guidPrefix == guid.guidPrefix ? remote->erase(it) : std::next(it);
   }
-  conflict_log_.forget(guid.guidPrefix);
   const auto peer = peers_.find(guid);
   if (peer == peers_.end()) return;
   const Peer gone = peer->second;
@@ -462,30 +400,29 @@ std::string Participant::Impl::shared_vehicle(const Peer& peer) const {
 void Participant::Impl::on_requested_incompatible_qos(dds::DataReader* reader,
                                                       const dds::RequestedIncompatibleQosStatus&) {
   const EndpointQos requested = endpoint_qos(reader->get_qos());
-  log_conflicts(reader->guid(), reader->get_topicdescription()->get_name(), writers_, "is not received",
+  log_conflicts(reader->get_topicdescription()->get_name(), writers_, "is not received",
                 [&](const EndpointQos& offered) { return conflicts(offered, requested); });
 }
 
 void Participant::Impl::on_offered_incompatible_qos(dds::DataWriter* writer,
                                                     const dds::OfferedIncompatibleQosStatus&) {
   const EndpointQos offered = endpoint_qos(writer->get_qos());
-  log_conflicts(writer->guid(), writer->get_topic()->get_name(), readers_,
-                "does not receive from this process",
+  log_conflicts(writer->get_topic()->get_name(), readers_, "does not receive from this process",
                 [&](const EndpointQos& requested) { return conflicts(offered, requested); });
 }
 
 template <class ConflictsWith>
-void Participant::Impl::log_conflicts(const Guid& own, const std::string& topic,
-                                      const RemoteEndpoints& others, const char* consequence,
-                                      const ConflictsWith& conflicts_with) {
+void Participant::Impl::log_conflicts(const std::string& topic, const RemoteEndpoints& others,
+                                      const char* consequence, const ConflictsWith& conflicts_with) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   for (const auto& [guid, other] : others) {
-    if (other.topic != topic || conflict_log_.has_noted(own, guid)) continue;
+    if (other.topic != topic) continue;
     const std::string policies = conflicts_with(other.qos);
     if (policies.empty()) continue;
     const Peer* const peer = peer_of(guid.guidPrefix);
-    conflict_log_.note(own, guid, topic, named(peer == nullptr ? "" : peer->name, guid.guidPrefix),
-                       consequence, policies, Clock::now());
+    log_.warn(topic + ": " + named(peer == nullptr ? "" : peer->name, guid.guidPrefix) + " " + consequence +
+                  ", their QoS is incompatible: " + policies,
+              Clock::now());
   }
 }
 

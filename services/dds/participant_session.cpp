@@ -77,6 +77,12 @@ dds::DomainParticipant* join(const NodeSettings& settings, const Announcement& a
 
 }  // namespace
 
+GuidPrefix bytes_of(const rtps::GuidPrefix_t& participant) {
+  GuidPrefix bytes;
+  std::copy_n(participant.value, bytes.size(), bytes.begin());
+  return bytes;
+}
+
 std::shared_ptr<DatagramGuard> guard_of(const NodeSettings& settings) {
   DatagramLimits limits;
   limits.discovery_servers = !settings.network.discovery_servers.empty();
@@ -92,16 +98,14 @@ ParticipantSession::ParticipantSession(const NodeSettings& settings, const Annou
     : guard_(guard),
       spacing_(settings.network.discovery_servers.empty() ? std::chrono::milliseconds(0)
                                                           : kAnnouncementSpacing) {
-  set_up_fast_dds();
+  set_up_fast_dds(!settings.security.empty());
   guard->set_participant({});  // of a session before
   participant = join(settings, announcement, guard, listener);
   if (participant == nullptr) {
     throw std::runtime_error("cannot join DDS domain " + std::to_string(settings.domain) +
                              ": no port could be opened or the transport could not be set up");
   }
-  GuidPrefix own{};
-  std::copy_n(participant->guid().guidPrefix.value, own.size(), own.begin());
-  guard->set_participant(own);
+  guard->set_participant(bytes_of(participant->guid().guidPrefix));
   // Fast DDS 3 remembers the addresses of the host from the first participant of the process on; this lets it read them again.
   set_qos(participant->get_qos());
   publisher = participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);

@@ -280,7 +280,6 @@ const char* DatagramCheck::check_payload(Submessage& submessage, const ListConte
   const ByteReader& payload = submessage.body;
   const bool of_discovery =
       context.topic == BuiltinTopic::kParticipant || context.topic == BuiltinTopic::kEndpoint;
-  result_.about_participant |= context.topic == BuiltinTopic::kParticipant;
   if (!submessage.has(kDataFlag | kKeyFlag))
     return of_discovery && !names_key ? "discovery data without GUID (9.6.3)" : nullptr;
   if (payload.rest() < 4) return "payload shorter than its encapsulation (10.2)";

@@ -45,9 +45,8 @@ struct CheckedDatagram {
   GuidPrefix source{};
   // Bytes to hand to the middleware: less than received if the datagram ends with a submessage that it must not see.
   std::size_t length = 0;
-  bool about_participant = false;  // holds a DATA in which a participant announces itself, or says goodbye
-  bool announces_itself = false;   // holds an announcement of its source
-  Announced announced;             // in that announcement; in the datagram that was checked
+  bool announces_itself = false;  // holds an announcement of its source
+  Announced announced;            // in that announcement; in the datagram that was checked
   // An announcement of a participant that this process ignores.
   bool is_ignored = false;
 

@@ -11,7 +11,6 @@
 namespace swiftlet::comms {
 namespace {
 
-constexpr std::int64_t kHeardLately_ns = 1'000'000'000;  // half the lease of a process
 constexpr std::int64_t kExpected_ns = 20'000'000'000;
 
 }  // namespace
@@ -49,7 +48,6 @@ CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size,
     return checked;
   }
   if (checked.announces_itself) checked.is_ignored = ignores(checked, sender, now);
-  if (limits_.security && checked.about_participant && !checked.is_ignored) note_announcement(checked, now);
   return checked;
 }
 
@@ -57,7 +55,7 @@ bool DatagramGuard::ignores(const CheckedDatagram& checked, const SenderAddress&
   const std::lock_guard<std::mutex> lock(mutex_);
   const Announced& said = checked.announced;
   moved_hosts_.heard(said, ipv4_of(sender), now.steady_ns);
-  return !participants_.announced(checked.source, said.discovery_port, concerns_us(said), now.steady_ns);
+  return !participants_.announced(checked.source, said, concerns_us(said), now.steady_ns);
 }
 
 bool DatagramGuard::concerns_us(const Announced& said) const {
@@ -70,34 +68,9 @@ void DatagramGuard::ignore_apart_from(const std::vector<std::uint8_t>& own_user_
   own_user_data_.assign(own_user_data.begin(), own_user_data.end());
 }
 
-void DatagramGuard::note_announcement(const CheckedDatagram& checked, const Now& now) {
-  const std::lock_guard<std::mutex> lock(announcements_mutex_);
-  if (!checked.announces_itself) {
-    announcements_.erase(checked.source);
-    return;
-  }
-  if (announcements_.size() >= kMostAnnouncements && announcements_.count(checked.source) == 0)
-    announcements_.erase(
-        std::min_element(announcements_.begin(), announcements_.end(),
-                         [](const auto& a, const auto& b) { return a.second.heard_ns < b.second.heard_ns; }));
-  const Announced& said = checked.announced;
-  Announcement& known = announcements_[checked.source];
-  if (known.heard_ns == 0 || now.steady_ns - known.heard_ns > kHeardLately_ns) known.since_ns = now.steady_ns;
-  known.heard_ns = now.steady_ns;
-  known.name.clear();
-  if (said.name_size > 0)
-    known.name.assign(said.name, std::find(said.name, said.name + said.name_size - 1, 0));
-  known.user_data.clear();
-  if (said.user_data != nullptr) known.user_data.assign(said.user_data, said.user_data + said.user_data_size);
-}
-
-std::map<GuidPrefix, DatagramGuard::Announcement> DatagramGuard::announcements(const Now& now) {
-  const std::lock_guard<std::mutex> lock(announcements_mutex_);
-  std::map<GuidPrefix, Announcement> lately;
-  for (const auto& [participant, said] : announcements_) {
-    if (now.steady_ns - said.heard_ns < kHeardLately_ns) lately.emplace(participant, said);
-  }
-  return lately;
+std::string DatagramGuard::name_of(const GuidPrefix& participant) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return participants_.name_of(participant);
 }
 
 void DatagramGuard::set_participant(const GuidPrefix& own) {

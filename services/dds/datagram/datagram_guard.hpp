@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -27,19 +26,10 @@ struct Now {
   static Now read();
 };
 
-// Thread-safe: shared by the transport of a participant and its receiving threads. Allocates only when constructed, for
-// fragments that are sent, and with security for announcements.
+// Thread-safe: shared by the transport of a participant and its receiving threads. Allocates only when constructed, and
+// for fragments that are sent.
 class DatagramGuard {
  public:
-  // What a participant said last about itself. Nothing proves it.
-  struct Announcement {
-    std::string name;
-    std::vector<std::uint8_t> user_data;
-    std::int64_t since_ns = 0;  // of a monotonic clock
-    std::int64_t heard_ns = 0;
-  };
-  static constexpr std::size_t kMostAnnouncements = 64;
-
   // keys: of the network; empty: datagrams are not sealed.
   explicit DatagramGuard(const runtime::NetworkKeys& keys = {}, const DatagramLimits& limits = {});
 
@@ -64,8 +54,8 @@ class DatagramGuard {
   std::size_t participants_heard(const Now& now);
   std::vector<Joined> participants_joined(const Now& now);
 
-  // With security: of the participants that have announced themselves within the last second, and not said goodbye.
-  std::map<GuidPrefix, Announcement> announcements(const Now& now);
+  // As they say themselves.
+  std::string name_of(const GuidPrefix& participant);
 
   bool seals() const { return sealer_.has_value(); }
   // Turns a datagram of the middleware into a sealed one. Requires seals().
@@ -92,8 +82,6 @@ class DatagramGuard {
   bool ignores(const CheckedDatagram& checked, const SenderAddress& sender, const Now& now);
   bool concerns_us(const Announced& said) const;
 
-  void note_announcement(const CheckedDatagram& checked, const Now& now);
-
   const DatagramLimits limits_;
   std::optional<DatagramSealer> sealer_;
   RefusalLog refusals_;
@@ -107,10 +95,6 @@ class DatagramGuard {
   std::string own_user_data_;  // empty: nobody is ignored
   std::size_t expected_ = 0;
   std::int64_t expected_until_ns_ = 0;
-
-  // Apart, since it is changed with memory allocated: only threads that receive announcements take it.
-  std::mutex announcements_mutex_;
-  std::map<GuidPrefix, Announcement> announcements_;  // the longest silent one is replaced
 };
 
 }  // namespace swiftlet::comms

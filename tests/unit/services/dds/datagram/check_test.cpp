@@ -88,12 +88,11 @@ TEST(Datagram, ReportsItsSourceAndItsGaps) {
                                             .add(0x08, 0, gap_of(kSedpWriter, 3, 4)));
   ASSERT_EQ(checked.fault, nullptr);
   EXPECT_EQ(checked.source, kBob);
-  EXPECT_FALSE(checked.about_participant);
+  EXPECT_FALSE(checked.announces_itself);
   ASSERT_EQ(checked.gap_count, 1U);
   EXPECT_EQ(checked.gaps[0].writer, kSedpWriter);
   EXPECT_EQ(checked.gaps[0].end, 4U);
   const CheckedDatagram announced = check(announcement(kAlice, participant_parameters(kAlice)));
-  EXPECT_TRUE(announced.about_participant);
   EXPECT_TRUE(announced.announces_itself);
 }
 
