@@ -4,6 +4,7 @@
 #include <climits>
 #include <iterator>
 #include <random>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
@@ -120,10 +121,6 @@ void Participant::Impl::serve(const std::string& vehicle) {
   if (lists(announcement_.vehicles, vehicle)) return;
   {
     const std::lock_guard<std::mutex> peers_lock(peers_mutex_);
-    for (const auto& [guid, peer] : peers_) {
-      if (!is_own(peer) && lists(peer.announced.vehicles, vehicle))
-        rediscovery_.came(guid.guidPrefix, Clock::now());
-    }
     announcement_.vehicles += (announcement_.vehicles.empty() ? "" : ",") + vehicle;
   }
   guard_->ignore_apart_from(to_user_data(announcement_));
@@ -140,9 +137,6 @@ void Participant::Impl::stop_serving(const std::string& vehicle) {
     std::vector<std::string> vehicles = split_names(announcement_.vehicles);
     vehicles.erase(std::remove(vehicles.begin(), vehicles.end(), vehicle), vehicles.end());
     announcement_.vehicles = join_names(vehicles);
-    for (const auto& [guid, peer] : peers_) {
-      if (!is_own(peer)) rediscovery_.gone(guid.guidPrefix);
-    }
   }
   guard_->ignore_apart_from(to_user_data(announcement_));
   announcement_changed_ = true;
@@ -193,7 +187,10 @@ void Participant::Impl::rejoin_if_rediscovery_failed() {
     const std::lock_guard<std::mutex> lock(peers_mutex_);
     const auto now = Clock::now();
     if (!away_) {
-      if (!rediscovery_.failed(now, patience_.at(now))) return;
+      const auto is_incomplete = [&](const auto& known) {
+        return is_own(known.second) && known.second.endpoints.are_missing(now, patience_.at(now));
+      };
+      if (std::none_of(peers_.begin(), peers_.end(), is_incomplete)) return;
       patience_.rejoined(now);
     }
   }
@@ -231,7 +228,7 @@ void Participant::Impl::leave() {
   strangers_.clear();
   writers_.clear();
   readers_.clear();
-  rediscovery_.clear();
+  lost_.clear();
 }
 
 // ---- other processes
@@ -248,8 +245,7 @@ std::vector<ProcessIdentity> Participant::Impl::processes_seen() const {
   const runtime::RealtimeScope scope = realtime();
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   std::vector<ProcessIdentity> processes;
-  for (const auto& [guid, peer] : peers_)
-    processes.push_back({peer.name, peer.announced.host, peer.announced.pid});
+  for (const auto& [guid, peer] : peers_) processes.push_back(peer.identity());
   return processes;
 }
 
@@ -258,8 +254,7 @@ std::vector<std::string> Participant::Impl::qos_conflicts_seen() const {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   const auto process = [this](const Guid& guid) {
     const Peer* const peer = peer_of(guid.guidPrefix);
-    if (peer == nullptr) return std::string("an unknown program");
-    return ProcessIdentity{peer->name, peer->announced.host, peer->announced.pid}.to_string();
+    return peer == nullptr ? "an unknown program" : peer->identity().to_string();
   };
   std::vector<std::string> sentences;
   for (const auto& [writer_guid, writer] : writers_) {
@@ -278,8 +273,7 @@ ProcessIdentity Participant::Impl::identity_of(const GuidPrefix& participant) co
   const runtime::RealtimeScope scope = realtime();
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   const Peer* const peer = peer_of(participant);
-  if (peer == nullptr) return {};
-  return {peer->name, peer->announced.host, peer->announced.pid};
+  return peer == nullptr ? ProcessIdentity() : peer->identity();
 }
 
 void Participant::Impl::listen(const Node* node, const std::string& vehicle,
@@ -327,10 +321,15 @@ void Participant::Impl::tell(const PeerListener& listener, const PeerEvent& even
   listener.callback(event);
 }
 
-void Participant::Impl::update_peer(const Guid& guid, const Peer& peer) {
-  Peer& known = peers_[guid];
-  const Peer before = std::exchange(known, peer);
-  if (is_own(peer) && !is_own(before)) rediscovery_.came(guid.guidPrefix, Clock::now());
+void Participant::Impl::update_peer(const Guid& guid, Peer peer) {
+  const auto [known, is_new] = peers_.try_emplace(guid);
+  if (is_new) {
+    const auto lost = lost_.find(guid.guidPrefix);
+    peer.endpoints = {Clock::now(), 0, lost == lost_.end() ? 0 : lost->second};
+  } else {
+    peer.endpoints = known->second.endpoints;
+  }
+  const Peer before = std::exchange(known->second, peer);
   for (const auto& [node, listener] : peer_listeners_) {
     const bool serves = lists(peer.announced.vehicles, listener.vehicle);
     if (serves != lists(before.announced.vehicles, listener.vehicle))
@@ -348,9 +347,12 @@ void Participant::Impl::drop_peer(const Guid& guid, bool said_goodbye) {
   if (peer == peers_.end()) return;
   const Peer gone = peer->second;
   peers_.erase(peer);
-  if (said_goodbye) rediscovery_.gone(guid.guidPrefix);
+  lost_.erase(guid.guidPrefix);
   if (!is_own(gone)) return;
-  if (!said_goodbye) rediscovery_.lost(guid.guidPrefix);
+  if (!said_goodbye) {
+    if (lost_.size() >= kMostParticipants) lost_.clear();  // of those that were started again, as other peers
+    lost_[guid.guidPrefix] = gone.endpoints.known | gone.endpoints.before;
+  }
   for (const auto& [node, listener] : peer_listeners_) {
     if (lists(gone.announced.vehicles, listener.vehicle)) tell(listener, {gone.name, false, said_goodbye});
   }
@@ -358,7 +360,7 @@ void Participant::Impl::drop_peer(const Guid& guid, bool said_goodbye) {
 
 void Participant::Impl::on_writer(const Guid& guid, const std::string& topic, const EndpointQos& qos) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
-  add_endpoint(writers_, guid, {topic, qos}, PeerMonitor::kWriter);
+  add_endpoint(writers_, guid, {topic, qos}, PeerEndpoints::kWriter);
 }
 
 void Participant::Impl::on_writer_gone(const Guid& guid) {
@@ -368,7 +370,7 @@ void Participant::Impl::on_writer_gone(const Guid& guid) {
 
 void Participant::Impl::on_reader(const Guid& guid, const std::string& topic, const EndpointQos& qos) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
-  add_endpoint(readers_, guid, {topic, qos}, PeerMonitor::kReader);
+  add_endpoint(readers_, guid, {topic, qos}, PeerEndpoints::kReader);
 }
 
 void Participant::Impl::on_reader_gone(const Guid& guid) {
@@ -377,9 +379,9 @@ void Participant::Impl::on_reader_gone(const Guid& guid) {
 }
 
 void Participant::Impl::add_endpoint(RemoteEndpoints& endpoints, const Guid& guid, RemoteEndpoint endpoint,
-                                     PeerMonitor::Kind kind) {
-  const Peer* const peer = peer_of(guid.guidPrefix);
-  if (peer != nullptr && is_own(*peer)) rediscovery_.has(guid.guidPrefix, kind);
+                                     PeerEndpoints::Kind kind) {
+  const auto peer = peers_.find(participant_guid(guid.guidPrefix));
+  if (peer != peers_.end()) peer->second.endpoints.known |= kind;
   endpoints[guid] = std::move(endpoint);
 }
 
@@ -498,10 +500,9 @@ void Participant::Impl::yield_source_to(const Peer& peer) {
 
 std::string Participant::Impl::in_use_by(const std::string& vehicle, const std::string& topic,
                                          const Peer& source) const {
-  const ProcessIdentity process{source.name, source.announced.host, source.announced.pid};
   const std::string what = topic == kFlight ? " has reserved it for a flight" : " publishes its " + topic;
   return "vehicle " + vehicle + " is already in use in domain " + std::to_string(settings.domain) + ": " +
-         process.to_string() + what;
+         source.identity().to_string() + what;
 }
 
 }  // namespace swiftlet::comms

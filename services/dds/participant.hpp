@@ -18,8 +18,7 @@
 #include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 #include "swiftlet/services/dds/discovery/address_watch.hpp"
 #include "swiftlet/services/dds/discovery/announcement.hpp"
-#include "swiftlet/services/dds/discovery/rediscovery_monitor.hpp"
-#include "swiftlet/services/dds/discovery/rejoin_patience.hpp"
+#include "swiftlet/services/dds/discovery/rediscovery.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/limited_log.hpp"
 #include "swiftlet/services/dds/node.hpp"
@@ -69,10 +68,12 @@ struct Participant::Impl final : public DiscoveryListener {
  private:
   using Guid = rtps::GUID_t;
   using GuidPrefix = rtps::GuidPrefix_t;
-  using PeerMonitor = RediscoveryMonitor<GuidPrefix>;
   struct Peer {
     std::string name;
     Announcement announced;
+    PeerEndpoints endpoints{};
+
+    ProcessIdentity identity() const { return {name, announced.host, announced.pid}; }
   };
   struct RemoteEndpoint {
     std::string topic;
@@ -109,10 +110,10 @@ struct Participant::Impl final : public DiscoveryListener {
 
   // All of these require peers_mutex_.
   static void tell(const PeerListener& listener, const PeerEvent& event) noexcept;
-  void update_peer(const Guid& guid, const Peer& peer);  // a known peer may serve more vehicles now
+  void update_peer(const Guid& guid, Peer peer);  // a known peer may serve more vehicles now
   void drop_peer(const Guid& guid, bool said_goodbye);
   void add_endpoint(RemoteEndpoints& endpoints, const Guid& guid, RemoteEndpoint endpoint,
-                    PeerMonitor::Kind kind);
+                    PeerEndpoints::Kind kind);
   const Peer* peer_of(const GuidPrefix& participant) const;
   std::string shared_vehicle(const Peer& peer) const;  // the first vehicle that both serve; empty if none
   bool is_own(const Peer& peer) const { return !shared_vehicle(peer).empty(); }
@@ -151,7 +152,7 @@ struct Participant::Impl final : public DiscoveryListener {
   RemoteEndpoints readers_;
   LimitedLog log_;
   std::map<const Node*, PeerListener> peer_listeners_;
-  PeerMonitor rediscovery_;
+  std::map<GuidPrefix, unsigned> lost_;  // kinds of endpoints of those peers whose lease has expired
   RejoinPatience patience_;
 
   AddressWatch addresses_;

@@ -1,4 +1,8 @@
-// How long a process waits for the endpoints of a rediscovered peer before it rejoins the domain.
+// When a process leaves the domain and joins it again, because a peer was rediscovered incompletely.
+//
+// When a network is cut, both sides drop each other. When only one process was away (stopped, or starved of CPU time), the others
+// drop it, but it may still know them. Fast DDS 2.9 then does not always announce its endpoints again, and the processes never
+// receive each other.
 #pragma once
 
 #include <algorithm>
@@ -6,15 +10,29 @@
 
 namespace swiftlet::comms {
 
+// Which kinds of endpoints of a peer are known.
+struct PeerEndpoints {
+  using Time = std::chrono::steady_clock::time_point;
+  enum Kind : unsigned { kWriter = 1, kReader = 2 };
+
+  Time discovered{};  // the peer
+  unsigned known = 0;
+  unsigned before = 0;  // known before its lease expired, if it did
+
+  // Whether it was rediscovered longer than patience ago and still lacks a kind of endpoint.
+  bool are_missing(Time now, std::chrono::milliseconds patience) const {
+    return (before & ~known) != 0 && now - patience > discovered;
+  }
+};
+
 // A rejoin makes all peers discover a new process. On a host without enough CPU time that may make them rejoin in turn:
 // therefore each further rejoin waits twice as long, and processes that began together wait differently long.
 class RejoinPatience {
  public:
-  using Time = std::chrono::steady_clock::time_point;
+  using Time = PeerEndpoints::Time;
   static constexpr std::chrono::milliseconds kFirst{1000};
   static constexpr int kMostDoublings = 4;
-  static constexpr std::chrono::seconds kQuiet{
-      60};  // after that time without a rejoin it begins again with kFirst
+  static constexpr std::chrono::seconds kQuiet{60};  // without a rejoin, until it begins again with kFirst
 
   // spread: 0 to 1, of this process. It prolongs all times but the first by up to a half.
   explicit RejoinPatience(double spread) : spread_(spread) {}

@@ -1,12 +1,26 @@
-#include "swiftlet/services/dds/discovery/rejoin_patience.hpp"
+#include "swiftlet/services/dds/discovery/rediscovery.hpp"
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::comms::rejoin_patience_test {
+namespace swiftlet::comms::rediscovery_test {
 
 using namespace std::chrono_literals;
 
 constexpr RejoinPatience::Time kStart = RejoinPatience::Time{} + 1h;
+
+TEST(PeerEndpoints, AreMissingIfAKindDoesNotReturn) {
+  const unsigned both = PeerEndpoints::kWriter | PeerEndpoints::kReader;
+  for (const unsigned known : {0U, 1U, 2U}) {
+    PeerEndpoints endpoints{kStart, known, 0};
+    EXPECT_FALSE(endpoints.are_missing(kStart + 1min, 1000ms)) << "it may have no others";
+    endpoints.before = both;
+    EXPECT_FALSE(endpoints.are_missing(kStart + 900ms, 1000ms));
+    EXPECT_TRUE(endpoints.are_missing(kStart + 1100ms, 1000ms));
+    endpoints.known = both;
+    EXPECT_FALSE(endpoints.are_missing(kStart + 1min, 1000ms));
+  }
+  EXPECT_FALSE((PeerEndpoints{kStart, both, PeerEndpoints::kReader}.are_missing(kStart + 1min, 1000ms)));
+}
 
 TEST(RejoinPatience, DoublesWithEachRejoin) {
   RejoinPatience patience(0.0);
@@ -35,4 +49,4 @@ TEST(RejoinPatience, DiffersBetweenProcessesAfterTheFirst) {
   EXPECT_EQ(patience.at(kStart), 3000ms);
 }
 
-}  // namespace swiftlet::comms::rejoin_patience_test
+}  // namespace swiftlet::comms::rediscovery_test
