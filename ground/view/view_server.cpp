@@ -30,9 +30,9 @@
 #include "swiftlet/ground/view/live_topics.hpp"
 #include "swiftlet/ground/view/vehicle_requests.hpp"
 #include "swiftlet/ground/view/viewer.hpp"
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/services/dds/datagram/token_bucket.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
-#include "swiftlet/services/runtime/split_text.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -7,12 +7,11 @@
 #include <vector>
 
 #include "swiftlet/io/config.hpp"
+#include "swiftlet/io/network/host_address.hpp"
+#include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/io/network_key.hpp"
 #include "swiftlet/io/text.hpp"
 #include "swiftlet/io/text_file.hpp"
-#include "swiftlet/services/dds/discovery/discovery_servers.hpp"
-#include "swiftlet/services/dds/discovery/host_address.hpp"
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
 #include "swiftlet/services/dds/security/security_qos.hpp"
 
 namespace swiftlet::comms {
@@ -51,10 +50,10 @@ void read_discovery(const ConfigNode& root, NodeSettings& settings) {
   settings.localhost_only = localhost_only;
   settings.network.peers.clear();
   settings.network.discovery_servers.clear();
-  if (peers) settings.network.peers = texts(*peers, kMaxPeers, fault_of_host_address);
+  if (peers) settings.network.peers = texts(*peers, kMaxPeers, runtime::fault_of_host_address);
   if (servers)
     settings.network.discovery_servers =
-        runtime::joined(texts(*servers, kMaxDiscoveryServers, fault_of_host_address), ";");
+        runtime::joined(texts(*servers, runtime::kMaxDiscoveryServers, runtime::fault_of_host_address), ";");
 }
 
 std::string path_beside(const ConfigNode& file) {
@@ -69,7 +68,7 @@ void read(const ConfigNode& root, NodeSettings& settings) {
   }
   if (const auto interfaces = root.find("interfaces")) {
     if (settings.localhost_only) interfaces->fail("excludes localhost_only: true");
-    settings.network.interfaces = texts(*interfaces, kMaxInterfaces, fault_of_interface);
+    settings.network.interfaces = texts(*interfaces, kMaxInterfaces, runtime::fault_of_interface);
   }
   if (const auto profile = root.find("dds_profile")) settings.network.dds_profile = path_beside(*profile);
   if (const auto key = root.find("network_key")) {

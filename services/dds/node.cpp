@@ -10,8 +10,8 @@
 #include "swiftlet/services/dds/endpoints.hpp"
 #include "swiftlet/services/dds/message_types.hpp"
 #include "swiftlet/services/dds/participant.hpp"
-#include "swiftlet/services/dds/vehicle_name.hpp"
 #include "swiftlet/services/messages/schemas.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 
 namespace swiftlet::comms {
 

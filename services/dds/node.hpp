@@ -19,7 +19,7 @@ namespace swiftlet::comms {
 
 struct NodeSettings {
   std::string name;             // process: "plant", "mocap", "control", "ground"
-  std::string vehicle = "kl1";  // namespace of the topics: see vehicle_name.hpp
+  std::string vehicle = "kl1";  // namespace of the topics: see messages/vehicle_names.hpp
   int domain = 0;               // 0 .. 232
   bool localhost_only = false;  // loopback interface only, without multicast
   NetworkSettings network{};    // needs the network: see on_loopback()

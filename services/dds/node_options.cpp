@@ -5,14 +5,13 @@
 #include <string>
 
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/network/host_address.hpp"
+#include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/io/network_key.hpp"
-#include "swiftlet/services/dds/discovery/discovery_servers.hpp"
-#include "swiftlet/services/dds/discovery/host_address.hpp"
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/services/dds/network_file.hpp"
 #include "swiftlet/services/dds/security/security_qos.hpp"
-#include "swiftlet/services/dds/vehicle_list.hpp"
-#include "swiftlet/services/runtime/split_text.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -74,7 +73,7 @@ void add_network_options(runtime::CommandLine app, NodeSettings& settings) {
                      "Find the processes of this host without multicast; once for each other host; default: "
                      "$ROS_STATIC_PEERS");
   peer.repeated()
-      .check(fault_of_host_address, "HOST[:PORT]")
+      .check(runtime::fault_of_host_address, "HOST[:PORT]")
       .excludes(localhost_only)
       .when_given([&settings] {
         settings.localhost_only = false;
@@ -83,7 +82,7 @@ void add_network_options(runtime::CommandLine app, NodeSettings& settings) {
   app.add_option("--discovery-server", settings.network.discovery_servers,
                  "Find the other processes by `swiftlet discovery-server` at this address (port 11811 unless "
                  "given), without multicast; default: $ROS_DISCOVERY_SERVER")
-      .check(fault_of_discovery_servers, "HOST[:PORT]")
+      .check(runtime::fault_of_discovery_servers, "HOST[:PORT]")
       .excludes(localhost_only)
       .excludes(peer)
       .when_given([&settings] {
@@ -93,7 +92,7 @@ void add_network_options(runtime::CommandLine app, NodeSettings& settings) {
   app.add_option("--interface", settings.network.interfaces,
                  "Use this network interface, and that of the loopback, only; may be repeated")
       .repeated()
-      .check(fault_of_interface, "NAME|ADDRESS")
+      .check(runtime::fault_of_interface, "NAME|ADDRESS")
       .excludes(localhost_only)
       .when_given([&settings] { settings.localhost_only = false; });
 }

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "swiftlet/services/dds/node.hpp"
-#include "swiftlet/services/dds/vehicle_name.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 #include "swiftlet/services/runtime/command_line.hpp"
 
 namespace swiftlet::comms {
@@ -24,7 +24,7 @@ struct NameCheck {
 // $SWIFTLET_OPEN_NETWORK), --security (default $SWIFTLET_SECURITY).
 void add_node_options(runtime::CommandLine app, NodeSettings& settings, const NameCheck& name = {});
 
-// The same for a program that serves vehicles: --vehicle-name takes a list (vehicle_list.hpp), which it leaves in
+// The same for a program that serves vehicles: --vehicle-name takes a list (vehicle_names.hpp), which it leaves in
 // settings.vehicle.
 void add_service_options(runtime::CommandLine app, NodeSettings& settings);
 

@@ -91,7 +91,7 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
       announcement_(announcement_of(node_settings, vehicles)),
       patience_(random_share()) {
   check(settings);
-  guard_->set_own_interfaces(interfaces_up());
+  guard_->set_own_interfaces(runtime::interfaces_up());
   guard_->ignore_apart_from(to_user_data(announcement_));
   if (settings.network.discovery_servers.empty()) introduced_at_ = Clock::now();
   const runtime::RealtimeScope scope = realtime();
@@ -152,7 +152,7 @@ void Participant::Impl::follow_addresses() {
   for (const MovedHosts::Move& move : guard_->take_moves())
     runtime::log_warning("what is for {} is sent to {} now, from where its host is heard",
                          text_of(move.announced), text_of(move.heard_at));
-  const std::vector<Interface> own = interfaces_up();
+  const std::vector<runtime::Interface> own = runtime::interfaces_up();
   guard_->set_own_interfaces(own);
   if (settings.on_loopback()) return;
   const auto change = addresses_.poll(own, settings.network);

@@ -59,12 +59,12 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
   UDPv4TransportDescriptor udp = profile.udp;
   udp.non_blocking_send = true;  // a full socket buffer drops a sample instead of blocking the sender
   if (settings.on_loopback()) {
-    udp.interfaceWhiteList = {kLoopback};
+    udp.interfaceWhiteList = {runtime::kLoopback};
     udp.maxInitialPeersRange = announced_ports;
     // Listen on the first free port of the domain, whatever ID the middleware assigns to the participant, and
     // on no multicast address. For the peers (port 0) the middleware tries maxInitialPeersRange ports.
-    builtin.metatrafficUnicastLocatorList.push_back(udp_locator(kLoopback, ports.first));
-    builtin.initialPeersList.push_back(udp_locator(kLoopback, 0));
+    builtin.metatrafficUnicastLocatorList.push_back(udp_locator(runtime::kLoopback, ports.first));
+    builtin.initialPeersList.push_back(udp_locator(runtime::kLoopback, 0));
   } else {
     set_network(settings, announced_ports, qos, udp);
   }

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/io/network_key.hpp"
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/fast_dds_library.hpp"
 #include "swiftlet/services/dds/participant_qos.hpp"
@@ -44,7 +44,7 @@ dds::DomainParticipant* create_participant(const NodeSettings& settings, const A
 // Empty: all addresses of this host.
 std::string listening_address(const NodeSettings& settings) {
   if (settings.on_loopback()) return "127.0.0.1";
-  const std::vector<std::string> addresses = addresses_of_interfaces(settings.network.interfaces);
+  const std::vector<std::string> addresses = runtime::addresses_of_interfaces(settings.network.interfaces);
   return addresses.empty() ? "" : addresses.front();
 }
 

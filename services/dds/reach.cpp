@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 
 namespace swiftlet::comms {
@@ -36,7 +36,7 @@ void log_reach(const NodeSettings& settings) {
   if (settings.localhost_only || !settings.network_key_file.empty() || !settings.security.empty()) return;
   if (settings.open_network) {
     std::vector<std::string> others;
-    for (const Interface& it : interfaces_up())
+    for (const runtime::Interface& it : runtime::interfaces_up())
       if (!it.is_loopback) others.push_back(it.name);
     runtime::log_warning("--open-network: who is in the network of {} can command these vehicles",
                          others.empty() ? "the loopback interface" : listed(others));

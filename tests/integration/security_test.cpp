@@ -14,7 +14,7 @@
 #include "swiftlet/io/security/certificates.hpp"
 #include "swiftlet/io/security/security_folder.hpp"
 #include "swiftlet/io/text_file.hpp"
-#include "swiftlet/services/dds/security/policy.hpp"
+#include "swiftlet/services/messages/security_policy.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/redundant_flight.hpp"

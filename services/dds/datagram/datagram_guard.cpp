@@ -100,9 +100,9 @@ MovedHosts::News DatagramGuard::take_moves() {
   return moved_hosts_.take_news();
 }
 
-void DatagramGuard::set_own_interfaces(const std::vector<Interface>& own) {
+void DatagramGuard::set_own_interfaces(const std::vector<runtime::Interface>& own) {
   std::vector<Ipv4> addresses;
-  for (const Interface& it : own) addresses.push_back(it.ipv4);
+  for (const runtime::Interface& it : own) addresses.push_back(it.ipv4);
   const std::lock_guard<std::mutex> lock(mutex_);
   moved_hosts_.set_own(std::move(addresses));
 }

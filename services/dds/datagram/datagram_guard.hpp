@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/services/dds/datagram/check.hpp"
 #include "swiftlet/services/dds/datagram/datagram_seal.hpp"
 #include "swiftlet/services/dds/datagram/heard_participants.hpp"
 #include "swiftlet/services/dds/datagram/moved_hosts.hpp"
 #include "swiftlet/services/dds/datagram/refusal_log.hpp"
 #include "swiftlet/services/dds/datagram/reply_check.hpp"
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
 
 namespace swiftlet::comms {
 
@@ -70,7 +70,7 @@ class DatagramGuard {
   const MovedHosts& moved_hosts() const { return moved_hosts_; }
   MovedHosts::News take_moves();
   // Those of this host, with an address.
-  void set_own_interfaces(const std::vector<Interface>& own);
+  void set_own_interfaces(const std::vector<runtime::Interface>& own);
 
   // Held while the middleware takes in what a discovery server sent, and while its participant announces a change: Fast DDS
   // takes two locks in one order for the former (PDPClient::assignRemoteEndpoints), and in the other one for the latter

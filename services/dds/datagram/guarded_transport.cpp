@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/services/dds/discovery/repeated_discovery.hpp"
 
 namespace swiftlet::comms {
@@ -132,9 +132,9 @@ bool GuardedTransport::send_to(rtps::SenderResource& below, const OutgoingDatagr
 
 bool GuardedTransport::leads_here(const rtps::Locator_t& announced, rtps::Locator_t& used) const {
   if (!on_loopback_ || announced.kind != LOCATOR_KIND_UDPv4) return false;
-  if (!is_own_address(rtps::IPLocator::ip_to_string(announced))) return false;
+  if (!runtime::is_own_address(rtps::IPLocator::ip_to_string(announced))) return false;
   used = announced;
-  rtps::IPLocator::setIPv4(used, kLoopback);
+  rtps::IPLocator::setIPv4(used, runtime::kLoopback);
   return true;
 }
 
@@ -221,7 +221,7 @@ struct GuardedUdp final : transport::ChainingTransportDescriptor {
   GuardedUdp(const transport::UDPv4TransportDescriptor& udp, std::shared_ptr<DatagramGuard> shared,
              std::optional<int> of)
       : ChainingTransportDescriptor(std::make_shared<transport::UDPv4TransportDescriptor>(udp)),
-        on_loopback(udp.interfaceWhiteList == std::vector<std::string>{kLoopback}),
+        on_loopback(udp.interfaceWhiteList == std::vector<std::string>{runtime::kLoopback}),
         domain(of),
         guard(std::move(shared)) {}
   transport::TransportInterface* create_transport() const override {

@@ -15,10 +15,10 @@ std::string listed(const std::set<std::string>& addresses) {
 
 }  // namespace
 
-std::optional<std::string> AddressWatch::poll(const std::vector<Interface>& interfaces,
+std::optional<std::string> AddressWatch::poll(const std::vector<runtime::Interface>& interfaces,
                                               const NetworkSettings& network) {
   std::set<std::string> now;
-  for (const Interface& it : interfaces) {
+  for (const runtime::Interface& it : interfaces) {
     if (!it.is_loopback) now.insert(it.address + " of " + it.name);
   }
   return change(std::move(now), network);

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <tuple>
 
-#include "swiftlet/services/runtime/split_text.hpp"
+#include "swiftlet/io/text.hpp"
 
 namespace swiftlet::comms {
 namespace {

@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 #include "swiftlet/services/dds/datagram/guarded_transport.hpp"
 #include "swiftlet/services/dds/discovery/announcement.hpp"
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/fast_dds_library.hpp"
 #include "swiftlet/services/dds/network_qos.hpp"
@@ -68,16 +68,16 @@ dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings,
   protocol.builtin.discovery_config.leaseDuration = duration(kLivelinessLease);
   protocol.builtin.discovery_config.leaseDuration_announcementperiod = duration(kLivelinessPeriod);
   // Fast DDS 3.1 takes the port for taken if it listens on all addresses of a host that is in no network.
-  const std::vector<Interface> interfaces = interfaces_up();
+  const std::vector<runtime::Interface> interfaces = runtime::interfaces_up();
   const bool in_a_network =
-      !settings.on_loopback() &&
-      std::any_of(interfaces.begin(), interfaces.end(), [](const Interface& it) { return !it.is_loopback; });
-  protocol.builtin.metatrafficUnicastLocatorList.push_back(
-      udp_locator(in_a_network ? kAnyAddress : kLoopback, static_cast<std::uint32_t>(settings.port)));
+      !settings.on_loopback() && std::any_of(interfaces.begin(), interfaces.end(),
+                                             [](const runtime::Interface& it) { return !it.is_loopback; });
+  protocol.builtin.metatrafficUnicastLocatorList.push_back(udp_locator(
+      in_a_network ? kAnyAddress : runtime::kLoopback, static_cast<std::uint32_t>(settings.port)));
   UDPv4TransportDescriptor udp;
-  udp.interfaceWhiteList = addresses_of_interfaces(settings.interfaces);
+  udp.interfaceWhiteList = runtime::addresses_of_interfaces(settings.interfaces);
   if (!settings.interfaces.empty() || !in_a_network)
-    udp.interfaceWhiteList.emplace_back(kLoopback);  // for clients of this host
+    udp.interfaceWhiteList.emplace_back(runtime::kLoopback);  // for clients of this host
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(guarded(udp, guard, std::nullopt));
   qos.allocation().participants = {0, kMostParticipants, 1};
@@ -135,7 +135,7 @@ DiscoveryServer::DiscoveryServer(const DiscoveryServerSettings& settings,
   set_up_fast_dds();
   require_free(settings.port);
   impl_->guard->listen(false);
-  impl_->guard->set_own_interfaces(interfaces_up());
+  impl_->guard->set_own_interfaces(runtime::interfaces_up());
   impl_->participant = dds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(settings.domain), server_qos(settings, impl_->guard), impl_.get(),
       dds::StatusMask::none());

@@ -16,7 +16,7 @@
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/logs/recorded_flight.hpp"
 #include "swiftlet/services/dds/discovery/flight_reservation.hpp"
-#include "swiftlet/services/dds/vehicle_list.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/io/network_key.hpp"
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::comms::network_file_test {
@@ -68,7 +68,7 @@ TEST(NetworkFile, NamesWhatIsWrong) {
   EXPECT_EQ(refusal("localhost_only: false\ninterfaces: [wlan9]\n"),
             file +
                 "2: interfaces[0]: is 'wlan9', must be an interface that is up, by name or IPv4 address: " +
-                interfaces_text(false));
+                runtime::interfaces_text(false));
   EXPECT_EQ(refusal("peers: [lab2]\nlocalhost_only: true\n"),
             file + "1: peers: excludes localhost_only: true");
   EXPECT_EQ(refusal("peers: [lab2]\ndiscovery_servers: [lab1]\n"),

@@ -1,4 +1,4 @@
-#include "swiftlet/services/dds/security/policy.hpp"
+#include "swiftlet/services/messages/security_policy.hpp"
 
 #include <ctime>
 

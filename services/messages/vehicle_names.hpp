@@ -1,4 +1,4 @@
-// Lists of vehicle names as on the command line: "kl1,kl2,kl5..kl7".
+// The names of vehicles, which are namespaces of ROS 2 topics, and lists of them as on the command line: "kl1,kl2,kl5..kl7".
 #pragma once
 
 #include <cstddef>
@@ -6,6 +6,10 @@
 #include <vector>
 
 namespace swiftlet::comms {
+
+// What is wrong with the name of a vehicle: "must be ..."; "" for a valid one. ROS 2 refuses names that begin with a digit,
+// reserves __, and hides what begins with _.
+std::string fault_of_vehicle_name(const std::string& name);
 
 // Longer lists are refused.
 constexpr std::size_t kMostListedVehicles = 200;

@@ -1,4 +1,4 @@
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/io/network/interfaces.hpp"
 
 #include <algorithm>
 #include <arpa/inet.h>
@@ -12,7 +12,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-namespace swiftlet::comms {
+namespace swiftlet::runtime {
 namespace {
 
 int mtu_of(const char* interface) {
@@ -77,4 +77,4 @@ std::vector<std::string> addresses_of_interfaces(const std::vector<std::string>&
   return addresses;
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::runtime

@@ -1,4 +1,4 @@
-#include "swiftlet/services/dds/discovery/host_address.hpp"
+#include "swiftlet/io/network/host_address.hpp"
 
 #include <stdexcept>
 #include <string>
@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/io/network/interfaces.hpp"
 
-namespace swiftlet::comms::host_address_test {
+namespace swiftlet::runtime::host_address_test {
 
 TEST(HostAddress, IsANameOrAddressWithOrWithoutPort) {
   for (const char* text : {"lab2", "lab-2.example.org", "10.0.0.7", "10.0.0.7:7412", "lab2:1", "lab2:65535"})
@@ -47,4 +47,23 @@ TEST(Interfaces, AreGivenByNameOrAddress) {
   EXPECT_THROW(addresses_of_interfaces({"lo", "wlan9"}), std::runtime_error);
 }
 
-}  // namespace swiftlet::comms::host_address_test
+TEST(DiscoveryServers, AreNumberedByTheirPlace) {
+  const auto servers = parse_discovery_servers("lab1;;10.0.0.7:11900");
+  ASSERT_EQ(servers.size(), 2U);
+  EXPECT_EQ(servers[0].number, 0);
+  EXPECT_EQ(servers[0].address.host, "lab1");
+  EXPECT_EQ(servers[0].address.port, 11811);
+  EXPECT_EQ(servers[1].number, 2);
+  EXPECT_EQ(servers[1].address.host, "10.0.0.7");
+  EXPECT_EQ(servers[1].address.port, 11900);
+}
+
+TEST(DiscoveryServers, AreRefusedIfOneIsMalformed) {
+  for (const char* list : {"lab1", "lab1:11811", ";lab2", "lab1;lab2:1"})
+    EXPECT_EQ(fault_of_discovery_servers(list), "") << list;
+  for (const char* list : {"", ";", "lab1:0", "lab1;lab2:x", "lab1,lab2"})
+    EXPECT_NE(fault_of_discovery_servers(list), "") << list;
+  EXPECT_NE(fault_of_discovery_servers(std::string(256, ';') + "lab1"), "");
+}
+
+}  // namespace swiftlet::runtime::host_address_test

@@ -1,4 +1,4 @@
-#include "swiftlet/services/dds/vehicle_list.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 
 #include <stdexcept>
 #include <string>
@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::comms::vehicle_list_test {
+namespace swiftlet::comms::vehicle_names_test {
 
 using Names = std::vector<std::string>;
 
@@ -37,4 +37,4 @@ TEST(VehicleList, RefusesWithAClauseThatNamesTheFault) {
   EXPECT_THROW(vehicles_of_list("kl1,kl1"), std::invalid_argument);
 }
 
-}  // namespace swiftlet::comms::vehicle_list_test
+}  // namespace swiftlet::comms::vehicle_names_test

@@ -1,16 +1,17 @@
-#include "swiftlet/services/dds/vehicle_list.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 
 #include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
 
-#include "swiftlet/services/dds/vehicle_name.hpp"
-#include "swiftlet/services/runtime/split_text.hpp"
+#include "swiftlet/io/text.hpp"
 
 namespace swiftlet::comms {
 namespace {
 
+constexpr std::size_t kMaxLength = 64;
+const std::string kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
 constexpr std::size_t kMostDigits = 9;  // fit into an integer
 
 // A name that ends with a number.
@@ -67,6 +68,13 @@ std::string expand(const std::string& list, std::vector<std::string>& names) {
 }
 
 }  // namespace
+
+std::string fault_of_vehicle_name(const std::string& name) {
+  const bool plain = name.find_first_not_of(kLetters + "0123456789_") == std::string::npos;
+  const bool begins = name.find_first_of(kLetters) == 0;
+  if (plain && begins && name.size() <= kMaxLength && name.find("__") == std::string::npos) return "";
+  return "must be 1 to 64 letters, digits and _, begin with a letter and have no __";
+}
 
 std::string fault_of_vehicle_list(const std::string& list) {
   std::vector<std::string> names;
