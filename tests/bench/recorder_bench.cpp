@@ -56,7 +56,6 @@ comms::NodeSettings network(const char* name, int domain) {
   comms::NodeSettings settings;
   settings.name = name;
   settings.domain = domain;
-  settings.localhost_only = true;
   return settings;
 }
 

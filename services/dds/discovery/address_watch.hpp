@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "swiftlet/io/network/interfaces.hpp"
-#include "swiftlet/services/dds/network_settings.hpp"
+#include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::comms {
 

@@ -38,7 +38,6 @@ class DdsProfiles : public testing::Test {
     NodeSettings settings;
     settings.name = "here";
     settings.domain = lock_.domain();
-    settings.localhost_only = true;
     settings.network.dds_profile = file;
     return settings;
   }

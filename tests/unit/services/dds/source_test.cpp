@@ -32,7 +32,6 @@ class Sources : public testing::Test {
     settings.name = name;
     settings.vehicle = vehicle;
     settings.domain = lock_.domain();
-    settings.localhost_only = true;
     settings.source_of = source_of;
     return settings;
   }

@@ -52,7 +52,6 @@ NodeSettings settings(const DomainLock& lock, const char* name) {
   NodeSettings settings;
   settings.name = name;
   settings.domain = lock.domain();
-  settings.localhost_only = true;
   return settings;
 }
 
@@ -144,7 +143,6 @@ TEST(DiscoveryPorts, LastDomainCanBeJoined) {
   NodeSettings settings;
   settings.name = "here";
   settings.domain = 232;
-  settings.localhost_only = true;
   EXPECT_NO_THROW(Node node(settings));
 }
 

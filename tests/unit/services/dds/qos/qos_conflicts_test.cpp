@@ -97,7 +97,6 @@ class QosConflictLog : public testing::Test {
     NodeSettings settings;
     settings.name = name;
     settings.domain = lock_.domain();
-    settings.localhost_only = true;
     return settings;
   }
 
