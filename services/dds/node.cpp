@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/services/dds/endpoints.hpp"
 #include "swiftlet/services/dds/message_types.hpp"
 #include "swiftlet/services/dds/participant.hpp"
@@ -41,7 +42,7 @@ std::string ProcessIdentity::to_string() const {
 Participant::Participant(const NodeSettings& settings) : impl_(std::make_shared<Impl>(settings, "")) {}
 
 Participant::Participant(const NodeSettings& settings, const std::vector<std::string>& vehicles)
-    : impl_(std::make_shared<Impl>(settings, join_names(vehicles))) {}
+    : impl_(std::make_shared<Impl>(settings, runtime::joined(vehicles, ","))) {}
 
 Node::Node(const NodeSettings& settings)
     : participant_(std::make_shared<Participant::Impl>(settings, checked(settings.vehicle))),

@@ -14,6 +14,7 @@
 #include <fmt/core.h>
 
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 
@@ -136,7 +137,7 @@ void Participant::Impl::stop_serving(const std::string& vehicle) {
     const std::lock_guard<std::mutex> peers_lock(peers_mutex_);
     std::vector<std::string> vehicles = split_names(announcement_.vehicles);
     vehicles.erase(std::remove(vehicles.begin(), vehicles.end(), vehicle), vehicles.end());
-    announcement_.vehicles = join_names(vehicles);
+    announcement_.vehicles = runtime::joined(vehicles, ",");
   }
   guard_->ignore_apart_from(to_user_data(announcement_));
   announcement_changed_ = true;
@@ -155,7 +156,7 @@ void Participant::Impl::follow_addresses() {
   const std::vector<runtime::Interface> own = runtime::interfaces_up();
   guard_->set_own_interfaces(own);
   if (settings.on_loopback()) return;
-  const auto change = addresses_.poll(own, settings.network);
+  const auto change = addresses_.change(own, settings.network);
   if (!change) return;
   runtime::log_warning("{}", *change);
   announcement_changed_ = true;

@@ -41,7 +41,7 @@ void ReplyCheck::note_sent(const std::uint8_t* message, std::size_t size) {
       const auto writer = bytes_of<4>(body);
       body.skip(4);  // the high word of the number
       const std::uint32_t base = body.u32();
-      if (body.ok()) acknowledged_[hash_of(destination, writer) % kWriters] = {destination, writer, base};
+      if (body.ok()) acknowledged_[place_of(destination, writer)] = {destination, writer, base};
     } else if (kind == kDataFrag) {
       body.skip(4 + 4);  // flags, place of the inline QoS, and the reader
       const auto writer = bytes_of<4>(body);
@@ -58,8 +58,12 @@ void ReplyCheck::note_sent(const std::uint8_t* message, std::size_t size) {
   });
 }
 
+std::size_t ReplyCheck::place_of(const GuidPrefix& participant, const EntityId& writer) {
+  return fnv(writer.data(), writer.size(), fnv(participant.data(), participant.size())) % kWriters;
+}
+
 std::uint32_t ReplyCheck::acknowledged(const GuidPrefix& participant, const EntityId& writer) const {
-  const Acknowledged& known = acknowledged_[hash_of(participant, writer) % kWriters];
+  const Acknowledged& known = acknowledged_[place_of(participant, writer)];
   return known.participant == participant && known.writer == writer ? known.base : 0;
 }
 

@@ -77,12 +77,6 @@ std::vector<std::string> split_names(const std::string& names) {
   return parts;
 }
 
-std::string join_names(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ",") + name;
-  return list;
-}
-
 bool yields(const Announcement& own, const Announcement& other) {
   if (own.is_established != other.is_established) return other.is_established;
   return std::tie(other.since_ns, other.host, other.pid) < std::tie(own.since_ns, own.host, own.pid);

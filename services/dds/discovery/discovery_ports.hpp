@@ -23,8 +23,10 @@ DiscoveryPorts discovery_ports(int domain);
 // The error "DDS domain 5 is full ...": all ports are taken. The others would not discover one more process.
 std::runtime_error domain_is_full(int domain);
 
-// Returns the index of the first free port of the domain, from 0. address: an IPv4 address of this host; empty:
-// all of them. Throws domain_is_full().
+// Why a UDP port cannot be opened, an errno; 0 if it can. address: an IPv4 address of this host; empty: all of them.
+int error_of_binding(std::uint32_t port, const std::string& address);
+
+// Returns the index of the first free port of the domain, from 0. address: as above. Throws domain_is_full().
 std::uint32_t free_discovery_port(int domain, const std::string& address);
 
 // Returns the indices of the ports that sockets of this process are bound to.

@@ -1,16 +1,12 @@
 #include "swiftlet/services/dds/discovery/discovery_server.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <map>
 #include <mutex>
-#include <netinet/in.h>
 #include <stdexcept>
-#include <sys/socket.h>
 #include <thread>
-#include <unistd.h>
 #include <utility>
 #include <vector>
 
@@ -19,10 +15,11 @@
 #include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 #include "swiftlet/services/dds/datagram/guarded_transport.hpp"
 #include "swiftlet/services/dds/discovery/announcement.hpp"
+#include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/fast_dds_library.hpp"
-#include "swiftlet/services/dds/network_qos.hpp"
 #include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/dds/participant_qos.hpp"
 #include "swiftlet/services/dds/periodic_task.hpp"
 #include "swiftlet/services/dds/qos/duration.hpp"
 
@@ -37,26 +34,16 @@ constexpr std::chrono::milliseconds kLogPeriod{250};
 constexpr int kPortLooks = 10;  // until a port counts as taken
 constexpr std::chrono::milliseconds kPortPeriod{50};
 
-// 0: the port is free.
-int error_of_binding(int port) {
-  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  const bool bound = ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-  const int error = bound ? 0 : errno;
-  ::close(socket);
-  return error;
-}
-
 // Fast DDS does not say why it fails. A server that was killed with its parent gives the port back a moment later.
 void require_free(int port) {
+  int error = 0;
   for (int look = 0; look < kPortLooks; ++look, std::this_thread::sleep_for(kPortPeriod)) {
-    if (error_of_binding(port) == 0) return;
+    error = error_of_binding(static_cast<std::uint32_t>(port), "");
+    if (error == 0) return;
   }
-  throw std::runtime_error("cannot listen on UDP port " + std::to_string(port) + ": " +
-                           std::strerror(error_of_binding(port)));
+  throw std::runtime_error("cannot listen on UDP port " + std::to_string(port) + ": " + std::strerror(error));
 }
+
 dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings,
                                      const std::shared_ptr<DatagramGuard>& guard) {
   dds::DomainParticipantQos qos;

@@ -23,15 +23,6 @@ namespace {
 // More than a domain has: forged announcements name others.
 constexpr std::size_t kMostDestinations = 4 * kMostParticipants;
 
-// FNV-1a, 64 bits.
-constexpr std::uint64_t kFnvOffset = 0xcbf29ce484222325U;
-constexpr std::uint64_t kFnvPrime = 0x100000001b3U;
-
-std::uint64_t fnv(std::uint64_t digest, const std::uint8_t* bytes, std::size_t size) {
-  for (std::size_t i = 0; i < size; ++i) digest = (digest ^ bytes[i]) * kFnvPrime;
-  return digest;
-}
-
 bool is_of_participant(ByteReader data) {
   data.skip(kBytesBeforeIds);
   const EntityId reader = entity_id(data);
@@ -43,12 +34,12 @@ bool is_of_participant(ByteReader data) {
 }  // namespace
 
 std::optional<std::uint64_t> announcement_digest(const std::uint8_t* message, std::size_t size) {
-  std::uint64_t digest = kFnvOffset;
+  std::uint64_t digest = fnv(nullptr, 0);
   bool announces_only = true;
   const bool whole = for_each_submessage(message, size, [&](std::uint8_t kind, const ByteReader& body) {
     if (kind == kInfoDestination || kind == kInfoTimestamp || kind == kStatistics) return;
     announces_only = announces_only && kind == kData && is_of_participant(body);
-    digest = fnv(digest, body.data(), body.rest());
+    digest = fnv(body.data(), body.rest(), digest);
   });
   return whole && announces_only ? std::optional(digest) : std::nullopt;
 }

@@ -15,7 +15,7 @@
 #include "swiftlet/ground/terminal/progress_line.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/logs/recorded_flight.hpp"
-#include "swiftlet/services/dds/discovery/flight_reservation.hpp"
+#include "swiftlet/services/dds/discovery/sole_source.hpp"
 #include "swiftlet/services/messages/vehicle_names.hpp"
 
 namespace swiftlet::ground {

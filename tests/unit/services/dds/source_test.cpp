@@ -13,7 +13,6 @@
 
 #include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
-#include "swiftlet/services/dds/discovery/flight_reservation.hpp"
 #include "swiftlet/services/dds/discovery/sole_source.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "tests/support/eventually.hpp"

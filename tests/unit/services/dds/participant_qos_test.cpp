@@ -1,4 +1,4 @@
-#include "swiftlet/services/dds/network_qos.hpp"
+#include "swiftlet/services/dds/participant_qos.hpp"
 
 #include <array>
 #include <chrono>
@@ -19,7 +19,7 @@
 #include "tests/support/eventually.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::comms::fixtures::network_qos_test {
+namespace swiftlet::comms::fixtures::participant_qos_test {
 
 using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
@@ -103,4 +103,4 @@ TEST(SetNetwork, RefusesMalformedPeers) {
   EXPECT_THROW(Node{settings}, runtime::ConfigError);
 }
 
-}  // namespace swiftlet::comms::fixtures::network_qos_test
+}  // namespace swiftlet::comms::fixtures::participant_qos_test
