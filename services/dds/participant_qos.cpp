@@ -45,6 +45,23 @@ void add_servers(const std::string& list, bool hears_of_all, rtps::DiscoverySett
   }
 }
 
+// A locator with this port for each address at which the node is to be found: those of its interfaces, by default of all that
+// are up but the loopback interface, which it has if there is no other. Of this moment: Fast DDS 3 remembers those of the
+// first participant of the process.
+rtps::LocatorList_t own_locators(const NodeSettings& settings, std::uint32_t port) {
+  std::vector<std::string> addresses;
+  if (!settings.on_loopback()) addresses = runtime::addresses_of_interfaces(settings.network.interfaces);
+  if (!settings.on_loopback() && addresses.empty()) {
+    for (const runtime::Interface& it : runtime::interfaces_up()) {
+      if (!it.is_loopback) addresses.push_back(it.address);
+    }
+  }
+  if (addresses.empty()) addresses.emplace_back(runtime::kLoopback);
+  rtps::LocatorList_t locators;
+  for (const std::string& address : addresses) locators.push_back(udp_locator(address, port));
+  return locators;
+}
+
 // Sets the interfaces of the transport, and with peers or servers the addresses of discovery.
 void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
                  eprosima::fastdds::dds::DomainParticipantQos& qos,
@@ -89,20 +106,6 @@ rtps::Locator_t udp_locator(const std::string& ipv4, std::uint32_t port) {
   rtps::IPLocator::setIPv4(locator, ipv4);
   locator.port = port;
   return locator;
-}
-
-rtps::LocatorList_t own_locators(const NodeSettings& settings, std::uint32_t port) {
-  std::vector<std::string> addresses;
-  if (!settings.on_loopback()) addresses = runtime::addresses_of_interfaces(settings.network.interfaces);
-  if (!settings.on_loopback() && addresses.empty()) {
-    for (const runtime::Interface& it : runtime::interfaces_up()) {
-      if (!it.is_loopback) addresses.push_back(it.address);
-    }
-  }
-  if (addresses.empty()) addresses.emplace_back(runtime::kLoopback);
-  rtps::LocatorList_t locators;
-  for (const std::string& address : addresses) locators.push_back(udp_locator(address, port));
-  return locators;
 }
 
 dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uint32_t announced_ports,

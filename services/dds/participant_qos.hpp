@@ -17,11 +17,6 @@ constexpr const char* kAnyAddress = "0.0.0.0";
 
 rtps::Locator_t udp_locator(const std::string& ipv4, std::uint32_t port);
 
-// A locator with this port for each address at which the node is to be found: those of its interfaces, by default of all that
-// are up but the loopback interface, which it has if there is no other. Of this moment: Fast DDS 3 remembers those of the
-// first participant of the process.
-rtps::LocatorList_t own_locators(const NodeSettings& settings, std::uint32_t port);
-
 // announced_ports: number of ports to which it announces itself without multicast (discovery_ports.hpp).
 // guard: checks the datagrams that it receives. Throws std::runtime_error for an unknown host or interface, and
 // runtime::ConfigError for an invalid profile, malformed servers and peers.

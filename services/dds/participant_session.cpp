@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "swiftlet/io/network/interfaces.hpp"
-#include "swiftlet/io/network_key.hpp"
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/fast_dds_library.hpp"
@@ -84,12 +83,8 @@ GuidPrefix bytes_of(const rtps::GuidPrefix_t& participant) {
 }
 
 std::shared_ptr<DatagramGuard> guard_of(const NodeSettings& settings) {
-  DatagramLimits limits;
-  limits.discovery_servers = !settings.network.discovery_servers.empty();
-  limits.security = !settings.security.empty();
-  const std::string& file = settings.network_key_file;
   return std::make_shared<DatagramGuard>(
-      file.empty() ? runtime::NetworkKeys() : runtime::read_network_keys(file), limits);
+      settings.network_key_file, !settings.network.discovery_servers.empty(), !settings.security.empty());
 }
 
 ParticipantSession::ParticipantSession(const NodeSettings& settings, const Announcement& announcement,

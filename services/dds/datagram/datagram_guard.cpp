@@ -27,6 +27,10 @@ DatagramGuard::DatagramGuard(const runtime::NetworkKeys& keys, const DatagramLim
   opener_.emplace(keys);
 }
 
+DatagramGuard::DatagramGuard(const std::string& key_file, bool discovery_servers, bool security)
+    : DatagramGuard(key_file.empty() ? runtime::NetworkKeys() : runtime::read_network_keys(key_file),
+                    DatagramLimits{security, discovery_servers}) {}
+
 CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size, const SenderAddress& sender,
                                      std::uint32_t port, const Now& now) {
   CheckedDatagram checked;

@@ -32,6 +32,8 @@ class DatagramGuard {
  public:
   // keys: of the network; empty: datagrams are not sealed.
   explicit DatagramGuard(const runtime::NetworkKeys& keys = {}, const DatagramLimits& limits = {});
+  // key_file: with the keys; empty: none. Throws runtime::ConfigError for a bad one.
+  DatagramGuard(const std::string& key_file, bool discovery_servers, bool security);
 
   // Counts a refusal; the result then has a fault. port: the local one.
   CheckedDatagram admit(const std::uint8_t* data, std::size_t size, const SenderAddress& sender,

@@ -197,8 +197,8 @@ void GuardedTransport::receive(transport::TransportReceiverInterface* next, cons
   if (is_discovery_server(checked.source)) no_change = std::unique_lock(guard_->changes_mutex());
   try {
     const Ipv4 source = ipv4_of(sender);
-    const bool lacks_address = checked.loopback_count > 0 && !is_loopback(source);
-    if (checked.hidden_count > 0 || checked.fragment || lacks_address) {
+    const bool lacks_address = !checked.places.loopback.empty() && !is_loopback(source);
+    if (!checked.places.hidden.empty() || checked.fragment || lacks_address) {
       std::vector<rtps::octet> copy(checked.length + kLongestFragment);
       std::copy_n(data, checked.length, copy.begin());
       hide_parameters(checked, copy.data());

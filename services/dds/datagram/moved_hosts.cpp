@@ -12,15 +12,15 @@ constexpr Ipv4 used_of(std::uint64_t pair) { return static_cast<Ipv4>(pair); }
 }  // namespace
 
 void MovedHosts::heard(const Announced& said, Ipv4 source, std::int64_t now_ns) {
-  const auto* const end = said.addresses.begin() + said.address_count;
-  const bool is_there = std::find(said.addresses.begin(), end, source) != end;
-  for (const auto* address = said.addresses.begin(); address != end; ++address) {
-    Host& host = this->host(*address);
-    const Ipv4 wanted = is_there ? *address : source;
+  const bool is_there =
+      std::find(said.addresses.begin(), said.addresses.end(), source) != said.addresses.end();
+  for (const Ipv4 address : said.addresses) {
+    Host& host = this->host(address);
+    const Ipv4 wanted = is_there ? address : source;
     if (used_of(host.addresses) != wanted) {
       if (!is_there && now_ns - host.heard_ns < kSilence_ns) continue;
-      if (is_loopback(source) && std::find(own_.begin(), own_.end(), *address) != own_.end()) continue;
-      use(host, *address, wanted);
+      if (is_loopback(source) && std::find(own_.begin(), own_.end(), address) != own_.end()) continue;
+      use(host, address, wanted);
     }
     host.heard_ns = now_ns;
   }

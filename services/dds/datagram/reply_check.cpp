@@ -68,8 +68,7 @@ std::uint32_t ReplyCheck::acknowledged(const GuidPrefix& participant, const Enti
 }
 
 const char* ReplyCheck::fault_of(const CheckedDatagram& received) const {
-  for (std::size_t i = 0; i < received.request_count; ++i) {
-    const FragmentRequest& request = received.requests[i];
+  for (const FragmentRequest& request : received.requests) {
     if (request.destination != GuidPrefix{} && request.destination != own_) continue;
     const auto samples = fragments_.find(request.writer);
     if (samples == fragments_.end()) return "NACK_FRAG of a writer without fragments (8.3.8.12)";
@@ -77,8 +76,7 @@ const char* ReplyCheck::fault_of(const CheckedDatagram& received) const {
     if (sample == samples->second.end() || request.last > sample->second)
       return "NACK_FRAG of fragments that were not sent (8.3.8.12)";
   }
-  for (std::size_t i = 0; i < received.gap_count; ++i) {
-    const Gap& gap = received.gaps[i];
+  for (const Gap& gap : received.gaps) {
     const std::uint32_t ahead = is_builtin(gap.writer) ? gaps_ahead_ : kGapsAhead;
     if (gap.end > ahead && gap.end - ahead > acknowledged(received.source, gap.writer))
       return "GAP far beyond what was acknowledged (8.3.8.4)";

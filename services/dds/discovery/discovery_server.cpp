@@ -71,19 +71,12 @@ dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings,
   return qos;
 }
 
-std::shared_ptr<DatagramGuard> guard_of(const DiscoveryServerSettings& settings) {
-  DatagramLimits limits;
-  limits.discovery_servers = true;
-  const std::string& file = settings.network_key_file;
-  return std::make_shared<DatagramGuard>(
-      file.empty() ? runtime::NetworkKeys() : runtime::read_network_keys(file), limits);
-}
-
 }  // namespace
 
 struct DiscoveryServer::Impl final : public DiscoveryListener {
   Impl(const DiscoveryServerSettings& settings, std::function<void(const DiscoveryServerEvent&)> event)
-      : guard(guard_of(settings)), on_event(std::move(event)) {}
+      : guard(std::make_shared<DatagramGuard>(settings.network_key_file, true, false)),
+        on_event(std::move(event)) {}
 
   void on_participant(const rtps::GUID_t& guid, const std::string& name,
                       const std::vector<std::uint8_t>& user_data) override {
