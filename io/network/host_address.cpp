@@ -35,6 +35,12 @@ std::uint16_t port_of(const std::string& text) {
 
 }  // namespace
 
+std::string to_string(Ipv4 address) {
+  const in_addr bytes{htonl(address)};
+  char text[INET_ADDRSTRLEN] = {};
+  return ::inet_ntop(AF_INET, &bytes, text, sizeof text);
+}
+
 std::string fault_of_host_address(const std::string& text) {
   const std::size_t colon = text.find(':');
   const bool has_port = colon != std::string::npos;
@@ -58,9 +64,7 @@ std::vector<std::string> ipv4_addresses_of(const std::string& host) {
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> owner(first, ::freeaddrinfo);
   std::vector<std::string> addresses;
   for (const addrinfo* it = first; it != nullptr; it = it->ai_next) {
-    char text[INET_ADDRSTRLEN] = {};
-    ::inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(it->ai_addr)->sin_addr, text, sizeof text);
-    addresses.emplace_back(text);
+    addresses.push_back(to_string(ntohl(reinterpret_cast<const sockaddr_in*>(it->ai_addr)->sin_addr.s_addr)));
   }
   return addresses;
 }

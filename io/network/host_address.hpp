@@ -7,6 +7,10 @@
 
 namespace swiftlet::runtime {
 
+using Ipv4 = std::uint32_t;  // 127.0.0.1 is 0x7f000001
+constexpr bool is_loopback(Ipv4 address) { return address >> 24U == 127; }
+std::string to_string(Ipv4 address);
+
 // "HOST" or "HOST:PORT"; HOST is a name or an IPv4 address.
 struct HostAddress {
   std::string host;

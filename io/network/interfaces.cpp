@@ -1,7 +1,6 @@
 #include "swiftlet/io/network/interfaces.hpp"
 
 #include <algorithm>
-#include <arpa/inet.h>
 #include <cstring>
 #include <ifaddrs.h>
 #include <memory>
@@ -34,11 +33,9 @@ std::vector<Interface> interfaces_up() {
   for (const ifaddrs* it = first; it != nullptr; it = it->ifa_next) {
     if (it->ifa_addr == nullptr || it->ifa_addr->sa_family != AF_INET) continue;
     if ((it->ifa_flags & IFF_UP) == 0U || (it->ifa_flags & IFF_RUNNING) == 0U) continue;
-    char address[INET_ADDRSTRLEN] = {};
-    const in_addr ipv4 = reinterpret_cast<const sockaddr_in*>(it->ifa_addr)->sin_addr;
-    ::inet_ntop(AF_INET, &ipv4, address, sizeof address);
-    found.push_back({it->ifa_name, address, (it->ifa_flags & IFF_LOOPBACK) != 0U,
-                     (it->ifa_flags & IFF_MULTICAST) != 0U, mtu_of(it->ifa_name), ::ntohl(ipv4.s_addr)});
+    const Ipv4 address = ntohl(reinterpret_cast<const sockaddr_in*>(it->ifa_addr)->sin_addr.s_addr);
+    found.push_back({it->ifa_name, to_string(address), (it->ifa_flags & IFF_LOOPBACK) != 0U,
+                     (it->ifa_flags & IFF_MULTICAST) != 0U, mtu_of(it->ifa_name), address});
   }
   return found;
 }

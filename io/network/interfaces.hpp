@@ -1,9 +1,10 @@
 // The network interfaces that a node uses.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
+
+#include "swiftlet/io/network/host_address.hpp"
 
 namespace swiftlet::runtime {
 
@@ -15,8 +16,8 @@ struct Interface {
   std::string address;  // "192.168.1.4"
   bool is_loopback = false;
   bool has_multicast = false;
-  int mtu_bytes = 0;       // 0: unknown
-  std::uint32_t ipv4 = 0;  // the address: 127.0.0.1 is 0x7f000001
+  int mtu_bytes = 0;  // 0: unknown
+  Ipv4 ipv4 = 0;      // the address
 };
 std::vector<Interface> interfaces_up();
 

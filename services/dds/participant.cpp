@@ -11,8 +11,6 @@
 #include <unistd.h>
 #include <utility>
 
-#include <fmt/core.h>
-
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/text.hpp"
 #include "swiftlet/io/text_file.hpp"
@@ -60,11 +58,6 @@ Announcement announcement_of(const NodeSettings& settings, const std::string& ve
 double random_share() {
   std::random_device random;
   return std::uniform_real_distribution<double>(0.0, 1.0)(random);
-}
-
-std::string text_of(Ipv4 address) {
-  return fmt::format("{}.{}.{}.{}", address >> 24U, address >> 16U & 0xffU, address >> 8U & 0xffU,
-                     address & 0xffU);
 }
 
 std::string named(const std::string& name, const rtps::GuidPrefix_t& participant) {
@@ -152,7 +145,7 @@ void Participant::Impl::announce_when_due() {
 void Participant::Impl::follow_addresses() {
   for (const MovedHosts::Move& move : guard_->take_moves())
     runtime::log_warning("what is for {} is sent to {} now, from where its host is heard",
-                         text_of(move.announced), text_of(move.heard_at));
+                         runtime::to_string(move.announced), runtime::to_string(move.heard_at));
   const std::vector<runtime::Interface> own = runtime::interfaces_up();
   guard_->set_own_interfaces(own);
   if (settings.on_loopback()) return;

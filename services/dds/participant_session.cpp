@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -47,28 +46,26 @@ std::string listening_address(const NodeSettings& settings) {
   return addresses.empty() ? "" : addresses.front();
 }
 
-// Serialized by a mutex, because Fast DDS 2.9 calls getpwuid(), which is not thread-safe. Fast DDS reports
-// neither the port at which it listens nor that it found none, hence the comparison of ports before and
-// after.
+// Serialized by a mutex, because Fast DDS 2.9 calls getpwuid(), which is not thread-safe. Fast DDS reports neither the port at
+// which it listens nor that it found none: the transport does, to the guard.
 dds::DomainParticipant* join(const NodeSettings& settings, const Announcement& announcement,
                              const std::shared_ptr<DatagramGuard>& guard,
                              dds::DomainParticipantListener* listener) {
   static std::mutex mutex;
   const std::lock_guard<std::mutex> lock(mutex);
   const DiscoveryPorts ports = discovery_ports(settings.domain);
-  const std::set<std::uint32_t> before = own_discovery_ports(settings.domain);
   const std::uint32_t expected = free_discovery_port(settings.domain, listening_address(settings));
   guard->expect_participants(expected + 1, Now::read());  // as ports are taken in their order
   const bool announces_to_ports = settings.on_loopback() || !settings.network.peers.empty();
   for (const std::uint32_t announced : {announced_ports(ports, expected), ports.count}) {
+    guard->set_discovery_port(0);
     dds::DomainParticipant* const participant =
         create_participant(settings, announcement, guard, listener, announced);
     if (participant == nullptr) return nullptr;
     // Other processes may have taken ports meanwhile. If the own port is then too high to announce itself to
     // all ports below it, try again with all ports.
-    for (const std::uint32_t port : own_discovery_ports(settings.domain)) {
-      if (before.count(port) == 0 && (port < announced || !announces_to_ports)) return participant;
-    }
+    const auto own = ports.index_of(guard->discovery_port());
+    if (own && (*own < announced || !announces_to_ports)) return participant;
     end(participant);
   }
   throw domain_is_full(settings.domain);

@@ -31,7 +31,7 @@ DatagramGuard::DatagramGuard(const std::string& key_file, bool discovery_servers
     : DatagramGuard(key_file.empty() ? runtime::NetworkKeys() : runtime::read_network_keys(key_file),
                     DatagramLimits{security, discovery_servers}) {}
 
-CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size, const SenderAddress& sender,
+CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size, Ipv4 sender,
                                      std::uint32_t port, const Now& now) {
   CheckedDatagram checked;
   if (opener_) {
@@ -55,10 +55,10 @@ CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size,
   return checked;
 }
 
-bool DatagramGuard::ignores(const CheckedDatagram& checked, const SenderAddress& sender, const Now& now) {
+bool DatagramGuard::ignores(const CheckedDatagram& checked, Ipv4 sender, const Now& now) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const Announced& said = checked.announced;
-  moved_hosts_.heard(said, ipv4_of(sender), now.steady_ns);
+  moved_hosts_.heard(said, sender, now.steady_ns);
   return !participants_.announced(checked.source, said, concerns_us(said), now.steady_ns);
 }
 
@@ -97,6 +97,11 @@ void DatagramGuard::expect_participants(std::size_t count, const Now& now) {
 std::vector<Joined> DatagramGuard::participants_joined(const Now& now) {
   const std::lock_guard<std::mutex> lock(mutex_);
   return participants_.joined(now.steady_ns);
+}
+
+Ipv4 DatagramGuard::now_at(Ipv4 announced) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return moved_hosts_.now_at(announced);
 }
 
 MovedHosts::News DatagramGuard::take_moves() {

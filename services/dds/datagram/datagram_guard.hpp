@@ -36,12 +36,15 @@ class DatagramGuard {
   DatagramGuard(const std::string& key_file, bool discovery_servers, bool security);
 
   // Counts a refusal; the result then has a fault. port: the local one.
-  CheckedDatagram admit(const std::uint8_t* data, std::size_t size, const SenderAddress& sender,
-                        std::uint32_t port, const Now& now);
+  CheckedDatagram admit(const std::uint8_t* data, std::size_t size, Ipv4 sender, std::uint32_t port,
+                        const Now& now);
   // Until then, the transport drops what it receives, and a participant does not announce itself. By default it listens.
   void listen(bool listens) { listens_ = listens; }
   bool listens() const { return listens_; }
-  void refuse(const SenderAddress& sender, const char* rule) { refusals_.note(sender, rule); }
+  // The first port at which its participant receives discovery; 0: none yet.
+  void set_discovery_port(std::uint32_t port) { discovery_port_ = port; }
+  std::uint32_t discovery_port() const { return discovery_port_; }
+  void refuse(Ipv4 sender, const char* rule) { refusals_.note(sender, rule); }
 
   // own: of the participant that receives; all zeros: not known yet (reply_check.hpp).
   void set_participant(const GuidPrefix& own);
@@ -68,8 +71,9 @@ class DatagramGuard {
 
   RefusalLog& refusals() { return refusals_; }
 
-  // Where others are reached now, for the threads that send.
-  const MovedHosts& moved_hosts() const { return moved_hosts_; }
+  // Where others are reached now.
+  bool has_moved_hosts() const { return moved_hosts_.any(); }
+  Ipv4 now_at(Ipv4 announced);
   MovedHosts::News take_moves();
   // Those of this host, with an address.
   void set_own_interfaces(const std::vector<runtime::Interface>& own);
@@ -81,13 +85,14 @@ class DatagramGuard {
 
  private:
   // Notes an announcement. Returns whether this process ignores the participant.
-  bool ignores(const CheckedDatagram& checked, const SenderAddress& sender, const Now& now);
+  bool ignores(const CheckedDatagram& checked, Ipv4 sender, const Now& now);
   bool concerns_us(const Announced& said) const;
 
   const DatagramLimits limits_;
   std::optional<DatagramSealer> sealer_;
   RefusalLog refusals_;
   std::atomic<bool> listens_{true};
+  std::atomic<std::uint32_t> discovery_port_{0};
   std::mutex changes_mutex_;
   std::mutex mutex_;  // guards what follows; all threads that receive take it, for each datagram
   std::optional<DatagramOpener> opener_;

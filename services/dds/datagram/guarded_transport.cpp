@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "swiftlet/io/byte_reader.hpp"
 #include "swiftlet/io/network/interfaces.hpp"
+#include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 #include "swiftlet/services/dds/discovery/repeated_discovery.hpp"
 
 namespace swiftlet::comms {
@@ -22,10 +24,8 @@ constexpr std::size_t kLongestFragment = 1 << 16;
 // More than a domain has: forged announcements name others.
 constexpr std::size_t kMostPlaces = 4 * kMostParticipants;
 
-SenderAddress address_of(const rtps::Locator_t& locator) {
-  SenderAddress address{};
-  std::copy_n(locator.address, address.size(), address.begin());
-  return address;
+Ipv4 address_of(const rtps::Locator_t& locator) {
+  return runtime::ByteReader(locator.address + 12, 4, false).u32();
 }
 
 class GuardedTransport final : public ChainedTransport {
@@ -90,7 +90,7 @@ class GuardedTransport::Channel final : public OutputChannel {
   bool send_datagram(const OutgoingDatagram& datagram, const Destination& to) override {
     const bool of_discovery =
         owner_.domain_ && *to.begin != *to.end && is_discovery_port(*owner_.domain_, (**to.begin).port);
-    const bool redirects = !owner_.domain_ || owner_.guard_->moved_hosts().any();
+    const bool redirects = !owner_.domain_ || owner_.guard_->has_moved_hosts();
     if (!of_discovery && !redirects) return owner_.send_to(below(), datagram, to);
     // Allocates when a thread sends for the first time.
     thread_local Places places;
@@ -140,7 +140,7 @@ bool GuardedTransport::leads_here(const rtps::Locator_t& announced, rtps::Locato
 
 rtps::Locator_t GuardedTransport::now_at(rtps::Locator_t place) const {
   if (place.kind != LOCATOR_KIND_UDPv4) return place;
-  const Ipv4 address = guard_->moved_hosts().now_at(ipv4_of(address_of(place)));
+  const Ipv4 address = guard_->now_at(address_of(place));
   for (unsigned byte = 0; byte < 4; ++byte)
     place.address[12 + byte] = static_cast<rtps::octet>(address >> (24U - 8U * byte));
   return place;
@@ -175,6 +175,8 @@ bool GuardedTransport::OpenInputChannel(const rtps::Locator_t& locator,
   const std::lock_guard<std::mutex> lock(receivers_mutex_);
   auto receiver = std::make_unique<Receiver>(*this, next);
   if (!low_level_transport_->OpenInputChannel(locator, receiver.get(), largest_message)) return false;
+  if (domain_ && guard_->discovery_port() == 0 && discovery_ports(*domain_).index_of(locator.port))
+    guard_->set_discovery_port(locator.port);
   receivers_.emplace(locator, std::move(receiver));
   return true;
 }
@@ -190,19 +192,18 @@ void GuardedTransport::receive(transport::TransportReceiverInterface* next, cons
                                std::uint32_t size, const rtps::Locator_t& local,
                                const rtps::Locator_t& remote) {
   if (!guard_->listens()) return;
-  const SenderAddress sender = address_of(remote);
+  const Ipv4 sender = address_of(remote);
   const CheckedDatagram checked = guard_->admit(data, size, sender, local.port, Now::read());
   if (checked.fault != nullptr || checked.is_ignored) return;
   std::unique_lock<std::mutex> no_change;
   if (is_discovery_server(checked.source)) no_change = std::unique_lock(guard_->changes_mutex());
   try {
-    const Ipv4 source = ipv4_of(sender);
-    const bool lacks_address = !checked.places.loopback.empty() && !is_loopback(source);
+    const bool lacks_address = !checked.places.loopback.empty() && !runtime::is_loopback(sender);
     if (!checked.places.hidden.empty() || checked.fragment || lacks_address) {
       std::vector<rtps::octet> copy(checked.length + kLongestFragment);
       std::copy_n(data, checked.length, copy.begin());
       hide_parameters(checked, copy.data());
-      if (lacks_address) name_source(checked, source, copy.data());
+      if (lacks_address) name_source(checked, sender, copy.data());
       next->OnDataReceived(copy.data(), static_cast<std::uint32_t>(checked.length), local, remote);
     } else {
       next->OnDataReceived(data, static_cast<std::uint32_t>(checked.length), local, remote);

@@ -237,7 +237,7 @@ void note_locator(std::uint16_t id, ByteReader value, const ListContext& context
   if (at == nullptr) return;
   const Ipv4 address = ByteReader(at, 4, false).u32();
   if (id == kDiscoveryLocator) announced.discovery_port = port;
-  if (is_loopback(address)) {
+  if (runtime::is_loopback(address)) {
     if (places.loopback.size() < places.loopback.capacity() && !context.relays)
       places.loopback.push_back(static_cast<std::size_t>(at - context.datagram));
   } else if (id == kSamplesLocator && announced.addresses.size() < announced.addresses.capacity()) {

@@ -8,14 +8,13 @@
 #include <boost/container/static_vector.hpp>
 
 #include "swiftlet/io/byte_reader.hpp"
+#include "swiftlet/io/network/host_address.hpp"
 #include "swiftlet/services/dds/datagram/rtps_ids.hpp"
 
 namespace swiftlet::comms {
 
 using runtime::ByteReader;
-
-using Ipv4 = std::uint32_t;  // 127.0.0.1 is 0x7f000001
-constexpr bool is_loopback(Ipv4 address) { return address >> 24U == 127; }
+using runtime::Ipv4;
 
 // What to change in discovery data before the middleware parses it: places in the datagram.
 struct PlacesToChange {

@@ -17,10 +17,12 @@ namespace {
 // Enough for a fleet of four vehicles, in which each process announces itself to all others.
 constexpr std::uint32_t kPortsAbove = 16;
 
-// Above the number of descriptors of any process here.
-constexpr int kMostDescriptors = 4096;
-
 }  // namespace
+
+std::optional<std::uint32_t> DiscoveryPorts::index_of(std::uint32_t port) const {
+  if (port < first || port > last() || (port - first) % gap != 0) return std::nullopt;
+  return (port - first) / gap;
+}
 
 DiscoveryPorts discovery_ports(int domain) {
   const rtps::PortParameters parameters;
@@ -63,20 +65,6 @@ std::uint32_t free_discovery_port(int domain, const std::string& address) {
     if (error_of_binding(ports.first + i * ports.gap, address) == 0) return i;
   }
   throw domain_is_full(domain);
-}
-
-std::set<std::uint32_t> own_discovery_ports(int domain) {
-  const DiscoveryPorts ports = discovery_ports(domain);
-  std::set<std::uint32_t> own;
-  for (int descriptor = 0; descriptor < kMostDescriptors; ++descriptor) {
-    sockaddr_in address{};
-    socklen_t length = sizeof address;
-    if (::getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &length) != 0) continue;
-    const std::uint32_t port = ntohs(address.sin_port);
-    if (address.sin_family != AF_INET || port < ports.first || port > ports.last()) continue;
-    if ((port - ports.first) % ports.gap == 0) own.insert((port - ports.first) / ports.gap);
-  }
-  return own;
 }
 
 std::uint32_t announced_ports(const DiscoveryPorts& ports, std::uint32_t own) {

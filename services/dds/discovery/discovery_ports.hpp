@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <set>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -15,6 +15,7 @@ struct DiscoveryPorts {
   std::uint32_t gap = 0;
 
   std::uint32_t last() const { return first + (count - 1) * gap; }
+  std::optional<std::uint32_t> index_of(std::uint32_t port) const;  // from 0; nullopt: none of them
 };
 
 // 120 ports; 63 in domain 232, whose ports end with those of UDP.
@@ -28,9 +29,6 @@ int error_of_binding(std::uint32_t port, const std::string& address);
 
 // Returns the index of the first free port of the domain, from 0. address: as above. Throws domain_is_full().
 std::uint32_t free_discovery_port(int domain, const std::string& address);
-
-// Returns the indices of the ports that sockets of this process are bound to.
-std::set<std::uint32_t> own_discovery_ports(int domain);
 
 // Returns to how many of the domain's ports a process with port index `own` announces itself: to all ports
 // below its own and some above. Of two processes, the one with the higher port thus always reaches the other,

@@ -12,10 +12,8 @@ namespace swiftlet::comms {
 using runtime::ByteReader;
 
 bool is_discovery_port(int domain, std::uint32_t port) {
-  const DiscoveryPorts ports = discovery_ports(domain);
   const std::uint32_t multicast = rtps::PortParameters().getMulticastPort(static_cast<std::uint32_t>(domain));
-  return port == multicast ||
-         (port >= ports.first && port <= ports.last() && (port - ports.first) % ports.gap == 0);
+  return port == multicast || discovery_ports(domain).index_of(port);
 }
 
 namespace {

@@ -16,14 +16,13 @@ namespace swiftlet::comms::datagram_guard_test {
 using namespace swiftlet::tests;
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr SenderAddress kHost{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 10, 0, 0, 1};
+constexpr Ipv4 kHost = 0x0a000001;
 
 RtpsMessage sample(std::uint32_t number, const GuidPrefix& source = kAlice) {
   return RtpsMessage(source).add(0x15, 4, data_fields(kUserReader, kUserWriter, number).u32(0x0100).u32(0));
 }
 
-bool admits(DatagramGuard& guard, const RtpsMessage& message, std::int64_t now_ns,
-            const SenderAddress& host = kHost) {
+bool admits(DatagramGuard& guard, const RtpsMessage& message, std::int64_t now_ns, Ipv4 host = kHost) {
   return guard.admit(message.bytes().data(), message.bytes().size(), host, 7411, {now_ns, now_ns}).fault ==
          nullptr;
 }
@@ -65,8 +64,7 @@ TEST(DatagramGuard, AllocatesNothingWhileItReceives) {
   DatagramGuard guard;
   const test::MallocGuard allocations;
   for (std::size_t i = 0; i < datagrams.size(); ++i) {
-    SenderAddress host = kHost;
-    host[15] = static_cast<std::uint8_t>(i);
+    const Ipv4 host = kHost + static_cast<Ipv4>(i);
     const auto now_ns = static_cast<std::int64_t>(i + 1) * kSecond_ns;
     guard.admit(datagrams[i].data(), datagrams[i].size(), host, 7411, {now_ns, now_ns});
   }

@@ -105,10 +105,10 @@ TEST(GuardedTransport, SendsToWhereAHostIsHeardNow) {
   parameters.parameter(
       0x0031, tests::ByteWriter().u32(1).u32(before.port).zeros(12).bytes(tests::Bytes{10, 1, 2, 3}));
   const tests::Bytes announcement = tests::announcement(tests::kAlice, parameters).bytes();
-  const SenderAddress loopback{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 127, 0, 0, 1};
   for (const std::int64_t now_ns : {std::int64_t{1'000'000'000}, std::int64_t{2'500'000'000}})
-    EXPECT_EQ(guard->admit(announcement.data(), announcement.size(), loopback, 7410, {now_ns, now_ns}).fault,
-              nullptr);
+    EXPECT_EQ(
+        guard->admit(announcement.data(), announcement.size(), INADDR_LOOPBACK, 7410, {now_ns, now_ns}).fault,
+        nullptr);
   chain.send({before});
   EXPECT_EQ(receiver.received(), 1);
 }
