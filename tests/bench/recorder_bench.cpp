@@ -18,6 +18,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/ground/command_line/child_process.hpp"
 #include "swiftlet/ground/flight/in_process_flight.hpp"
 #include "swiftlet/ground/flight/simulated_recorder.hpp"
 #include "swiftlet/ground/recording/flight_recorder.hpp"
@@ -26,7 +27,6 @@
 #include "swiftlet/io/mcap/reader.hpp"
 #include "swiftlet/io/temporary_folder.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
-#include "swiftlet/services/runtime/child_process.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 #include "tests/bench/process_usage.hpp"
 #include "tests/support/eventually.hpp"

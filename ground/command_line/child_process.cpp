@@ -1,4 +1,4 @@
-#include "swiftlet/services/runtime/child_process.hpp"
+#include "swiftlet/ground/command_line/child_process.hpp"
 
 #include <cerrno>
 #include <csignal>

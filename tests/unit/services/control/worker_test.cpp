@@ -1,4 +1,4 @@
-#include "swiftlet/services/runtime/worker.hpp"
+#include "swiftlet/services/control/worker.hpp"
 
 #include <future>
 #include <memory>
@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::runtime::worker_test {
+namespace swiftlet::services::worker_test {
 
 TEST(Worker, RunsTasksInTheirOrder) {
   std::vector<int> done;
@@ -49,29 +49,11 @@ TEST(Worker, KeepsNoMoreThanItMayAndDropsThemAtItsEnd) {
 }
 
 TEST(Worker, HasOrdinaryPriorityThoughARealtimeThreadStartsIt) {
-  const RealtimeScope scope(1);  // has no effect where SCHED_FIFO is not permitted
+  const runtime::RealtimeScope scope(1);  // has no effect where SCHED_FIFO is not permitted
   Worker worker;
   std::promise<bool> realtime;
-  worker.post([&] { realtime.set_value(this_thread_is_realtime()); });
+  worker.post([&] { realtime.set_value(runtime::this_thread_is_realtime()); });
   EXPECT_FALSE(realtime.get_future().get());
 }
 
-// Where SCHED_FIFO is not permitted, the thread stays as it is.
-TEST(RealtimeScope, RaisesTheThreadForAWhile) {
-  bool permitted = false;
-  std::thread([&] { permitted = make_this_thread_realtime({true, 1, -1}).empty(); }).join();
-  EXPECT_FALSE(this_thread_is_realtime());
-  {
-    const RealtimeScope none(0);
-    EXPECT_FALSE(this_thread_is_realtime());
-  }
-  {
-    const RealtimeScope outer(1);
-    EXPECT_EQ(this_thread_is_realtime(), permitted);
-    { const RealtimeScope inner(2); }
-    EXPECT_EQ(this_thread_is_realtime(), permitted) << "the outer scope goes on";
-  }
-  EXPECT_FALSE(this_thread_is_realtime());
-}
-
-}  // namespace swiftlet::runtime::worker_test
+}  // namespace swiftlet::services::worker_test

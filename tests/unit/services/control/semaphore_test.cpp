@@ -1,11 +1,11 @@
-#include "swiftlet/services/runtime/semaphore.hpp"
+#include "swiftlet/services/control/semaphore.hpp"
 
 #include <chrono>
 #include <thread>
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::runtime::semaphore_test {
+namespace swiftlet::services::semaphore_test {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
@@ -54,4 +54,4 @@ TEST(Semaphore, PostSynchronisesWithTheWait) {
   EXPECT_EQ(value, 2 * kRounds);
 }
 
-}  // namespace swiftlet::runtime::semaphore_test
+}  // namespace swiftlet::services::semaphore_test

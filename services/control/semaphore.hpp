@@ -6,7 +6,7 @@
 #include <ctime>
 #include <semaphore.h>
 
-namespace swiftlet::runtime {
+namespace swiftlet::services {
 
 class Semaphore {
  public:
@@ -34,4 +34,4 @@ class Semaphore {
   sem_t semaphore_;
 };
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::services

@@ -13,7 +13,7 @@
 #include "swiftlet/services/runtime/log_label.hpp"
 #include "swiftlet/services/runtime/realtime.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::services {
 
 class Worker {
  public:
@@ -43,8 +43,8 @@ class Worker {
 
  private:
   void run() {
-    make_this_thread_ordinary();
-    const LogLabel label(label_);
+    runtime::make_this_thread_ordinary();
+    const runtime::LogLabel label(label_);
     std::unique_lock<std::mutex> lock(mutex_);
     for (;;) {
       changed_.wait(lock, [this] { return ends_ || !waiting_.empty(); });
@@ -58,7 +58,7 @@ class Worker {
     }
   }
 
-  const std::string label_ = LogLabel::current();  // of the thread that constructs it
+  const std::string label_ = runtime::LogLabel::current();  // of the thread that constructs it
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::function<void()>> waiting_;
@@ -66,4 +66,4 @@ class Worker {
   std::thread thread_;  // last: uses all members above
 };
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::services
