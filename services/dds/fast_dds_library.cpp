@@ -9,8 +9,8 @@
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/log/StdoutErrConsumer.hpp>
 
-#include "swiftlet/services/dds/datagram/token_bucket.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
+#include "swiftlet/services/runtime/token_bucket.hpp"
 
 namespace swiftlet::comms {
 
@@ -31,7 +31,7 @@ class Consumer final : public dds::StdoutErrConsumer {
     return std::string_view(warning.context.category) == "SECURITY_AUTHENTICATION" && warnings_.take(now);
   }
 
-  TokenBucket warnings_{16.0, 1.6};
+  runtime::TokenBucket warnings_{16.0, 1.6};
 };
 
 }  // namespace

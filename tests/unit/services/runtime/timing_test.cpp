@@ -8,8 +8,6 @@
 
 namespace swiftlet::runtime::timing_test {
 
-using namespace std::chrono_literals;
-
 constexpr std::int64_t kMillisecond = 1'000'000;
 
 TEST(PeriodicTimer, NeverTicksBeforeItsTime) {

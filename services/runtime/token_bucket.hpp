@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace swiftlet::comms {
+namespace swiftlet::runtime {
 
 // Full at the start; some more tokens each second.
 class TokenBucket {
@@ -34,4 +34,4 @@ class TokenBucket {
   std::int64_t last_ns_ = 0;
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::runtime
