@@ -45,7 +45,7 @@ struct NodeSettings {
   // Uses the network without network_key_file or security too: whoever is in it can then command the vehicles.
   bool open_network = false;
   // This process hears of all others of the domain. False: not of those that neither serve a vehicle of its own nor hear of
-  // all, and with a discovery server only of those that exchange topics with it, which keeps the traffic of a fleet in
+  // all, and with a discovery server, unless it is a source, only of those that exchange topics with it, which keeps the traffic of a fleet in
   // proportion to its vehicles; on_peer() and topics_seen() miss the others.
   bool hears_of_all = true;
   // File with the keys of the network (io/network_key.hpp): only datagrams of processes with one of them are

@@ -93,7 +93,6 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
   periodic_task_.emplace(kCheckPeriod, [this] {
     const runtime::RealtimeScope task_scope = realtime();
     rejoin_if_rediscovery_failed();
-    end_source_watch_when_due();
     guard_->refusals().write_due(Clock::now());
     const std::lock_guard<std::mutex> session_lock(session_mutex_);
     follow_addresses();
@@ -104,7 +103,6 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
 Participant::Impl::~Impl() {
   periodic_task_.reset();
   const runtime::RealtimeScope scope = realtime();
-  source_watch_.clear();
   end_session();
 }
 
@@ -425,8 +423,7 @@ void Participant::Impl::log_conflicts(const std::string& topic, const RemoteEndp
 // ---- the only source of a topic
 
 std::optional<std::string> Participant::Impl::become_source(const std::vector<std::string>& excluded,
-                                                            std::function<void(const std::string&)> on_lost,
-                                                            std::vector<Subscription> watch) {
+                                                            std::function<void(const std::string&)> on_lost) {
   const bool finds_fast = settings.security.empty() && settings.network.discovery_servers.empty();
   std::this_thread::sleep_for(finds_fast ? kSourceSearchTime : kLongSourceSearchTime);
   const std::lock_guard<std::mutex> lock(session_mutex_);
@@ -436,23 +433,10 @@ std::optional<std::string> Participant::Impl::become_source(const std::vector<st
     announcement_.is_established = true;
     established_at_ = Clock::now();
     on_lost_source_ = std::move(on_lost);
-    source_watch_ = std::move(watch);
   }
   announcement_changed_ = true;
   announce_when_due();
   return std::nullopt;
-}
-
-std::vector<std::string> Participant::Impl::watched_vehicles() const {
-  const std::lock_guard<std::mutex> lock(peers_mutex_);
-  const bool discovers_all = settings.network.discovery_servers.empty() || settings.hears_of_all;
-  return discovers_all ? std::vector<std::string>() : split_names(announcement_.vehicles);
-}
-
-void Participant::Impl::end_source_watch_when_due() {
-  std::vector<Subscription> ended;  // after the lock
-  const std::lock_guard<std::mutex> lock(peers_mutex_);
-  if (!is_on_probation()) ended.swap(source_watch_);
 }
 
 bool Participant::Impl::is_on_probation() const {

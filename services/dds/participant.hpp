@@ -39,13 +39,8 @@ struct Participant::Impl final : public DiscoveryListener {
   // kCheckPeriod, not at all if the participant ends.
   void serve(const std::string& vehicle);
   void stop_serving(const std::string& vehicle);
-  // watch: readers of the excluded topics of the watched vehicles, which end after kSourceProbation.
   std::optional<std::string> become_source(const std::vector<std::string>& excluded,
-                                           std::function<void(const std::string&)> on_lost,
-                                           std::vector<Subscription> watch);
-  // Of which this process has to read a topic to discover its writers: through a discovery server a client discovers only
-  // those with which it exchanges topics. Empty if it discovers all.
-  std::vector<std::string> watched_vehicles() const;
+                                           std::function<void(const std::string&)> on_lost);
   void add(Endpoint* endpoint);
   void remove(Endpoint* endpoint);
   // Number of the readers of a topic that this participant has.
@@ -125,7 +120,6 @@ struct Participant::Impl final : public DiscoveryListener {
   std::optional<std::string> other_source(const std::vector<std::string>& excluded) const;
   std::optional<std::string> unannounced_source(const std::string& vehicle, const std::string& topic) const;
   bool is_on_probation() const;  // as a source (kSourceProbation); requires peers_mutex_
-  void end_source_watch_when_due();
   // Two sources that joined at the same time, and discovered each other late.
   void yield_source_to(const Peer& peer);
   std::string in_use_by(const std::string& vehicle, const std::string& topic, const Peer& source) const;
@@ -144,7 +138,6 @@ struct Participant::Impl final : public DiscoveryListener {
   // When it could first hear of others: with a discovery server when it heard of that.
   std::optional<std::chrono::steady_clock::time_point> introduced_at_;
   std::function<void(const std::string&)> on_lost_source_;
-  std::vector<Subscription> source_watch_;
   std::map<Guid, Peer>
       peers_;  // of any vehicle; with security only authenticated ones, also before they are discovered
   std::map<Guid, Peer> strangers_;  // with security: discovered, but not authenticated yet

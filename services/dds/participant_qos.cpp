@@ -30,9 +30,12 @@ void add_host(const std::string& ipv4, const DiscoveryPorts& ports, std::uint32_
 }
 
 // Fast DDS 2.9 fails an assertion if a server of this host has another address than that of the loopback interface.
-void add_servers(const std::string& list, bool hears_of_all, rtps::DiscoverySettings& discovery) {
+void add_servers(const NodeSettings& settings, rtps::DiscoverySettings& discovery) {
+  const std::string& list = settings.network.discovery_servers;
   if (const std::string fault = runtime::fault_of_discovery_servers(list); !fault.empty())
     throw runtime::ConfigError("discovery server " + fault);
+  // A plain client hears only of those with which it exchanges topics: a source would not hear of another one.
+  const bool hears_of_all = settings.hears_of_all || !settings.source_of.empty();
   discovery.discoveryProtocol =
       hears_of_all ? rtps::DiscoveryProtocol::SUPER_CLIENT : rtps::DiscoveryProtocol::CLIENT;
   for (const runtime::DiscoveryServerAddress& server : runtime::parse_discovery_servers(list)) {
@@ -80,8 +83,7 @@ void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
   const DiscoveryPorts ports = discovery_ports(settings.domain);
   // Instead of the multicast address, only this: the first free port of the domain.
   builtin.metatrafficUnicastLocatorList = own_locators(settings, ports.first);
-  if (network.peers.empty())
-    return add_servers(network.discovery_servers, settings.hears_of_all, builtin.discovery_config);
+  if (network.peers.empty()) return add_servers(settings, builtin.discovery_config);
   add_host(runtime::kLoopback, ports, announced_ports,
            builtin.initialPeersList);  // the processes of this host
   for (const std::string& peer : network.peers) {
