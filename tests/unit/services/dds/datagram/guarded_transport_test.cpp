@@ -16,6 +16,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/io/network/interfaces.hpp"
 #include "tests/support/rtps_message.hpp"
 
 namespace swiftlet::comms::guarded_transport_test {
@@ -55,6 +56,18 @@ class Receiver {
   sockaddr_in address_{};
 };
 
+// As Fast DDS 3 uses it, or as 2.9 does, which has no other form.
+template <class Transport>
+auto transform(const Transport& transport, const rtps::Locator_t& announced, rtps::Locator_t& used, int)
+    -> decltype(transport.transform_remote_locator(announced, used, true, true)) {
+  return transport.transform_remote_locator(announced, used, true, true);
+}
+template <class Transport>
+auto transform(const Transport& transport, const rtps::Locator_t& announced, rtps::Locator_t& used, long)
+    -> decltype(transport.transform_remote_locator(announced, used)) {
+  return transport.transform_remote_locator(announced, used);
+}
+
 // A chain of transports, and a channel that it opened for one place.
 class Chain {
  public:
@@ -66,6 +79,12 @@ class Chain {
   }
   bool open(const rtps::Locator_t& place) { return chain_->OpenOutputChannel(channels_, place); }
   std::size_t channels() const { return channels_.size(); }
+  // Where a process of this address is reached; port 0: nowhere.
+  rtps::Locator_t reached(const rtps::Locator_t& announced) const {
+    rtps::Locator_t used;
+    if (!transform(*chain_, announced, used, 0)) used.port = 0;
+    return used;
+  }
   void send(std::vector<rtps::Locator_t> places) {
     const std::vector<rtps::octet> datagram(100);
     for (auto& channel : channels_) {
@@ -93,6 +112,17 @@ TEST(GuardedTransport, OpensThePlacesToWhichItSends) {
   chain.send({first.locator(), other.locator()});
   EXPECT_EQ(first.received(), 1);
   EXPECT_EQ(other.received(), 1);
+}
+
+// As ROS 2 does by default, which uses all interfaces but that of the loopback.
+TEST(GuardedTransport, ReachesProcessesOfThisHostThatAnnounceAnotherInterface) {
+  const Receiver receiver;
+  const Chain chain(std::make_shared<DatagramGuard>(), 0, receiver.locator());
+  for (const runtime::Interface& own : runtime::interfaces_up()) {
+    rtps::Locator_t announced = receiver.locator();
+    rtps::IPLocator::setIPv4(announced, own.address);
+    EXPECT_EQ(chain.reached(announced), receiver.locator()) << own.address;
+  }
 }
 
 TEST(GuardedTransport, SendsToWhereAHostIsHeardNow) {
