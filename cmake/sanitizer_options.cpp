@@ -42,7 +42,7 @@ static timespec by_real_time(clockid_t clock, const timespec* until) {
 }
 
 // The sanitizer runtime of GCC 12 does not intercept these functions, which std::timed_mutex and
-// runtime::Semaphore use. They are mapped to functions that it intercepts.
+// services::Semaphore use. They are mapped to functions that it intercepts.
 int pthread_mutex_clocklock(pthread_mutex_t* mutex, clockid_t clock, const timespec* until) noexcept {
   const timespec real = by_real_time(clock, until);
   return pthread_mutex_timedlock(mutex, &real);

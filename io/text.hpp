@@ -15,6 +15,18 @@ inline std::string_view trimmed(std::string_view text, std::string_view blanks =
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
+// The parts between the separators, also empty ones: one more than there are separators.
+inline std::vector<std::string> split_text(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (std::size_t end = text.find(separator); end != std::string::npos; end = text.find(separator, begin)) {
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  parts.push_back(text.substr(begin));
+  return parts;
+}
+
 inline std::string joined(const std::vector<std::string>& texts, std::string_view between) {
   std::string out;
   for (std::size_t i = 0; i < texts.size(); ++i) {

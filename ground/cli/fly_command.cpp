@@ -9,9 +9,9 @@
 #include "swiftlet/ground/cli/fly_vehicles.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
 #include "swiftlet/ground/flight/launch_configuration.hpp"
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/plant/model/airframe.hpp"
-#include "swiftlet/services/dds/vehicle_list.hpp"
-#include "swiftlet/services/runtime/split_text.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 
 namespace swiftlet::ground {
 namespace {

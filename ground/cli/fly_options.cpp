@@ -159,7 +159,7 @@ void add_fly_options(runtime::CommandLine app, FlyOptions& options) {
 runtime::Option add_launch_options(runtime::CommandLine app, FlyOptions& options) {
   app.option("--localhost-only")
       .describe(
-          "with --attach or --px4: use the loopback interface only, without multicast; otherwise always set");
+          "with --attach or --px4: use the loopback interface only, also with a key; otherwise always set");
   app.option("--open-network")
       .describe(
           "with --attach or --px4: use the network without --network-key or --security, where anyone can "

@@ -22,7 +22,7 @@
 #include "swiftlet/ground/flight/process_group.hpp"
 #include "swiftlet/ground/terminal/fleet_progress.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
-#include "swiftlet/services/dds/discovery/flight_reservation.hpp"
+#include "swiftlet/services/dds/discovery/sole_source.hpp"
 
 namespace swiftlet::ground {
 namespace {

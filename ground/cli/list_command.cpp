@@ -125,9 +125,8 @@ int list_vehicles(const VehicleListOptions& options) {
   std::fprintf(
       stderr,
       "swiftlet: list: no vehicle found in domain %d within %.1f s%s; check that it runs and that the domain "
-      "is right (--domain, ROS_DOMAIN_ID)%s\n",
-      options.network.domain, options.look_s, comms::search_text(options.network).c_str(),
-      comms::search_text(options.network).empty() ? ", or try --localhost-only" : "");
+      "is right (--domain, ROS_DOMAIN_ID)\n",
+      options.network.domain, options.look_s, comms::search_text(options.network).c_str());
   return kFailed;
 }
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "swiftlet/ground/command_line/child_process.hpp"
 #include "swiftlet/services/dds/node.hpp"
-#include "swiftlet/services/runtime/child_process.hpp"
 
 namespace swiftlet::ground {
 

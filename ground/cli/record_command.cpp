@@ -19,7 +19,7 @@
 #include "swiftlet/ground/terminal/progress_line.hpp"
 #include "swiftlet/record/recorder/flight_recorder.hpp"
 #include "swiftlet/services/dds/reach.hpp"
-#include "swiftlet/services/dds/vehicle_list.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/command_line/network_options.hpp"
-#include "swiftlet/services/dds/vehicle_list.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 
 namespace swiftlet::ground {
 namespace {

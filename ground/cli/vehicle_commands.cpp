@@ -8,7 +8,7 @@
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
-#include "swiftlet/services/dds/vehicle_list.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -342,11 +342,9 @@ std::string Client::where() const {
 std::string Client::no_control() const {
   if (const std::string foreign = view().foreign_control; !foreign.empty()) return where() + ": " + foreign;
   std::string text = "no control service for " + where();
-  // Processes started with --localhost-only are discovered, but exchange data on the loopback interface only.
   const auto peers = view().peers;
   const auto control = peers.find("control");
   const bool seen = control != peers.end() && control->second > 0;
-  if (seen && comms::search_text(settings_).empty()) text += " (try --localhost-only)";
   const std::vector<std::string> topics = node_.topics_seen();
   const std::string own = listed(topics_of(settings_.vehicle, topics));
   if (!own.empty()) text += "; topics found: " + own;

@@ -13,7 +13,7 @@
 
 #include "swiftlet/ground/command_line/installation.hpp"
 #include "swiftlet/ground/command_line/run_command_line.hpp"
-#include "swiftlet/services/runtime/split_text.hpp"
+#include "swiftlet/io/text.hpp"
 
 namespace swiftlet::ground {
 namespace {

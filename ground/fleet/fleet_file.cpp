@@ -8,7 +8,7 @@
 #include "swiftlet/io/config.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/text_file.hpp"
-#include "swiftlet/services/dds/vehicle_name.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -11,8 +11,8 @@
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/io/configuration.hpp"
+#include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
 #include "swiftlet/services/dds/reach.hpp"
 
 namespace swiftlet::ground {
@@ -40,10 +40,10 @@ bool finds_nothing(const View& view) {
 
 // Where it looks for the processes: "lo (127.0.0.1) only; with ... on ...".
 std::string interfaces_of(const comms::NodeSettings& network) {
-  if (!network.on_loopback()) return comms::interfaces_text(false) + comms::search_text(network);
-  return comms::interfaces_text(true) + " only; " +
+  if (!network.on_loopback()) return runtime::interfaces_text(false) + comms::search_text(network);
+  return runtime::interfaces_text(true) + " only; " +
          (network.localhost_only ? "without --localhost-only" : "with --network-key FILE or --open-network") +
-         " on " + comms::interfaces_text(false);
+         " on " + runtime::interfaces_text(false);
 }
 
 std::string flight_of(const View& view) {

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "swiftlet/control/types/settings.hpp"
+#include "swiftlet/ground/command_line/child_process.hpp"
 #include "swiftlet/ground/flight/record_folder.hpp"
 #include "swiftlet/ground/mission/pace.hpp"
 #include "swiftlet/ground/report/flight_report.hpp"
@@ -17,7 +18,6 @@
 #include "swiftlet/plant/model/vehicle.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
 #include "swiftlet/services/dds/node.hpp"
-#include "swiftlet/services/runtime/child_process.hpp"
 #include "swiftlet/services/runtime/clock.hpp"
 #include "swiftlet/simulation/dispersion.hpp"
 

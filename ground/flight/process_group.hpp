@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "swiftlet/services/runtime/child_process.hpp"
+#include "swiftlet/ground/command_line/child_process.hpp"
 
 namespace swiftlet::ground {
 

@@ -12,10 +12,10 @@
 #include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 
+#include "swiftlet/ground/command_line/child_process.hpp"
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/temporary_folder.hpp"
 #include "swiftlet/io/text_file.hpp"
-#include "swiftlet/services/runtime/child_process.hpp"
 
 namespace swiftlet::plot {
 namespace {

@@ -17,7 +17,7 @@
 #include "swiftlet/math/time.hpp"
 #include "swiftlet/record/file/cdr_writer.hpp"
 #include "swiftlet/services/dds/node_options.hpp"
-#include "swiftlet/services/dds/vehicle_list.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 #include "swiftlet/services/runtime/stop_signal.hpp"

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "swiftlet/services/runtime/split_text.hpp"
+#include "swiftlet/io/text.hpp"
 
 namespace swiftlet::ground {
 namespace {

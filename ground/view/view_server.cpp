@@ -30,9 +30,9 @@
 #include "swiftlet/ground/view/live_topics.hpp"
 #include "swiftlet/ground/view/vehicle_requests.hpp"
 #include "swiftlet/ground/view/viewer.hpp"
-#include "swiftlet/services/dds/datagram/token_bucket.hpp"
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
-#include "swiftlet/services/runtime/split_text.hpp"
+#include "swiftlet/services/runtime/token_bucket.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -111,7 +111,7 @@ class ViewServer::Impl {
   const std::string session_id_ = make_token();
   Access access_;
 
-  comms::TokenBucket new_connections_{kConnectionBurst, kConnectionsPerSecond};
+  runtime::TokenBucket new_connections_{kConnectionBurst, kConnectionsPerSecond};
   std::size_t connections_ = 0;
   asio::io_context io_{1};  // its handlers end the connections that are open at the end
   tcp::acceptor acceptor_{io_};
@@ -274,8 +274,8 @@ class ViewServer::Impl::Session : public std::enable_shared_from_this<Session> {
   Impl& server_;
   websocket::stream<beast::tcp_stream, false> socket_;
   beast::flat_buffer buffer_{kMostMessageBytes};
-  comms::TokenBucket messages_{kMessageBurst, kMessagesPerSecond};
-  comms::TokenBucket kilobytes_{kKilobyteBurst, kKilobytesPerSecond};
+  runtime::TokenBucket messages_{kMessageBurst, kMessagesPerSecond};
+  runtime::TokenBucket kilobytes_{kKilobyteBurst, kKilobytesPerSecond};
   std::optional<Viewer> viewer_;
   std::optional<Outgoing> sending_;
   bool is_open_ = false;

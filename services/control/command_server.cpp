@@ -86,8 +86,7 @@ control::Outcome read(const Message& message, const control::Limits& limits, Pla
 }  // namespace
 
 CommandServer::CommandServer(InnerLoop& loop, const plant::Vehicle& vehicle,
-                             const control::ControlSettings& settings, GainDesigner designer,
-                             runtime::Semaphore& wake)
+                             const control::ControlSettings& settings, GainDesigner designer, Semaphore& wake)
     : loop_(loop),
       vehicle_(vehicle),
       limits_(settings.limits),

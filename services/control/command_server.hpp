@@ -19,8 +19,8 @@
 #include "swiftlet/services/control/gain_designer.hpp"
 #include "swiftlet/services/control/inner_loop.hpp"
 #include "swiftlet/services/control/plan_store.hpp"
+#include "swiftlet/services/control/semaphore.hpp"
 #include "swiftlet/services/messages/topics.hpp"
-#include "swiftlet/services/runtime/semaphore.hpp"
 
 namespace swiftlet::services {
 
@@ -40,7 +40,7 @@ class CommandServer {
  public:
   // Posts `wake` when collect() has something to return.
   CommandServer(InnerLoop& loop, const plant::Vehicle& vehicle, const control::ControlSettings& settings,
-                GainDesigner designer, runtime::Semaphore& wake);
+                GainDesigner designer, Semaphore& wake);
 
   // Call from any thread that may lock a mutex; each message type from one thread at a time. Refuses
   // malformed and infeasible requests at once; the inner loop evaluates the others.
@@ -101,7 +101,7 @@ class CommandServer {
   const control::Limits limits_;
   const double low_battery_voltage_;  // V, at which paths are checked
   const GainDesigner designer_;
-  runtime::Semaphore& wake_;
+  Semaphore& wake_;
 
   std::mutex mutex_;                                        // guards all members below; held briefly
   std::set<Key> checked_;                                   // between claim() and submit() or refuse()

@@ -17,14 +17,14 @@
 #include "swiftlet/services/control/failover.hpp"
 #include "swiftlet/services/control/inner_loop.hpp"
 #include "swiftlet/services/control/lockstep_gate.hpp"
+#include "swiftlet/services/control/semaphore.hpp"
 #include "swiftlet/services/control/telemetry.hpp"
+#include "swiftlet/services/control/worker.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/throttled_warning.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/runtime/clock.hpp"
 #include "swiftlet/services/runtime/realtime.hpp"
-#include "swiftlet/services/runtime/semaphore.hpp"
-#include "swiftlet/services/runtime/worker.hpp"
 
 namespace swiftlet::services {
 
@@ -95,7 +95,7 @@ class ControlService {
   const std::uint64_t controller_;
   const runtime::Clock clock_;
   runtime::RealtimeSettings realtime_;
-  runtime::Semaphore wake_;
+  Semaphore wake_;
   InnerLoop loop_;
   CommandServer command_server_;
   Telemetry telemetry_;
@@ -129,7 +129,7 @@ class ControlService {
   std::atomic<bool> rival_{false};
 
   runtime::RealtimeThread imu_thread_, pose_thread_, rotor_speed_thread_;
-  runtime::Worker worker_;  // checks plans and designs gains
+  Worker worker_;  // checks plans and designs gains
 
   std::mutex gate_mutex_;  // lockstep: guards the inner loop and its inputs
   LockstepGate gate_;

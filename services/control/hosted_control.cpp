@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "swiftlet/services/dds/discovery/peer_log.hpp"
+#include "swiftlet/services/dds/reach.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 
 namespace swiftlet::services {

@@ -1,36 +1,19 @@
 #include "swiftlet/services/dds/dds_profile.hpp"
 
-#include <memory>
-#include <mutex>
 #include <string_view>
 #include <tinyxml2.h>
-#include <vector>
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/dds/log/Log.hpp>
 
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
-#include "swiftlet/services/dds/fast_dds_library.hpp"
 
 namespace swiftlet::comms {
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
-
-// The errors of Fast DDS while it reads a file. Its warnings do not make a file wrong.
-class ErrorCollector final : public dds::LogConsumer {
- public:
-  explicit ErrorCollector(std::vector<std::string>& errors) : errors_(errors) {}
-  void Consume(const dds::Log::Entry& entry) override {
-    if (entry.kind == dds::Log::Kind::Error) errors_.push_back(entry.message);
-  }
-
- private:
-  std::vector<std::string>& errors_;
-};
 
 // The name of the participant profile: of the first, or of that with is_default_profile="true".
 std::string participant_profile(const std::string& file) {
@@ -54,30 +37,15 @@ std::string participant_profile(const std::string& file) {
   return name;
 }
 
-// Throws with the first error of Fast DDS, which names the element.
-void load_into_fast_dds(const std::string& file) {
-  std::vector<std::string> errors;
-  dds::Log::Flush();
-  dds::Log::ClearConsumers();
-  dds::Log::RegisterConsumer(std::make_unique<ErrorCollector>(errors));
-  const ReturnCode loaded = dds::DomainParticipantFactory::get_instance()->load_XML_profiles_file(file);
-  dds::Log::Flush();
-  log_fast_dds();
-  if (!succeeded(loaded) || !errors.empty())
-    throw runtime::ConfigError(file, 0, "",
-                               "is refused by Fast DDS: " + (errors.empty() ? "" : errors.front()));
-}
-
 }  // namespace
 
 DdsProfile load_dds_profile(const std::string& file) {
-  static std::mutex mutex;  // Fast DDS has one log and one list of profiles
-  const std::lock_guard<std::mutex> lock(mutex);
-  set_up_fast_dds();
   const std::string name = participant_profile(file);
-  load_into_fast_dds(file);
+  auto* const factory = dds::DomainParticipantFactory::get_instance();
   dds::DomainParticipantQos of_file;
-  dds::DomainParticipantFactory::get_instance()->get_participant_qos_from_profile(name, of_file);
+  if (!succeeded(factory->load_XML_profiles_file(file)) ||
+      !succeeded(factory->get_participant_qos_from_profile(name, of_file)))
+    throw runtime::ConfigError(file, 0, "", "is refused by Fast DDS: see its error above");
   DdsProfile profile;
   profile.participant.allocation(of_file.allocation());
   profile.participant.properties(of_file.properties());

@@ -17,7 +17,7 @@ struct DdsProfile {
 
 // Of the participant profile of a file, the first one, or that with is_default_profile="true": its allocation, properties, sizes of
 // socket buffers, and its first transport, which must be UDPv4. Swiftlet sets the rest itself. Throws runtime::ConfigError with file
-// and line, or with what Fast DDS says of the file.
+// and line; what Fast DDS refuses, it says on stderr. Not thread-safe.
 DdsProfile load_dds_profile(const std::string& file);
 
 }  // namespace swiftlet::comms

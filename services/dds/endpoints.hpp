@@ -20,6 +20,7 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 
 #include "swiftlet/services/dds/checked_type_support.hpp"
+#include "swiftlet/services/dds/datagram/rtps_ids.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/participant.hpp"
@@ -59,13 +60,8 @@ struct SenderId {
   }
 };
 
-// FNV-1a.
 inline std::uint64_t number_of(const rtps::GUID_t& guid) {
-  std::uint64_t number = 0xcbf29ce484222325U;
-  const auto add = [&](rtps::octet octet) { number = (number ^ octet) * 0x100000001b3U; };
-  for (const rtps::octet octet : guid.guidPrefix.value) add(octet);
-  for (const rtps::octet octet : guid.entityId.value) add(octet);
-  return number;
+  return fnv(guid.entityId.value, 4, fnv(guid.guidPrefix.value, 12));
 }
 
 // As names in ROS 2: one that begins with / is absolute, any other is in the namespace of the vehicle.

@@ -457,10 +457,8 @@ class ChainedTransport : public eprosima::fastdds::rtps::ChainingTransport {
     return leads_here(announced, used) || low_level_transport_->transform_remote_locator(announced, used);
   }
 #endif
-  // Whether a process with this address is reached by another one, which is set then. By default as the transport below has it.
-  virtual bool leads_here(const rtps::Locator_t& /*announced*/, rtps::Locator_t& /*used*/) const {
-    return false;
-  }
+  // Whether a process with this address is reached by another one, which is set then.
+  virtual bool leads_here(const rtps::Locator_t& announced, rtps::Locator_t& used) const = 0;
 
   // For the channels of ChainingTransport; OutputChannel does without.
 #if SWIFTLET_FAST_DDS_3

@@ -1,14 +1,16 @@
 #include "swiftlet/services/dds/fast_dds_library.hpp"
 
-#include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <memory>
+#include <string_view>
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/log/StdoutErrConsumer.hpp>
 
 #include "swiftlet/services/dds/fast_dds.hpp"
+#include "swiftlet/services/runtime/token_bucket.hpp"
 
 namespace swiftlet::comms {
 
@@ -16,33 +18,28 @@ namespace dds = eprosima::fastdds::dds;
 
 namespace {
 
-std::atomic<FastDdsWarningListener> warning_listener{nullptr};
-
+// Called by the thread of the log.
 class Consumer final : public dds::StdoutErrConsumer {
  public:
   void Consume(const dds::Log::Entry& entry) override {
-    if (entry.kind == dds::Log::Kind::Error) return StdoutErrConsumer::Consume(entry);
-    if (const FastDdsWarningListener listener = warning_listener)
-      listener(entry.context.category, entry.message);
+    if (entry.kind == dds::Log::Kind::Error || is_told(entry)) StdoutErrConsumer::Consume(entry);
   }
+
+ private:
+  bool is_told(const dds::Log::Entry& warning) {
+    const auto now = std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+    return std::string_view(warning.context.category) == "SECURITY_AUTHENTICATION" && warnings_.take(now);
+  }
+
+  runtime::TokenBucket warnings_{16.0, 1.6};
 };
 
 }  // namespace
 
-void log_fast_dds() {
-  dds::Log::ClearConsumers();
-  dds::Log::RegisterConsumer(std::make_unique<Consumer>());
-}
-
-void hear_fast_dds_warnings(FastDdsWarningListener listener) {
-  set_up_fast_dds();
-  warning_listener = listener;
-  dds::Log::SetVerbosity(dds::Log::Kind::Warning);
-}
-
-void set_up_fast_dds() {
+void set_up_fast_dds(bool tells_refusals) {
   static const bool done = [] {
-    log_fast_dds();
+    dds::Log::ClearConsumers();
+    dds::Log::RegisterConsumer(std::make_unique<Consumer>());
     dds::Log::SetVerbosity(dds::Log::Kind::Error);
     // Otherwise Fast DDS makes a client of a server of each participant that uses multicast, peers or the loopback
     // interface. The options have read the variable.
@@ -54,6 +51,7 @@ void set_up_fast_dds() {
     return true;
   }();
   static_cast<void>(done);
+  if (tells_refusals) dds::Log::SetVerbosity(dds::Log::Kind::Warning);
 }
 
 }  // namespace swiftlet::comms

@@ -1,17 +1,16 @@
 #include "swiftlet/services/dds/node.hpp"
 
-#include <algorithm>
 #include <optional>
 #include <stdexcept>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/services/dds/endpoints.hpp"
 #include "swiftlet/services/dds/message_types.hpp"
 #include "swiftlet/services/dds/participant.hpp"
-#include "swiftlet/services/dds/vehicle_name.hpp"
 #include "swiftlet/services/messages/schemas.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 
 namespace swiftlet::comms {
 
@@ -41,7 +40,7 @@ std::string ProcessIdentity::to_string() const {
 Participant::Participant(const NodeSettings& settings) : impl_(std::make_shared<Impl>(settings, "")) {}
 
 Participant::Participant(const NodeSettings& settings, const std::vector<std::string>& vehicles)
-    : impl_(std::make_shared<Impl>(settings, join_names(vehicles))) {}
+    : impl_(std::make_shared<Impl>(settings, runtime::joined(vehicles, ","))) {}
 
 Node::Node(const NodeSettings& settings)
     : participant_(std::make_shared<Participant::Impl>(settings, checked(settings.vehicle))),
@@ -68,22 +67,7 @@ std::vector<std::string> Participant::qos_conflicts_seen() const { return impl_-
 
 std::optional<std::string> Participant::become_source(const std::vector<std::string>& excluded,
                                                       std::function<void(const std::string&)> on_lost) {
-  std::vector<Subscription> watch;
-  const auto read = [&](const auto& topic, const std::vector<std::string>& vehicles) {
-    using Reader = detail::DdsReader<Impl, typename std::decay_t<decltype(topic)>::Message>;
-    if (std::count(excluded.begin(), excluded.end(), topic.name) == 0) return;
-    // The participant owns the readers: they do not share it.
-    const std::shared_ptr<Impl> participant(std::shared_ptr<void>(), impl_.get());
-    for (const std::string& vehicle : vehicles)
-      watch.emplace_back(std::make_unique<Reader>(
-          participant, vehicle, topic, nullptr, [](const RawSample&) {}, Delivery::kShared, std::nullopt,
-          nullptr));
-  };
-  const std::vector<std::string> vehicles = impl_->watched_vehicles();
-  read(topics::kImu, vehicles);
-  read(topics::kMocapPose, vehicles);
-  read(topics::kGroundTruth, vehicles);
-  return impl_->become_source(excluded, std::move(on_lost), std::move(watch));
+  return impl_->become_source(excluded, std::move(on_lost));
 }
 
 std::optional<std::string> Node::become_source(std::function<void(const std::string&)> on_lost) {

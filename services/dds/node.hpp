@@ -12,21 +12,40 @@
 #include <utility>
 #include <vector>
 
-#include "swiftlet/services/dds/network_settings.hpp"
 #include "swiftlet/services/messages/topics.hpp"
 
 namespace swiftlet::comms {
 
+// How a process finds the processes of other hosts.
+struct NetworkSettings {
+  // Hosts to which it announces itself, "HOST" or "HOST:PORT"; without a port to the first discovery ports of
+  // the domain. If there are any, it uses no multicast. Own processes of this host are found without.
+  std::vector<std::string> peers{};
+  // It sends and receives on these interfaces, by name or IPv4 address, and the loopback interface only. Empty: on all.
+  std::vector<std::string> interfaces{};
+
+  // The servers that tell it of the others, "HOST[:PORT][;...]" (io/network/host_address.hpp). It uses no multicast then. Not
+  // with peers. Empty: none.
+  std::string discovery_servers{};
+  // An XML file of Fast DDS, whose default participant profile applies under what Swiftlet sets itself
+  // (dds_profile.hpp). Empty: none.
+  std::string dds_profile{};
+
+  std::string file{};  // that was applied (node_options.hpp); empty: none
+
+  bool uses_multicast() const { return peers.empty() && discovery_servers.empty(); }
+};
+
 struct NodeSettings {
   std::string name;             // process: "plant", "mocap", "control", "ground"
-  std::string vehicle = "kl1";  // namespace of the topics: see vehicle_name.hpp
+  std::string vehicle = "kl1";  // namespace of the topics: see messages/vehicle_names.hpp
   int domain = 0;               // 0 .. 232
-  bool localhost_only = false;  // loopback interface only, without multicast
+  bool localhost_only = false;  // loopback interface only, also with a key
   NetworkSettings network{};    // needs the network: see on_loopback()
   // Uses the network without network_key_file or security too: whoever is in it can then command the vehicles.
   bool open_network = false;
   // This process hears of all others of the domain. False: not of those that neither serve a vehicle of its own nor hear of
-  // all, and with a discovery server only of those that exchange topics with it, which keeps the traffic of a fleet in
+  // all, and with a discovery server, unless it is a source, only of those that exchange topics with it, which keeps the traffic of a fleet in
   // proportion to its vehicles; on_peer() and topics_seen() miss the others.
   bool hears_of_all = true;
   // File with the keys of the network (io/network_key.hpp): only datagrams of processes with one of them are
@@ -66,7 +85,7 @@ struct SourceConflict {
 
 // Samples of another process are taken once the source of a fast stream has been silent for this time.
 constexpr std::chrono::milliseconds kSourceSilence{200};
-// source_of of who starts a simulated vehicle (flight_reservation.hpp).
+// source_of of who starts a simulated vehicle (sole_source.hpp).
 constexpr const char* kFlight = "flight";
 
 // How long become_source() looks for another source: an announcement is sent several times in that time.
@@ -169,8 +188,7 @@ class Participant {
   Participant(const NodeSettings& settings, const std::vector<std::string>& vehicles);
 
   // The wire names ("rt/kl1/imu") of the topics that other participants of the domain publish now, of any
-  // vehicle; sorted, without duplicates. Topics of processes with localhost_only are seen only with
-  // localhost_only.
+  // vehicle; sorted, without duplicates.
   std::vector<std::string> topics_seen() const;
   // The other processes of the domain that are known now, of any vehicle.
   std::vector<ProcessIdentity> processes_seen() const;

@@ -1,21 +1,79 @@
 #include "swiftlet/services/dds/node_options.hpp"
 
+#include <cstddef>
 #include <cstdlib>
+#include <filesystem>
+#include <functional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "swiftlet/io/config.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/network/host_address.hpp"
+#include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/io/network_key.hpp"
-#include "swiftlet/services/dds/discovery/discovery_servers.hpp"
-#include "swiftlet/services/dds/discovery/host_address.hpp"
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
-#include "swiftlet/services/dds/network_file.hpp"
+#include "swiftlet/io/text.hpp"
+#include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/dds/security/security_qos.hpp"
-#include "swiftlet/services/dds/vehicle_list.hpp"
-#include "swiftlet/services/runtime/split_text.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 
 namespace swiftlet::comms {
 namespace {
+
+// ---- the network file
+
+using runtime::ConfigNode;
+
+constexpr std::size_t kMaxPeers = 64;  // each costs an announcement to 17 ports and more
+constexpr std::size_t kMaxInterfaces = 16;
+
+std::vector<std::string> texts(const ConfigNode& list, std::size_t max_count,
+                               const std::function<std::string(const std::string&)>& fault_of) {
+  std::vector<std::string> found;
+  for (const ConfigNode& item : list.items(1, max_count)) {
+    const std::string text = item.text();
+    if (const std::string fault = fault_of(text); !fault.empty()) item.fail(fault);
+    found.push_back(text);
+  }
+  return found;
+}
+
+void read_discovery(const ConfigNode& root, NodeSettings& settings) {
+  const auto peers = root.find("peers");
+  const auto servers = root.find("discovery_servers");
+  if (peers && servers) servers->fail("excludes peers");
+  if (!peers && !servers) return;
+  settings.network.peers.clear();
+  settings.network.discovery_servers.clear();
+  if (peers) settings.network.peers = texts(*peers, kMaxPeers, runtime::fault_of_host_address);
+  if (servers)
+    settings.network.discovery_servers =
+        runtime::joined(texts(*servers, runtime::kMaxDiscoveryServers, runtime::fault_of_host_address), ";");
+}
+
+std::string path_beside(const ConfigNode& file) {
+  return std::filesystem::path(file.file()).parent_path() / file.text();
+}
+
+void read(const ConfigNode& root, NodeSettings& settings) {
+  read_discovery(root, settings);
+  if (const auto open = root.find("open_network")) settings.open_network = open->boolean();
+  if (const auto interfaces = root.find("interfaces"))
+    settings.network.interfaces = texts(*interfaces, kMaxInterfaces, runtime::fault_of_interface);
+  if (const auto profile = root.find("dds_profile")) settings.network.dds_profile = path_beside(*profile);
+  if (const auto key = root.find("network_key")) {
+    settings.network_key_file = path_beside(*key);
+    runtime::read_network_keys(settings.network_key_file);  // throws for an invalid one
+  }
+  if (const auto folder = root.find("security")) {
+    settings.security = path_beside(*folder);
+    const std::string fault = fault_of_security(settings.security, settings.name);
+    if (!fault.empty()) folder->fail(fault);
+  }
+}
+
+// ---- the options
 
 std::string fault_of_key_file(const std::string& file) {
   try {
@@ -33,17 +91,11 @@ std::string environment(const char* variable) {
 
 // The variables by which ROS 2 is told where to look for others, and that of the own network.
 void apply_environment(NodeSettings& settings) {
-  const std::string range = environment("ROS_AUTOMATIC_DISCOVERY_RANGE");
-  const std::string peers = environment("ROS_STATIC_PEERS");
-  const bool near = (range == "LOCALHOST" || range == "OFF") && peers.empty();
   settings.open_network = environment("SWIFTLET_OPEN_NETWORK") == "1";
-  settings.localhost_only = near || environment("ROS_LOCALHOST_ONLY") == "1";
   settings.network.peers.clear();
-  settings.network.discovery_servers.clear();
-  if (settings.localhost_only) return;
   settings.network.discovery_servers = environment("ROS_DISCOVERY_SERVER");
   if (!settings.network.discovery_servers.empty()) return;
-  for (const std::string& peer : runtime::split_text(peers, ';')) {
+  for (const std::string& peer : runtime::split_text(environment("ROS_STATIC_PEERS"), ';')) {
     if (!peer.empty()) settings.network.peers.push_back(peer);
   }
 }
@@ -51,7 +103,7 @@ void apply_environment(NodeSettings& settings) {
 // Applies the file.
 std::string fault_of_network_file(const std::string& file, NodeSettings& settings) {
   try {
-    load_network_file(file, settings);
+    apply_network_file(runtime::read_text_file(file), file, settings);
     return "";
   } catch (const runtime::ConfigError& error) {
     return error.what();
@@ -68,34 +120,27 @@ void add_network_options(runtime::CommandLine app, NodeSettings& settings) {
         settings.network.discovery_servers.clear();
         settings.network.interfaces.clear();
       },
-      "Use the loopback interface only, without multicast");
+      "Use the loopback interface only, also with --network-key or --security");
   runtime::Option peer =
       app.add_option("--peer", settings.network.peers,
                      "Find the processes of this host without multicast; once for each other host; default: "
                      "$ROS_STATIC_PEERS");
   peer.repeated()
-      .check(fault_of_host_address, "HOST[:PORT]")
+      .check(runtime::fault_of_host_address, "HOST[:PORT]")
       .excludes(localhost_only)
-      .when_given([&settings] {
-        settings.localhost_only = false;
-        settings.network.discovery_servers.clear();
-      });
+      .when_given([&settings] { settings.network.discovery_servers.clear(); });
   app.add_option("--discovery-server", settings.network.discovery_servers,
                  "Find the other processes by `swiftlet discovery-server` at this address (port 11811 unless "
                  "given), without multicast; default: $ROS_DISCOVERY_SERVER")
-      .check(fault_of_discovery_servers, "HOST[:PORT]")
+      .check(runtime::fault_of_discovery_servers, "HOST[:PORT]")
       .excludes(localhost_only)
       .excludes(peer)
-      .when_given([&settings] {
-        settings.localhost_only = false;
-        settings.network.peers.clear();
-      });
+      .when_given([&settings] { settings.network.peers.clear(); });
   app.add_option("--interface", settings.network.interfaces,
                  "Use this network interface, and that of the loopback, only; may be repeated")
       .repeated()
-      .check(fault_of_interface, "NAME|ADDRESS")
-      .excludes(localhost_only)
-      .when_given([&settings] { settings.localhost_only = false; });
+      .check(runtime::fault_of_interface, "NAME|ADDRESS")
+      .excludes(localhost_only);
 }
 
 void add_profile_option(runtime::CommandLine app, NodeSettings& settings) {
@@ -109,6 +154,13 @@ void add_profile_option(runtime::CommandLine app, NodeSettings& settings) {
 }
 
 }  // namespace
+
+void apply_network_file(std::string_view text, const std::string& file_name, NodeSettings& settings) {
+  const ConfigNode root = runtime::parse_config(text, file_name);
+  NodeSettings changed = settings;
+  root.read_known([&] { read(root, changed); });
+  settings = changed;
+}
 
 void add_node_options(runtime::CommandLine app, NodeSettings& settings, const NameCheck& name) {
   apply_environment(settings);
@@ -126,15 +178,9 @@ void add_node_options(runtime::CommandLine app, NodeSettings& settings, const Na
   add_network_options(app, settings);
   add_profile_option(app, settings);
   add_network_key_option(app, settings.network_key_file);
-  app.add_flag(
-         "--open-network",
-         [&settings] {
-           settings.open_network = true;
-           settings.localhost_only = false;
-         },
-         "Use the network without --network-key or --security: anyone in it can command the vehicles; "
-         "default: "
-         "the loopback interface only, unless $SWIFTLET_OPEN_NETWORK is 1")
+  app.add_flag("--open-network", settings.open_network,
+               "Use the network without --network-key or --security: anyone in it can command the vehicles; "
+               "default: the loopback interface only, unless $SWIFTLET_OPEN_NETWORK is 1")
       .excludes(app.option("--localhost-only"));
   app.add_option("--security", settings.security,
                  "Authenticate, encrypt, and let each role write its own topics only: folder made by "

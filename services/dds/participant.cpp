@@ -4,15 +4,15 @@
 #include <climits>
 #include <iterator>
 #include <random>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
 #include <unistd.h>
 #include <utility>
 
-#include <fmt/core.h>
-
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 
@@ -23,7 +23,6 @@ namespace dds = eprosima::fastdds::dds;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kCheckPeriod{250};
-constexpr std::chrono::milliseconds kHandshakePatience{1500};  // three attempts of Fast DDS
 
 void check(const NodeSettings& settings) {
   if (settings.domain < 0 || settings.domain > 232) {
@@ -61,11 +60,6 @@ double random_share() {
   return std::uniform_real_distribution<double>(0.0, 1.0)(random);
 }
 
-std::string text_of(Ipv4 address) {
-  return fmt::format("{}.{}.{}.{}", address >> 24U, address >> 16U & 0xffU, address >> 8U & 0xffU,
-                     address & 0xffU);
-}
-
 std::string named(const std::string& name, const rtps::GuidPrefix_t& participant) {
   std::ostringstream text;
   text << "'" << name << "' (" << participant << ")";
@@ -76,16 +70,11 @@ rtps::GUID_t participant_guid(const rtps::GuidPrefix_t& participant) {
   return {participant, rtps::c_EntityId_RTPSParticipant};
 }
 
-rtps::GUID_t participant_guid(const GuidPrefix& participant) {
-  rtps::GuidPrefix_t prefix;
-  std::copy(participant.begin(), participant.end(), prefix.value);
-  return participant_guid(prefix);
-}
-
-GuidPrefix bytes_of(const rtps::GuidPrefix_t& participant) {
-  GuidPrefix bytes;
-  std::copy_n(participant.value, bytes.size(), bytes.begin());
-  return bytes;
+// Anybody may announce itself under any name: logs and terminals get no control characters of it.
+std::string in_one_line(const std::string& name) {
+  std::string line = runtime::printable(name);
+  std::replace(line.begin(), line.end(), '\n', '?');
+  return line;
 }
 
 }  // namespace
@@ -96,9 +85,7 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
       announcement_(announcement_of(node_settings, vehicles)),
       patience_(random_share()) {
   check(settings);
-  if (!settings.security.empty()) refused_peers_.emplace();
-  joined_ns_ = Now::read().steady_ns;
-  guard_->set_own_interfaces(interfaces_up());
+  guard_->set_own_interfaces(runtime::interfaces_up());
   guard_->ignore_apart_from(to_user_data(announcement_));
   if (settings.network.discovery_servers.empty()) introduced_at_ = Clock::now();
   const runtime::RealtimeScope scope = realtime();
@@ -106,25 +93,16 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
   periodic_task_.emplace(kCheckPeriod, [this] {
     const runtime::RealtimeScope task_scope = realtime();
     rejoin_if_rediscovery_failed();
-    end_source_watch_when_due();
-    {
-      const std::lock_guard<std::mutex> session_lock(session_mutex_);
-      follow_addresses();
-      announce_when_due();
-    }
     guard_->refusals().write_due(Clock::now());
     const std::lock_guard<std::mutex> session_lock(session_mutex_);
-    const std::lock_guard<std::mutex> lock(peers_mutex_);
-    if (session_ != nullptr) refuse_silent_strangers(session_->participant->guid());
-    if (refused_peers_) refused_peers_->write_due(Clock::now());
-    conflict_log_.write_due(Clock::now());
+    follow_addresses();
+    announce_when_due();
   });
 }
 
 Participant::Impl::~Impl() {
   periodic_task_.reset();
   const runtime::RealtimeScope scope = realtime();
-  source_watch_.clear();
   end_session();
 }
 
@@ -135,10 +113,6 @@ void Participant::Impl::serve(const std::string& vehicle) {
   if (lists(announcement_.vehicles, vehicle)) return;
   {
     const std::lock_guard<std::mutex> peers_lock(peers_mutex_);
-    for (const auto& [guid, peer] : peers_) {
-      if (!is_own(peer) && lists(peer.announced.vehicles, vehicle))
-        rediscovery_.came(guid.guidPrefix, Clock::now());
-    }
     announcement_.vehicles += (announcement_.vehicles.empty() ? "" : ",") + vehicle;
   }
   guard_->ignore_apart_from(to_user_data(announcement_));
@@ -154,10 +128,7 @@ void Participant::Impl::stop_serving(const std::string& vehicle) {
     const std::lock_guard<std::mutex> peers_lock(peers_mutex_);
     std::vector<std::string> vehicles = split_names(announcement_.vehicles);
     vehicles.erase(std::remove(vehicles.begin(), vehicles.end(), vehicle), vehicles.end());
-    announcement_.vehicles = join_names(vehicles);
-    for (const auto& [guid, peer] : peers_) {
-      if (!is_own(peer)) rediscovery_.gone(guid.guidPrefix);
-    }
+    announcement_.vehicles = runtime::joined(vehicles, ",");
   }
   guard_->ignore_apart_from(to_user_data(announcement_));
   announcement_changed_ = true;
@@ -172,11 +143,11 @@ void Participant::Impl::announce_when_due() {
 void Participant::Impl::follow_addresses() {
   for (const MovedHosts::Move& move : guard_->take_moves())
     runtime::log_warning("what is for {} is sent to {} now, from where its host is heard",
-                         text_of(move.announced), text_of(move.heard_at));
-  const std::vector<Interface> own = interfaces_up();
+                         runtime::to_string(move.announced), runtime::to_string(move.heard_at));
+  const std::vector<runtime::Interface> own = runtime::interfaces_up();
   guard_->set_own_interfaces(own);
   if (settings.on_loopback()) return;
-  const auto change = addresses_.poll(own, settings.network);
+  const auto change = addresses_.change(own, settings.network);
   if (!change) return;
   runtime::log_warning("{}", *change);
   announcement_changed_ = true;
@@ -208,7 +179,10 @@ void Participant::Impl::rejoin_if_rediscovery_failed() {
     const std::lock_guard<std::mutex> lock(peers_mutex_);
     const auto now = Clock::now();
     if (!away_) {
-      if (!rediscovery_.failed(now, patience_.at(now))) return;
+      const auto is_incomplete = [&](const auto& known) {
+        return is_own(known.second) && known.second.endpoints.are_missing(now, patience_.at(now));
+      };
+      if (std::none_of(peers_.begin(), peers_.end(), is_incomplete)) return;
       patience_.rejoined(now);
     }
   }
@@ -244,12 +218,9 @@ void Participant::Impl::leave() {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   peers_.clear();
   strangers_.clear();
-  joined_ns_ = Now::read().steady_ns;
-  authenticated_.clear();
   writers_.clear();
   readers_.clear();
-  conflict_log_.clear();
-  rediscovery_.clear();
+  lost_.clear();
 }
 
 // ---- other processes
@@ -266,8 +237,7 @@ std::vector<ProcessIdentity> Participant::Impl::processes_seen() const {
   const runtime::RealtimeScope scope = realtime();
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   std::vector<ProcessIdentity> processes;
-  for (const auto& [guid, peer] : peers_)
-    processes.push_back({peer.name, peer.announced.host, peer.announced.pid});
+  for (const auto& [guid, peer] : peers_) processes.push_back(peer.identity());
   return processes;
 }
 
@@ -276,8 +246,7 @@ std::vector<std::string> Participant::Impl::qos_conflicts_seen() const {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   const auto process = [this](const Guid& guid) {
     const Peer* const peer = peer_of(guid.guidPrefix);
-    if (peer == nullptr) return std::string("an unknown program");
-    return ProcessIdentity{peer->name, peer->announced.host, peer->announced.pid}.to_string();
+    return peer == nullptr ? "an unknown program" : peer->identity().to_string();
   };
   std::vector<std::string> sentences;
   for (const auto& [writer_guid, writer] : writers_) {
@@ -296,8 +265,7 @@ ProcessIdentity Participant::Impl::identity_of(const GuidPrefix& participant) co
   const runtime::RealtimeScope scope = realtime();
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   const Peer* const peer = peer_of(participant);
-  if (peer == nullptr) return {};
-  return {peer->name, peer->announced.host, peer->announced.pid};
+  return peer == nullptr ? ProcessIdentity() : peer->identity();
 }
 
 void Participant::Impl::listen(const Node* node, const std::string& vehicle,
@@ -312,74 +280,31 @@ void Participant::Impl::listen(const Node* node, const std::string& vehicle,
   }
 }
 
-// Anybody may announce itself under any name: logs and terminals get no control characters of it.
-Participant::Impl::Peer Participant::Impl::announced(const std::string& name,
-                                                     const std::vector<std::uint8_t>& user_data) {
-  const auto in_one_line = [](const std::string& text) {
-    std::string line = runtime::printable(text);
-    std::replace(line.begin(), line.end(), '\n', '?');
-    return line;
-  };
-  Peer peer{in_one_line(name), from_user_data(user_data)};
-  peer.announced.host = in_one_line(peer.announced.host);
-  return peer;
-}
-
 void Participant::Impl::on_participant(const Guid& guid, const std::string& name,
                                        const std::vector<std::uint8_t>& user_data) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   if (!introduced_at_ && is_discovery_server(bytes_of(guid.guidPrefix))) introduced_at_ = Clock::now();
-  const Peer peer = announced(name, user_data);
-  if (is_authenticated(guid)) return update_peer(guid, peer);
+  Peer peer{in_one_line(name), from_user_data(user_data)};
+  peer.announced.host = in_one_line(peer.announced.host);
+  if (settings.security.empty() || peers_.count(guid) > 0) return update_peer(guid, peer);
   strangers_[guid] = peer;
 }
 
 void Participant::Impl::on_participant_gone(const Guid& guid, bool said_goodbye) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   strangers_.erase(guid);
-  authenticated_.erase(guid);
   drop_peer(guid, said_goodbye);
 }
 
-bool Participant::Impl::is_authenticated(const Guid& guid) const {
-  return settings.security.empty() || authenticated_.count(guid) > 0;
-}
-
-// Before or after its discovery.
+// Before or after its discovery. Fast DDS names who is refused by GUID only, and logs the reason without it.
 void Participant::Impl::on_authentication(const Guid& guid, bool authenticated) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
-  const auto stranger = strangers_.find(guid);
-  if (authenticated) {
-    authenticated_.insert(guid);
-    if (stranger == strangers_.end()) return;
-    update_peer(guid, stranger->second);
-    strangers_.erase(stranger);
-  } else {
-    const auto heard = guard_->announcements(Now::read());
-    const auto said = heard.find(bytes_of(guid.guidPrefix));
-    refuse(guid, said == heard.end() ? Peer{} : announced(said->second.name, said->second.user_data), "");
-  }
-}
-
-void Participant::Impl::refuse(const Guid& guid, const Peer& peer, const char* reason) {
-  if (!refused_peers_) return;
-  const std::string process =
-      peer.announced.host.empty()
-          ? named(peer.name, guid.guidPrefix)
-          : ProcessIdentity{peer.name, peer.announced.host, peer.announced.pid}.to_string();
-  refused_peers_->note(guid, process, reason, Clock::now());
-}
-
-// Who refuses this process does not answer it. Neither is told why.
-void Participant::Impl::refuse_silent_strangers(const Guid& own) {
-  if (!refused_peers_) return;
-  const Now now = Now::read();
-  for (const auto& [participant, said] : guard_->announcements(now)) {
-    const Guid guid = participant_guid(participant);
-    if (guid == own || is_authenticated(guid)) continue;
-    if (now.steady_ns - std::max(said.since_ns, joined_ns_) >
-        kHandshakePatience / std::chrono::nanoseconds(1))
-      refuse(guid, announced(said.name, said.user_data), ": it does not complete the handshake");
+  if (!authenticated) {
+    const std::string name = in_one_line(guard_->name_of(bytes_of(guid.guidPrefix)));
+    log_.warn("refused " + named(name, guid.guidPrefix) + ": see the log of Fast DDS", Clock::now());
+  } else if (peers_.count(guid) == 0) {
+    update_peer(guid, strangers_[guid]);
+    strangers_.erase(guid);
   }
 }
 
@@ -388,10 +313,15 @@ void Participant::Impl::tell(const PeerListener& listener, const PeerEvent& even
   listener.callback(event);
 }
 
-void Participant::Impl::update_peer(const Guid& guid, const Peer& peer) {
-  Peer& known = peers_[guid];
-  const Peer before = std::exchange(known, peer);
-  if (is_own(peer) && !is_own(before)) rediscovery_.came(guid.guidPrefix, Clock::now());
+void Participant::Impl::update_peer(const Guid& guid, Peer peer) {
+  const auto [known, is_new] = peers_.try_emplace(guid);
+  if (is_new) {
+    const auto lost = lost_.find(guid.guidPrefix);
+    peer.endpoints = {Clock::now(), 0, lost == lost_.end() ? 0 : lost->second};
+  } else {
+    peer.endpoints = known->second.endpoints;
+  }
+  const Peer before = std::exchange(known->second, peer);
   for (const auto& [node, listener] : peer_listeners_) {
     const bool serves = lists(peer.announced.vehicles, listener.vehicle);
     if (serves != lists(before.announced.vehicles, listener.vehicle))
@@ -405,14 +335,16 @@ void Participant::Impl::drop_peer(const Guid& guid, bool said_goodbye) {
     for (auto it = remote->begin(); it != remote->end();)
       it = it->first.guidPrefix == guid.guidPrefix ? remote->erase(it) : std::next(it);
   }
-  conflict_log_.forget(guid.guidPrefix);
   const auto peer = peers_.find(guid);
   if (peer == peers_.end()) return;
   const Peer gone = peer->second;
   peers_.erase(peer);
-  if (said_goodbye) rediscovery_.gone(guid.guidPrefix);
+  lost_.erase(guid.guidPrefix);
   if (!is_own(gone)) return;
-  if (!said_goodbye) rediscovery_.lost(guid.guidPrefix);
+  if (!said_goodbye) {
+    if (lost_.size() >= kMostParticipants) lost_.clear();  // of those that were started again, as other peers
+    lost_[guid.guidPrefix] = gone.endpoints.known | gone.endpoints.before;
+  }
   for (const auto& [node, listener] : peer_listeners_) {
     if (lists(gone.announced.vehicles, listener.vehicle)) tell(listener, {gone.name, false, said_goodbye});
   }
@@ -420,7 +352,7 @@ void Participant::Impl::drop_peer(const Guid& guid, bool said_goodbye) {
 
 void Participant::Impl::on_writer(const Guid& guid, const std::string& topic, const EndpointQos& qos) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
-  add_endpoint(writers_, guid, {topic, qos}, PeerMonitor::kWriter);
+  add_endpoint(writers_, guid, {topic, qos}, PeerEndpoints::kWriter);
 }
 
 void Participant::Impl::on_writer_gone(const Guid& guid) {
@@ -430,7 +362,7 @@ void Participant::Impl::on_writer_gone(const Guid& guid) {
 
 void Participant::Impl::on_reader(const Guid& guid, const std::string& topic, const EndpointQos& qos) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
-  add_endpoint(readers_, guid, {topic, qos}, PeerMonitor::kReader);
+  add_endpoint(readers_, guid, {topic, qos}, PeerEndpoints::kReader);
 }
 
 void Participant::Impl::on_reader_gone(const Guid& guid) {
@@ -439,9 +371,9 @@ void Participant::Impl::on_reader_gone(const Guid& guid) {
 }
 
 void Participant::Impl::add_endpoint(RemoteEndpoints& endpoints, const Guid& guid, RemoteEndpoint endpoint,
-                                     PeerMonitor::Kind kind) {
-  const Peer* const peer = peer_of(guid.guidPrefix);
-  if (peer != nullptr && is_own(*peer)) rediscovery_.has(guid.guidPrefix, kind);
+                                     PeerEndpoints::Kind kind) {
+  const auto peer = peers_.find(participant_guid(guid.guidPrefix));
+  if (peer != peers_.end()) peer->second.endpoints.known |= kind;
   endpoints[guid] = std::move(endpoint);
 }
 
@@ -462,38 +394,36 @@ std::string Participant::Impl::shared_vehicle(const Peer& peer) const {
 void Participant::Impl::on_requested_incompatible_qos(dds::DataReader* reader,
                                                       const dds::RequestedIncompatibleQosStatus&) {
   const EndpointQos requested = endpoint_qos(reader->get_qos());
-  log_conflicts(reader->guid(), reader->get_topicdescription()->get_name(), writers_, "is not received",
+  log_conflicts(reader->get_topicdescription()->get_name(), writers_, "is not received",
                 [&](const EndpointQos& offered) { return conflicts(offered, requested); });
 }
 
 void Participant::Impl::on_offered_incompatible_qos(dds::DataWriter* writer,
                                                     const dds::OfferedIncompatibleQosStatus&) {
   const EndpointQos offered = endpoint_qos(writer->get_qos());
-  log_conflicts(writer->guid(), writer->get_topic()->get_name(), readers_,
-                "does not receive from this process",
+  log_conflicts(writer->get_topic()->get_name(), readers_, "does not receive from this process",
                 [&](const EndpointQos& requested) { return conflicts(offered, requested); });
 }
 
 template <class ConflictsWith>
-void Participant::Impl::log_conflicts(const Guid& own, const std::string& topic,
-                                      const RemoteEndpoints& others, const char* consequence,
-                                      const ConflictsWith& conflicts_with) {
+void Participant::Impl::log_conflicts(const std::string& topic, const RemoteEndpoints& others,
+                                      const char* consequence, const ConflictsWith& conflicts_with) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   for (const auto& [guid, other] : others) {
-    if (other.topic != topic || conflict_log_.has_noted(own, guid)) continue;
+    if (other.topic != topic) continue;
     const std::string policies = conflicts_with(other.qos);
     if (policies.empty()) continue;
     const Peer* const peer = peer_of(guid.guidPrefix);
-    conflict_log_.note(own, guid, topic, named(peer == nullptr ? "" : peer->name, guid.guidPrefix),
-                       consequence, policies, Clock::now());
+    log_.warn(topic + ": " + named(peer == nullptr ? "" : peer->name, guid.guidPrefix) + " " + consequence +
+                  ", their QoS is incompatible: " + policies,
+              Clock::now());
   }
 }
 
 // ---- the only source of a topic
 
 std::optional<std::string> Participant::Impl::become_source(const std::vector<std::string>& excluded,
-                                                            std::function<void(const std::string&)> on_lost,
-                                                            std::vector<Subscription> watch) {
+                                                            std::function<void(const std::string&)> on_lost) {
   const bool finds_fast = settings.security.empty() && settings.network.discovery_servers.empty();
   std::this_thread::sleep_for(finds_fast ? kSourceSearchTime : kLongSourceSearchTime);
   const std::lock_guard<std::mutex> lock(session_mutex_);
@@ -503,23 +433,10 @@ std::optional<std::string> Participant::Impl::become_source(const std::vector<st
     announcement_.is_established = true;
     established_at_ = Clock::now();
     on_lost_source_ = std::move(on_lost);
-    source_watch_ = std::move(watch);
   }
   announcement_changed_ = true;
   announce_when_due();
   return std::nullopt;
-}
-
-std::vector<std::string> Participant::Impl::watched_vehicles() const {
-  const std::lock_guard<std::mutex> lock(peers_mutex_);
-  const bool discovers_all = settings.network.discovery_servers.empty() || settings.hears_of_all;
-  return discovers_all ? std::vector<std::string>() : split_names(announcement_.vehicles);
-}
-
-void Participant::Impl::end_source_watch_when_due() {
-  std::vector<Subscription> ended;  // after the lock
-  const std::lock_guard<std::mutex> lock(peers_mutex_);
-  if (!is_on_probation()) ended.swap(source_watch_);
 }
 
 bool Participant::Impl::is_on_probation() const {
@@ -561,10 +478,9 @@ void Participant::Impl::yield_source_to(const Peer& peer) {
 
 std::string Participant::Impl::in_use_by(const std::string& vehicle, const std::string& topic,
                                          const Peer& source) const {
-  const ProcessIdentity process{source.name, source.announced.host, source.announced.pid};
   const std::string what = topic == kFlight ? " has reserved it for a flight" : " publishes its " + topic;
   return "vehicle " + vehicle + " is already in use in domain " + std::to_string(settings.domain) + ": " +
-         process.to_string() + what;
+         source.identity().to_string() + what;
 }
 
 }  // namespace swiftlet::comms

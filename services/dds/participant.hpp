@@ -9,7 +9,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -19,14 +18,12 @@
 #include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 #include "swiftlet/services/dds/discovery/address_watch.hpp"
 #include "swiftlet/services/dds/discovery/announcement.hpp"
-#include "swiftlet/services/dds/discovery/rediscovery_monitor.hpp"
-#include "swiftlet/services/dds/discovery/rejoin_patience.hpp"
+#include "swiftlet/services/dds/discovery/rediscovery.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
+#include "swiftlet/services/dds/limited_log.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/participant_session.hpp"
 #include "swiftlet/services/dds/periodic_task.hpp"
-#include "swiftlet/services/dds/qos/qos_conflict_log.hpp"
-#include "swiftlet/services/dds/security/refused_peers.hpp"
 #include "swiftlet/services/runtime/realtime.hpp"
 
 namespace swiftlet::comms {
@@ -42,13 +39,8 @@ struct Participant::Impl final : public DiscoveryListener {
   // kCheckPeriod, not at all if the participant ends.
   void serve(const std::string& vehicle);
   void stop_serving(const std::string& vehicle);
-  // watch: readers of the excluded topics of the watched vehicles, which end after kSourceProbation.
   std::optional<std::string> become_source(const std::vector<std::string>& excluded,
-                                           std::function<void(const std::string&)> on_lost,
-                                           std::vector<Subscription> watch);
-  // Of which this process has to read a topic to discover its writers: through a discovery server a client discovers only
-  // those with which it exchanges topics. Empty if it discovers all.
-  std::vector<std::string> watched_vehicles() const;
+                                           std::function<void(const std::string&)> on_lost);
   void add(Endpoint* endpoint);
   void remove(Endpoint* endpoint);
   // Number of the readers of a topic that this participant has.
@@ -71,11 +63,18 @@ struct Participant::Impl final : public DiscoveryListener {
  private:
   using Guid = rtps::GUID_t;
   using GuidPrefix = rtps::GuidPrefix_t;
-  using PeerMonitor = RediscoveryMonitor<GuidPrefix>;
   struct Peer {
     std::string name;
     Announcement announced;
+    PeerEndpoints endpoints{};
+
+    ProcessIdentity identity() const { return {name, announced.host, announced.pid}; }
   };
+  struct RemoteEndpoint {
+    std::string topic;
+    EndpointQos qos;
+  };
+  using RemoteEndpoints = std::map<Guid, RemoteEndpoint>;
   struct PeerListener {
     std::string vehicle;
     std::function<void(const PeerEvent&)> callback;
@@ -105,27 +104,22 @@ struct Participant::Impl final : public DiscoveryListener {
                                    const eprosima::fastdds::dds::OfferedIncompatibleQosStatus&) override;
 
   // All of these require peers_mutex_.
-  bool is_authenticated(const Guid& guid) const;
-  void refuse(const Guid& guid, const Peer& peer, const char* reason);
-  void refuse_silent_strangers(const Guid& own);
-  static Peer announced(const std::string& name, const std::vector<std::uint8_t>& user_data);
   static void tell(const PeerListener& listener, const PeerEvent& event) noexcept;
-  void update_peer(const Guid& guid, const Peer& peer);  // a known peer may serve more vehicles now
+  void update_peer(const Guid& guid, Peer peer);  // a known peer may serve more vehicles now
   void drop_peer(const Guid& guid, bool said_goodbye);
   void add_endpoint(RemoteEndpoints& endpoints, const Guid& guid, RemoteEndpoint endpoint,
-                    PeerMonitor::Kind kind);
+                    PeerEndpoints::Kind kind);
   const Peer* peer_of(const GuidPrefix& participant) const;
   std::string shared_vehicle(const Peer& peer) const;  // the first vehicle that both serve; empty if none
   bool is_own(const Peer& peer) const { return !shared_vehicle(peer).empty(); }
   template <class ConflictsWith>
-  void log_conflicts(const Guid& own, const std::string& topic, const RemoteEndpoints& others,
-                     const char* consequence, const ConflictsWith& conflicts_with);
+  void log_conflicts(const std::string& topic, const RemoteEndpoints& others, const char* consequence,
+                     const ConflictsWith& conflicts_with);
 
   // A sentence about another process to which this one must yield (become_source()); nullopt if there is none.
   std::optional<std::string> other_source(const std::vector<std::string>& excluded) const;
   std::optional<std::string> unannounced_source(const std::string& vehicle, const std::string& topic) const;
   bool is_on_probation() const;  // as a source (kSourceProbation); requires peers_mutex_
-  void end_source_watch_when_due();
   // Two sources that joined at the same time, and discovered each other late.
   void yield_source_to(const Peer& peer);
   std::string in_use_by(const std::string& vehicle, const std::string& topic, const Peer& source) const;
@@ -144,23 +138,18 @@ struct Participant::Impl final : public DiscoveryListener {
   // When it could first hear of others: with a discovery server when it heard of that.
   std::optional<std::chrono::steady_clock::time_point> introduced_at_;
   std::function<void(const std::string&)> on_lost_source_;
-  std::vector<Subscription> source_watch_;
-  // Of any vehicle; with security only authenticated ones, whose announcements are not encrypted.
-  std::map<Guid, Peer> peers_;
-  // With security. Fast DDS 3 tells of participants only when they are authenticated; guard_ knows the others.
-  std::map<Guid, Peer> strangers_;  // not authenticated yet
-  std::int64_t joined_ns_ = 0;      // of the clock of guard_
-  std::set<Guid> authenticated_;
-  RemoteEndpoints writers_;  // of other processes, any vehicle
+  std::map<Guid, Peer>
+      peers_;  // of any vehicle; with security only authenticated ones, also before they are discovered
+  std::map<Guid, Peer> strangers_;  // with security: discovered, but not authenticated yet
+  RemoteEndpoints writers_;         // of other processes, any vehicle
   RemoteEndpoints readers_;
-  QosConflictLog conflict_log_;
+  LimitedLog log_;
   std::map<const Node*, PeerListener> peer_listeners_;
-  PeerMonitor rediscovery_;
+  std::map<GuidPrefix, unsigned> lost_;  // kinds of endpoints of those peers whose lease has expired
   RejoinPatience patience_;
 
   AddressWatch addresses_;
-  std::optional<RefusedPeers> refused_peers_;  // with security
-  std::atomic<bool> away_{false};              // the last rejoin failed
+  std::atomic<bool> away_{false};  // the last rejoin failed
   std::optional<PeriodicTask> periodic_task_;
 };
 

@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
-#include <utility>
+#include <vector>
 
+#include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/network/host_address.hpp"
+#include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/services/dds/datagram/guarded_transport.hpp"
 #include "swiftlet/services/dds/dds_profile.hpp"
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
-#include "swiftlet/services/dds/discovery/repeated_discovery.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
-#include "swiftlet/services/dds/network_qos.hpp"
 #include "swiftlet/services/dds/qos/duration.hpp"
 #include "swiftlet/services/dds/qos/profiles.hpp"
 #include "swiftlet/services/dds/security/security_qos.hpp"
@@ -20,9 +21,97 @@ namespace swiftlet::comms {
 namespace dds = eprosima::fastdds::dds;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 
+namespace {
+
+// All first ports of the domain on a host, as its processes take the first that are free there.
+void add_host(const std::string& ipv4, const DiscoveryPorts& ports, std::uint32_t count,
+              rtps::LocatorList_t& peers) {
+  for (std::uint32_t i = 0; i < count; ++i) peers.push_back(udp_locator(ipv4, ports.first + i * ports.gap));
+}
+
+// Fast DDS 2.9 fails an assertion if a server of this host has another address than that of the loopback interface.
+void add_servers(const NodeSettings& settings, rtps::DiscoverySettings& discovery) {
+  const std::string& list = settings.network.discovery_servers;
+  if (const std::string fault = runtime::fault_of_discovery_servers(list); !fault.empty())
+    throw runtime::ConfigError("discovery server " + fault);
+  // A plain client hears only of those with which it exchanges topics: a source would not hear of another one.
+  const bool hears_of_all = settings.hears_of_all || !settings.source_of.empty();
+  discovery.discoveryProtocol =
+      hears_of_all ? rtps::DiscoveryProtocol::SUPER_CLIENT : rtps::DiscoveryProtocol::CLIENT;
+  for (const runtime::DiscoveryServerAddress& server : runtime::parse_discovery_servers(list)) {
+    std::vector<rtps::Locator_t> addresses;
+    for (const std::string& address : runtime::ipv4_addresses_of(server.address.host)) {
+      addresses.push_back(
+          udp_locator(runtime::is_own_address(address) ? runtime::kLoopback : address, server.address.port));
+    }
+    add_discovery_server(discovery, server.number, addresses);
+  }
+}
+
+// A locator with this port for each address at which the node is to be found: those of its interfaces, by default of all that
+// are up but the loopback interface, which it has if there is no other. Of this moment: Fast DDS 3 remembers those of the
+// first participant of the process.
+rtps::LocatorList_t own_locators(const NodeSettings& settings, std::uint32_t port) {
+  std::vector<std::string> addresses;
+  if (!settings.on_loopback()) addresses = runtime::addresses_of_interfaces(settings.network.interfaces);
+  if (!settings.on_loopback() && addresses.empty()) {
+    for (const runtime::Interface& it : runtime::interfaces_up()) {
+      if (!it.is_loopback) addresses.push_back(it.address);
+    }
+  }
+  if (addresses.empty()) addresses.emplace_back(runtime::kLoopback);
+  rtps::LocatorList_t locators;
+  for (const std::string& address : addresses) locators.push_back(udp_locator(address, port));
+  return locators;
+}
+
+// Sets the interfaces of the transport, and with peers or servers the addresses of discovery.
+void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
+                 eprosima::fastdds::dds::DomainParticipantQos& qos,
+                 eprosima::fastdds::rtps::UDPv4TransportDescriptor& udp) {
+  const NetworkSettings& network = settings.network;
+  const std::vector<std::string> own_addresses = runtime::addresses_of_interfaces(network.interfaces);
+  if (!own_addresses.empty()) {
+    udp.interfaceWhiteList = own_addresses;
+    // The processes of this host reach each other whatever becomes of the interfaces.
+    if (std::count(own_addresses.begin(), own_addresses.end(), runtime::kLoopback) == 0)
+      udp.interfaceWhiteList.emplace_back(runtime::kLoopback);
+  }
+  if (network.uses_multicast()) return;
+
+  auto& builtin = qos.wire_protocol().builtin;
+  const DiscoveryPorts ports = discovery_ports(settings.domain);
+  // Instead of the multicast address, only this: the first free port of the domain.
+  builtin.metatrafficUnicastLocatorList = own_locators(settings, ports.first);
+  if (network.peers.empty()) return add_servers(settings, builtin.discovery_config);
+  add_host(runtime::kLoopback, ports, announced_ports,
+           builtin.initialPeersList);  // the processes of this host
+  for (const std::string& peer : network.peers) {
+    if (const std::string fault = runtime::fault_of_host_address(peer); !fault.empty())
+      throw runtime::ConfigError("peer " + fault);
+    const runtime::HostAddress host = runtime::parse_host_address(peer);
+    for (const std::string& address : runtime::ipv4_addresses_of(host.host)) {
+      if (host.port != 0) {
+        builtin.initialPeersList.push_back(udp_locator(address, host.port));
+      } else {
+        add_host(address, ports, announced_ports, builtin.initialPeersList);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+rtps::Locator_t udp_locator(const std::string& ipv4, std::uint32_t port) {
+  rtps::Locator_t locator;
+  locator.kind = LOCATOR_KIND_UDPv4;
+  rtps::IPLocator::setIPv4(locator, ipv4);
+  locator.port = port;
+  return locator;
+}
+
 dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uint32_t announced_ports,
-                                          const std::shared_ptr<DatagramGuard>& guard,
-                                          std::shared_ptr<const std::atomic<bool>> listening) {
+                                          const std::shared_ptr<DatagramGuard>& guard) {
   const std::string& file = settings.network.dds_profile;
   const DdsProfile profile = file.empty() ? DdsProfile{} : load_dds_profile(file);
   dds::DomainParticipantQos qos = profile.participant;
@@ -62,12 +151,12 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
   UDPv4TransportDescriptor udp = profile.udp;
   udp.non_blocking_send = true;  // a full socket buffer drops a sample instead of blocking the sender
   if (settings.on_loopback()) {
-    udp.interfaceWhiteList = {kLoopback};
+    udp.interfaceWhiteList = {runtime::kLoopback};
     udp.maxInitialPeersRange = announced_ports;
     // Listen on the first free port of the domain, whatever ID the middleware assigns to the participant, and
     // on no multicast address. For the peers (port 0) the middleware tries maxInitialPeersRange ports.
-    builtin.metatrafficUnicastLocatorList.push_back(udp_locator(kLoopback, ports.first));
-    builtin.initialPeersList.push_back(udp_locator(kLoopback, 0));
+    builtin.metatrafficUnicastLocatorList.push_back(udp_locator(runtime::kLoopback, ports.first));
+    builtin.initialPeersList.push_back(udp_locator(runtime::kLoopback, 0));
   } else {
     set_network(settings, announced_ports, qos, udp);
   }
@@ -77,9 +166,7 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
   auto& addresses = qos.wire_protocol().default_unicast_locator_list;
   if (addresses.empty()) addresses = own_locators(settings, 0);
   qos.transport().use_builtin_transports = false;
-  const bool loses_nothing = settings.on_loopback();
-  qos.transport().user_transports.push_back(
-      repeat_discovery(guarded(udp, guard), settings.domain, guard, std::move(listening), loses_nothing));
+  qos.transport().user_transports.push_back(guarded(udp, guard, settings.domain));
   return qos;
 }
 

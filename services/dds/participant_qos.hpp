@@ -1,22 +1,27 @@
 // The QoS of a participant: discovery, transport and name.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 
 #include "swiftlet/services/dds/datagram/datagram_guard.hpp"
+#include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::comms {
 
+constexpr const char* kAnyAddress = "0.0.0.0";
+
+rtps::Locator_t udp_locator(const std::string& ipv4, std::uint32_t port);
+
 // announced_ports: number of ports to which it announces itself without multicast (discovery_ports.hpp).
-// guard: checks the datagrams that it receives. listening: announcements are held back until it is true. Throws
-// std::runtime_error for an unknown host or interface, and runtime::ConfigError for an invalid profile.
-eprosima::fastdds::dds::DomainParticipantQos participant_qos(
-    const NodeSettings& settings, std::uint32_t announced_ports, const std::shared_ptr<DatagramGuard>& guard,
-    std::shared_ptr<const std::atomic<bool>> listening);
+// guard: checks the datagrams that it receives. Throws std::runtime_error for an unknown host or interface, and
+// runtime::ConfigError for an invalid profile, malformed servers and peers.
+eprosima::fastdds::dds::DomainParticipantQos participant_qos(const NodeSettings& settings,
+                                                             std::uint32_t announced_ports,
+                                                             const std::shared_ptr<DatagramGuard>& guard);
 
 }  // namespace swiftlet::comms

@@ -1,17 +1,14 @@
 #include "swiftlet/services/dds/participant_session.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "swiftlet/io/network_key.hpp"
+#include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/fast_dds_library.hpp"
 #include "swiftlet/services/dds/participant_qos.hpp"
@@ -32,45 +29,43 @@ dds::DomainParticipant* create_participant(const NodeSettings& settings, const A
                                            const std::shared_ptr<DatagramGuard>& guard,
                                            dds::DomainParticipantListener* listener,
                                            std::uint32_t announced) {
-  const auto listening = std::make_shared<std::atomic<bool>>(false);
-  dds::DomainParticipantQos qos = participant_qos(settings, announced, guard, listening);
+  dds::DomainParticipantQos qos = participant_qos(settings, announced, guard);
   qos.user_data().data_vec(to_user_data(announcement));
+  guard->listen(false);
   auto* const participant = dds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(settings.domain), qos, listener,
       dds::StatusMask::requested_incompatible_qos() << dds::StatusMask::offered_incompatible_qos());
-  *listening = true;
+  guard->listen(true);
   return participant;
 }
 
 // Empty: all addresses of this host.
 std::string listening_address(const NodeSettings& settings) {
   if (settings.on_loopback()) return "127.0.0.1";
-  const std::vector<std::string> addresses = addresses_of_interfaces(settings.network.interfaces);
+  const std::vector<std::string> addresses = runtime::addresses_of_interfaces(settings.network.interfaces);
   return addresses.empty() ? "" : addresses.front();
 }
 
-// Serialized by a mutex, because Fast DDS 2.9 calls getpwuid(), which is not thread-safe. Fast DDS reports
-// neither the port at which it listens nor that it found none, hence the comparison of ports before and
-// after.
+// Serialized by a mutex, because Fast DDS 2.9 calls getpwuid(), which is not thread-safe. Fast DDS reports neither the port at
+// which it listens nor that it found none: the transport does, to the guard.
 dds::DomainParticipant* join(const NodeSettings& settings, const Announcement& announcement,
                              const std::shared_ptr<DatagramGuard>& guard,
                              dds::DomainParticipantListener* listener) {
   static std::mutex mutex;
   const std::lock_guard<std::mutex> lock(mutex);
   const DiscoveryPorts ports = discovery_ports(settings.domain);
-  const std::set<std::uint32_t> before = own_discovery_ports(settings.domain);
   const std::uint32_t expected = free_discovery_port(settings.domain, listening_address(settings));
   guard->expect_participants(expected + 1, Now::read());  // as ports are taken in their order
   const bool announces_to_ports = settings.on_loopback() || !settings.network.peers.empty();
   for (const std::uint32_t announced : {announced_ports(ports, expected), ports.count}) {
+    guard->set_discovery_port(0);
     dds::DomainParticipant* const participant =
         create_participant(settings, announcement, guard, listener, announced);
     if (participant == nullptr) return nullptr;
     // Other processes may have taken ports meanwhile. If the own port is then too high to announce itself to
     // all ports below it, try again with all ports.
-    for (const std::uint32_t port : own_discovery_ports(settings.domain)) {
-      if (before.count(port) == 0 && (port < announced || !announces_to_ports)) return participant;
-    }
+    const auto own = ports.index_of(guard->discovery_port());
+    if (own && (*own < announced || !announces_to_ports)) return participant;
     end(participant);
   }
   throw domain_is_full(settings.domain);
@@ -78,13 +73,15 @@ dds::DomainParticipant* join(const NodeSettings& settings, const Announcement& a
 
 }  // namespace
 
+GuidPrefix bytes_of(const rtps::GuidPrefix_t& participant) {
+  GuidPrefix bytes;
+  std::copy_n(participant.value, bytes.size(), bytes.begin());
+  return bytes;
+}
+
 std::shared_ptr<DatagramGuard> guard_of(const NodeSettings& settings) {
-  DatagramLimits limits;
-  limits.discovery_servers = !settings.network.discovery_servers.empty();
-  limits.security = !settings.security.empty();
-  const std::string& file = settings.network_key_file;
   return std::make_shared<DatagramGuard>(
-      file.empty() ? runtime::NetworkKeys() : runtime::read_network_keys(file), limits);
+      settings.network_key_file, !settings.network.discovery_servers.empty(), !settings.security.empty());
 }
 
 ParticipantSession::ParticipantSession(const NodeSettings& settings, const Announcement& announcement,
@@ -93,16 +90,14 @@ ParticipantSession::ParticipantSession(const NodeSettings& settings, const Annou
     : guard_(guard),
       spacing_(settings.network.discovery_servers.empty() ? std::chrono::milliseconds(0)
                                                           : kAnnouncementSpacing) {
-  set_up_fast_dds();
+  set_up_fast_dds(!settings.security.empty());
   guard->set_participant({});  // of a session before
   participant = join(settings, announcement, guard, listener);
   if (participant == nullptr) {
     throw std::runtime_error("cannot join DDS domain " + std::to_string(settings.domain) +
                              ": no port could be opened or the transport could not be set up");
   }
-  GuidPrefix own{};
-  std::copy_n(participant->guid().guidPrefix.value, own.size(), own.begin());
-  guard->set_participant(own);
+  guard->set_participant(bytes_of(participant->guid().guidPrefix));
   // Fast DDS 3 remembers the addresses of the host from the first participant of the process on; this lets it read them again.
   set_qos(participant->get_qos());
   publisher = participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);

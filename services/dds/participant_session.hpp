@@ -25,6 +25,8 @@
 
 namespace swiftlet::comms {
 
+GuidPrefix bytes_of(const rtps::GuidPrefix_t& participant);
+
 // What checks the datagrams of a session with these settings. Throws runtime::ConfigError for a bad key file.
 std::shared_ptr<DatagramGuard> guard_of(const NodeSettings& settings);
 

@@ -2,19 +2,12 @@
 
 #include <vector>
 
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/io/network/interfaces.hpp"
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/services/runtime/log.hpp"
+#include "swiftlet/services/runtime/log_label.hpp"
 
 namespace swiftlet::comms {
-namespace {
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
-}
-
-}  // namespace
 
 std::string search_text(const NodeSettings& settings) {
   if (settings.on_loopback())
@@ -24,11 +17,11 @@ std::string search_text(const NodeSettings& settings) {
   const NetworkSettings& network = settings.network;
   std::string text;
   if (!network.peers.empty()) {
-    text = " at the peers " + listed(network.peers);
+    text = " at the peers " + runtime::joined(network.peers, ", ");
   } else if (!network.discovery_servers.empty()) {
     text = " by the discovery server " + network.discovery_servers;
   }
-  if (!network.interfaces.empty()) text += " on " + listed(network.interfaces);
+  if (!network.interfaces.empty()) text += " on " + runtime::joined(network.interfaces, ", ");
   return text;
 }
 
@@ -36,13 +29,26 @@ void log_reach(const NodeSettings& settings) {
   if (settings.localhost_only || !settings.network_key_file.empty() || !settings.security.empty()) return;
   if (settings.open_network) {
     std::vector<std::string> others;
-    for (const Interface& it : interfaces_up())
+    for (const runtime::Interface& it : runtime::interfaces_up())
       if (!it.is_loopback) others.push_back(it.name);
     runtime::log_warning("--open-network: who is in the network of {} can command these vehicles",
-                         others.empty() ? "the loopback interface" : listed(others));
+                         others.empty() ? "the loopback interface" : runtime::joined(others, ", "));
   } else {
     runtime::log_info("on this host only: --network-key FILE or --security DIR opens the network");
   }
+}
+
+void log_peers(Node& node) {
+  node.on_peer([own = runtime::LogLabel::current()](const PeerEvent& event) {
+    const runtime::LogLabel label(own);
+    if (event.alive) {
+      runtime::log_info("{} joined", event.name);
+    } else if (event.said_goodbye) {
+      runtime::log_info("{} left", event.name);
+    } else {
+      runtime::log_warning("{} died or was cut off", event.name);
+    }
+  });
 }
 
 }  // namespace swiftlet::comms

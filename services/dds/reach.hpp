@@ -1,4 +1,4 @@
-// Where a process looks for the others, and who reaches it, for messages.
+// What a process says of the network: where it looks for the others, who reaches it, and who joins and leaves.
 #pragma once
 
 #include <string>
@@ -13,5 +13,8 @@ std::string search_text(const NodeSettings& settings);
 
 // One line of a service that says that only this host reaches it, or that anybody does; none if its options say it.
 void log_reach(const NodeSettings& settings);
+
+// Logs discovered and lost peers of the node, whose on_peer() callback it sets.
+void log_peers(Node& node);
 
 }  // namespace swiftlet::comms

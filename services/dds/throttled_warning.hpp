@@ -1,9 +1,11 @@
 // Logs refused messages of one topic, at most one line per second.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 
 #include "swiftlet/services/messages/convert.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 
 namespace swiftlet::comms {
 
@@ -11,12 +13,20 @@ namespace swiftlet::comms {
 class ThrottledWarning {
  public:
   explicit ThrottledWarning(const char* topic) : topic_(topic) {}
-  void note(const Fault& fault);
+  void note(const Fault& fault) {
+    ++refused_;
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_) return;
+    runtime::log_warning("{} sample{} of {} refused; the last: {}", refused_, refused_ == 1 ? "" : "s",
+                         topic_, fault.text);
+    refused_ = 0;
+    next_ = now + std::chrono::seconds(1);
+  }
 
  private:
   const char* topic_;
-  std::uint64_t suppressed_ = 0;
-  std::int64_t next_ns_ = 0;
+  std::uint64_t refused_ = 0;  // since the last line
+  std::chrono::steady_clock::time_point next_{};
 };
 
 }  // namespace swiftlet::comms

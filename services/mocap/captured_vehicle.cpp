@@ -1,7 +1,7 @@
 #include "swiftlet/services/mocap/captured_vehicle.hpp"
 
 #include "swiftlet/io/text_file.hpp"
-#include "swiftlet/services/dds/discovery/peer_log.hpp"
+#include "swiftlet/services/dds/reach.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/log_label.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"

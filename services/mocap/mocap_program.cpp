@@ -17,7 +17,7 @@
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/node_options.hpp"
 #include "swiftlet/services/dds/reach.hpp"
-#include "swiftlet/services/dds/vehicle_list.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 #include "swiftlet/services/mocap/captured_vehicle.hpp"
 #include "swiftlet/services/mocap/frame_thread.hpp"
 #include "swiftlet/services/mocap/motion_capture_simulator.hpp"

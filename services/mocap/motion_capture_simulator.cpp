@@ -1,6 +1,6 @@
 #include "swiftlet/services/mocap/motion_capture_simulator.hpp"
 
-#include "swiftlet/services/dds/discovery/peer_log.hpp"
+#include "swiftlet/services/dds/reach.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 

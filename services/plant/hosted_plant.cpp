@@ -1,6 +1,6 @@
 #include "swiftlet/services/plant/hosted_plant.hpp"
 
-#include "swiftlet/services/dds/discovery/peer_log.hpp"
+#include "swiftlet/services/dds/reach.hpp"
 
 namespace swiftlet::services {
 namespace {

@@ -21,7 +21,7 @@
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/node_options.hpp"
 #include "swiftlet/services/dds/reach.hpp"
-#include "swiftlet/services/dds/vehicle_list.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 #include "swiftlet/services/plant/autopilot_settings.hpp"
 #include "swiftlet/services/plant/hosted_plant.hpp"
 #include "swiftlet/services/runtime/clock.hpp"

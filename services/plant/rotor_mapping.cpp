@@ -10,7 +10,7 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/services/runtime/split_text.hpp"
+#include "swiftlet/io/text.hpp"
 
 namespace swiftlet::services {
 namespace {

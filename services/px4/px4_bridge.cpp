@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/services/dds/discovery/peer_log.hpp"
+#include "swiftlet/services/dds/reach.hpp"
 #include "swiftlet/services/messages/wire_version.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"

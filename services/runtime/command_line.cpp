@@ -17,6 +17,7 @@
 #include <CLI/CLI.hpp>
 
 #include "swiftlet/io/nearest_name.hpp"
+#include "swiftlet/io/text.hpp"
 
 namespace swiftlet::runtime {
 namespace {
@@ -127,12 +128,6 @@ std::vector<std::string> commands_of(const CLI::App& app) {
   return names;
 }
 
-std::string list_of(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
-}
-
 // The sentence about the first argument that a parsed command does not know; "" if there is none.
 std::string unknown_argument(const CLI::App& program) {
   const CLI::App* app = &program;
@@ -148,7 +143,7 @@ std::string unknown_argument(const CLI::App& program) {
   const std::string meant = did_you_mean(is_option ? long_options(*app) : commands, word);
   std::string sentence = std::string("Unknown ") + (is_option ? "option" : "command") + " '" + word + "'.";
   if (!meant.empty()) return sentence + meant;
-  return is_option ? sentence : sentence + " Commands: " + list_of(commands) + ".";
+  return is_option ? sentence : sentence + " Commands: " + joined(commands, ", ") + ".";
 }
 
 }  // namespace
@@ -239,14 +234,12 @@ Option& Option::positive() {
       "NUMBER > 0");
 }
 Option& Option::one_of(const std::vector<std::string>& texts) {
-  std::string braces;
-  for (const std::string& text : texts) braces += (braces.empty() ? "{" : ",") + text;
   return check(
       [texts](const std::string& text) {
         const bool is_one = std::find(texts.begin(), texts.end(), text) != texts.end();
         return is_one ? "" : "is " + text + ", must be " + choice_of(texts);
       },
-      braces + "}");
+      "{" + joined(texts, ",") + "}");
 }
 Option& Option::check(std::function<std::string(const std::string&)> fault_of,
                       const std::string& value_name) {

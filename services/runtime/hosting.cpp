@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/log_label.hpp"
 
@@ -73,12 +74,6 @@ Fleet take_failed(Fleet& fleet) {
   return failed;
 }
 
-std::string join(const std::vector<std::string>& sentences) {
-  std::string text;
-  for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
-  return text;
-}
-
 }  // namespace
 
 void HostedVehicle::fail(const std::string& sentence) {
@@ -115,7 +110,7 @@ void host(std::vector<std::unique_ptr<HostedVehicle>> vehicles, StopSignal& stop
   if (failures.empty()) return;
   if (count == 1) throw std::runtime_error(failures.front());
   throw std::runtime_error(std::to_string(failures.size()) + " of " + std::to_string(count) +
-                           " vehicles failed: " + join(failures));
+                           " vehicles failed: " + joined(failures, "; "));
 }
 
 }  // namespace swiftlet::runtime

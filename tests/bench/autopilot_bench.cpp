@@ -77,7 +77,6 @@ class Flight {
     comms::NodeSettings settings;
     settings.name = "bench";
     settings.domain = domain;
-    settings.localhost_only = true;
     return settings;
   }
   static tests::ScriptedAutopilotSettings pilot_settings() {

@@ -28,8 +28,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/io/network/host_address.hpp"
 #include "swiftlet/services/dds/discovery/discovery_server.hpp"
-#include "swiftlet/services/dds/discovery/discovery_servers.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/runtime/log.hpp"
@@ -151,7 +151,7 @@ class ServerProcess {
       comms::DiscoveryServerSettings settings;
       settings.domain = network.domain;
       settings.open_network = true;
-      settings.port = comms::kDiscoveryServerPort;
+      settings.port = runtime::kDiscoveryServerPort;
       comms::DiscoveryServer server(settings, [](const comms::DiscoveryServerEvent&) {});
       pollfd input{input_[0], POLLIN, 0};
       ::poll(&input, 1, std::chrono::milliseconds(comms::DiscoveryServer::kStartTime).count());

@@ -50,7 +50,6 @@ comms::NodeSettings settings(const char* name, int domain, const runtime::Realti
   comms::NodeSettings settings;
   settings.name = name;
   settings.domain = domain;
-  settings.localhost_only = true;
   settings.realtime_priority = realtime.thread_priority();
   return settings;
 }

@@ -105,8 +105,7 @@ class BarePair final : private dds::DataReaderListener {
     settings.security = options.security;
     participant_ = require_created(dds::DomainParticipantFactory::get_instance()->create_participant(
                                        static_cast<std::uint32_t>(domain),
-                                       comms::participant_qos(settings, kProcesses, guard(settings),
-                                                              std::make_shared<std::atomic<bool>>(true))),
+                                       comms::participant_qos(settings, kProcesses, guard(settings))),
                                    "participant");
     auto* const publisher =
         require_created(participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT), "publisher");

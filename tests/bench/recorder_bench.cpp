@@ -18,6 +18,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/ground/command_line/child_process.hpp"
 #include "swiftlet/ground/flight/in_process_flight.hpp"
 #include "swiftlet/ground/flight/simulated_recorder.hpp"
 #include "swiftlet/ground/logs/flight_log_files.hpp"
@@ -26,7 +27,6 @@
 #include "swiftlet/record/mcap/reader.hpp"
 #include "swiftlet/record/recorder/flight_recorder.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
-#include "swiftlet/services/runtime/child_process.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 #include "tests/bench/process_usage.hpp"
 #include "tests/support/eventually.hpp"
@@ -56,7 +56,6 @@ comms::NodeSettings network(const char* name, int domain) {
   comms::NodeSettings settings;
   settings.name = name;
   settings.domain = domain;
-  settings.localhost_only = true;
   return settings;
 }
 

@@ -28,11 +28,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   tests::demand(checked.length <= datagram.size(), "the middleware gets no more than was received");
   std::vector<std::uint8_t> copy(datagram.begin(),
                                  datagram.begin() + static_cast<std::ptrdiff_t>(checked.length));
-  for (std::size_t i = 0; i < checked.hidden_count; ++i)
-    tests::demand(checked.hidden[i] + 4 <= copy.size(), "a hidden parameter is in the datagram");
+  for (const std::size_t at : checked.places.hidden)
+    tests::demand(at + 4 <= copy.size(), "a hidden parameter is in the datagram");
   comms::hide_parameters(checked, copy.data());
   if (copy.size() <= 20) return 0;  // it held nothing but what the middleware must not see
   const comms::CheckedDatagram again = comms::check_datagram(copy.data(), copy.size(), limits);
-  tests::demand(again.fault == nullptr && again.hidden_count == 0, "what the middleware gets is valid");
+  tests::demand(again.fault == nullptr && again.places.hidden.empty(), "what the middleware gets is valid");
   return 0;
 }

@@ -61,7 +61,6 @@ class Autopilot : public testing::Test {
     comms::NodeSettings settings;
     settings.name = "watcher";
     settings.domain = lock_.domain();
-    settings.localhost_only = true;
     return settings;
   }
 

@@ -37,7 +37,6 @@ class CheckVehicle : public testing::Test {
     settings.name = name;
     settings.vehicle = vehicle;
     settings.domain = lock_.domain();
-    settings.localhost_only = true;
     return settings;
   }
   std::vector<std::string> network(std::vector<std::string> words) const {

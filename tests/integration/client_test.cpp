@@ -41,7 +41,6 @@ class OneContext : public testing::Test {
     comms::NodeSettings network;
     network.name = "test";
     network.domain = lock_.domain();
-    network.localhost_only = true;
     return network;
   }
 

@@ -238,7 +238,6 @@ TEST_F(LockstepServices, MocapAnswersARepeatedTruthAgain) {
   comms::NodeSettings settings;
   settings.name = "plant";
   settings.domain = domain_.domain();
-  settings.localhost_only = true;
   comms::Node plant(settings);
   Inbox<comms::msg::MocapPose> poses;
   const auto subscription = plant.subscribe<comms::msg::MocapPose>(
@@ -275,7 +274,6 @@ TEST_F(LockstepServices, TimeAdvancesWithTheSimulationClockOnly) {
     comms::NodeSettings settings;
     settings.name = "ground";
     settings.domain = domain_.domain();
-    settings.localhost_only = true;
     comms::Node ground(settings);
     Inbox<std::int64_t> pauses;
     const auto subscription =

@@ -238,7 +238,7 @@ TEST_F(Networks, ADiscoveryServerIntroducesTheHostsAndServesItsOwn) {
   }
 }
 
-// As they are plain clients, the server tells them of each other only because a source reads its own topic at first.
+// The server tells a plain client only of those with which it exchanges topics: a source is none.
 TEST_F(Networks, ASecondPlantIsRefusedThroughADiscoveryServer) {
   connect(Layout::kRouter);
   options_ = {{}, {}, {}};

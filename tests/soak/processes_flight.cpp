@@ -143,7 +143,6 @@ class FailingFlight {
     comms::NodeSettings settings;
     settings.name = name;
     settings.domain = lock_.domain();
-    settings.localhost_only = true;
     return settings;
   }
 

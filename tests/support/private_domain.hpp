@@ -11,7 +11,6 @@ inline comms::NodeSettings settings_of(const char* name, const comms::DomainLock
   comms::NodeSettings settings;
   settings.name = name;
   settings.domain = lock.domain();
-  settings.localhost_only = true;
   return settings;
 }
 

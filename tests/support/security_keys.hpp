@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "swiftlet/io/security/security_folder.hpp"
-#include "swiftlet/services/dds/security/policy.hpp"
+#include "swiftlet/services/messages/security_policy.hpp"
 #include "swiftlet/services/messages/topic_roles.hpp"
 
 namespace swiftlet::tests {

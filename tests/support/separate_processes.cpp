@@ -25,7 +25,6 @@ comms::NodeSettings SeparateProcesses::node(const std::string& name) const {
   comms::NodeSettings settings;
   settings.name = name;
   settings.domain = lock_.domain();
-  settings.localhost_only = true;
   return settings;
 }
 

@@ -25,7 +25,7 @@
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/services/dds/reach.hpp"
-#include "swiftlet/services/dds/vehicle_list.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -16,9 +16,9 @@
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/command_line/programs.hpp"
+#include "swiftlet/io/network/host_address.hpp"
+#include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/services/dds/discovery/discovery_server.hpp"
-#include "swiftlet/services/dds/discovery/discovery_servers.hpp"
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
 #include "swiftlet/services/dds/node_options.hpp"
 #include "swiftlet/services/runtime/stop_signal.hpp"
 
@@ -30,10 +30,10 @@ constexpr std::chrono::milliseconds kLook{50};  // at the server, whether it has
 // "10.0.0.1:11811", as other hosts name the server; from its number on with ';' before it.
 std::string option_value(const comms::DiscoveryServerSettings& settings) {
   std::string address = "127.0.0.1";
-  for (const comms::Interface& it : comms::interfaces_up()) {
+  for (const runtime::Interface& it : runtime::interfaces_up()) {
     if (!settings.on_loopback() && !it.is_loopback) address = it.address;
   }
-  if (!settings.interfaces.empty()) address = comms::addresses_of_interfaces(settings.interfaces).front();
+  if (!settings.interfaces.empty()) address = runtime::addresses_of_interfaces(settings.interfaces).front();
   const std::string list = std::string(static_cast<std::size_t>(settings.number), ';') + address + ":" +
                            std::to_string(settings.port);
   return settings.number == 0 ? list : "'" + list + "'";
@@ -128,7 +128,7 @@ int keep_serving(const comms::DiscoveryServerSettings& settings) {
 
 Command add_discovery_server_command(runtime::CommandLine root) {
   const auto settings = std::make_shared<comms::DiscoveryServerSettings>();
-  settings->port = comms::kDiscoveryServerPort;
+  settings->port = runtime::kDiscoveryServerPort;
   const runtime::CommandLine app = root.add_subcommand("discovery-server", purpose_of("discovery-server"));
   app.add_option("--domain", settings->domain, "DDS domain")
       .environment("ROS_DOMAIN_ID")
@@ -137,12 +137,12 @@ Command add_discovery_server_command(runtime::CommandLine root) {
   app.add_option("--port", settings->port, "UDP port").range(1, 65535).show_default();
   app.add_option("--number", settings->number,
                  "place of this server in the list of --discovery-server, from 0, if there are several")
-      .range(0, comms::kMaxDiscoveryServers - 1)
+      .range(0, runtime::kMaxDiscoveryServers - 1)
       .show_default();
   app.add_option("--interface", settings->interfaces,
                  "listen on this network interface only; may be repeated")
       .repeated()
-      .check(comms::fault_of_interface, "NAME|ADDRESS");
+      .check(runtime::fault_of_interface, "NAME|ADDRESS");
   comms::add_network_key_option(app, settings->network_key_file);
   app.add_flag("--open-network", settings->open_network,
                "serve other hosts without --network-key too; default: this host only");

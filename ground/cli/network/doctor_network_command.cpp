@@ -10,8 +10,7 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/network/network_findings.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
-#include "swiftlet/services/dds/discovery/discovery_servers.hpp"
-#include "swiftlet/services/dds/discovery/host_address.hpp"
+#include "swiftlet/io/network/host_address.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -25,10 +24,10 @@ struct DoctorNetworkOptions {
 };
 
 // With the options of the interface; otherwise all to other hosts.
-std::vector<comms::Interface> used_interfaces(const comms::NodeSettings& settings) {
-  std::vector<comms::Interface> used = comms::interfaces_up();
+std::vector<runtime::Interface> used_interfaces(const comms::NodeSettings& settings) {
+  std::vector<runtime::Interface> used = runtime::interfaces_up();
   const std::vector<std::string>& chosen = settings.network.interfaces;
-  const auto is_unused = [&](const comms::Interface& it) {
+  const auto is_unused = [&](const runtime::Interface& it) {
     if (settings.on_loopback()) return !it.is_loopback;
     if (chosen.empty()) return it.is_loopback;
     return std::count(chosen.begin(), chosen.end(), it.name) +
@@ -41,14 +40,14 @@ std::vector<comms::Interface> used_interfaces(const comms::NodeSettings& setting
 
 std::vector<std::string> peer_addresses(const comms::NetworkSettings& network) {
   std::vector<std::string> hosts;
-  for (const std::string& peer : network.peers) hosts.push_back(comms::parse_host_address(peer).host);
+  for (const std::string& peer : network.peers) hosts.push_back(runtime::parse_host_address(peer).host);
   if (!network.discovery_servers.empty()) {
-    for (const auto& server : comms::parse_discovery_servers(network.discovery_servers))
+    for (const auto& server : runtime::parse_discovery_servers(network.discovery_servers))
       hosts.push_back(server.address.host);
   }
   std::vector<std::string> addresses;
   for (const std::string& host : hosts) {
-    for (const std::string& address : comms::ipv4_addresses_of(host)) addresses.push_back(address);
+    for (const std::string& address : runtime::ipv4_addresses_of(host)) addresses.push_back(address);
   }
   return addresses;
 }
@@ -58,7 +57,7 @@ NetworkFacts examine(const DoctorNetworkOptions& options) {
   facts.settings = options.network;
   facts.interfaces = used_interfaces(options.network);
   std::vector<std::string> addresses;
-  for (const comms::Interface& it : facts.interfaces) addresses.push_back(it.address);
+  for (const runtime::Interface& it : facts.interfaces) addresses.push_back(it.address);
   const comms::Participant participant(options.network);  // discovers while the probe runs
   comms::NetworkProbe probe(options.network.domain, addresses, peer_addresses(options.network.network));
   facts.probe = probe.run(std::chrono::milliseconds(static_cast<std::int64_t>(options.time_s * 1e3)));
@@ -74,7 +73,7 @@ const char* multicast_text(const comms::ProbedHost& host) {
 }
 
 void print(const NetworkFacts& facts) {
-  for (const comms::Interface& it : facts.interfaces) {
+  for (const runtime::Interface& it : facts.interfaces) {
     const auto& heard = facts.probe.own_multicast;
     fmt::print(
         "interface {} ({}): MTU {} bytes, multicast {}\n", it.name, it.address, it.mtu_bytes,
@@ -128,7 +127,7 @@ ordered_json to_json(const comms::ProbedHost& host) {
 ordered_json to_json(const NetworkFacts& facts) {
   ordered_json json = {{"domain", facts.settings.domain}};
   json["interfaces"] = ordered_json::array();
-  for (const comms::Interface& it : facts.interfaces) {
+  for (const runtime::Interface& it : facts.interfaces) {
     const auto& heard = facts.probe.own_multicast;
     json["interfaces"].push_back({{"name", it.name},
                                   {"address", it.address},

@@ -23,10 +23,10 @@ std::string ports_text(int domain) {
 
 void judge_interfaces(const NetworkFacts& facts, std::vector<NetworkFinding>& found) {
   const bool reaches_others = std::any_of(facts.interfaces.begin(), facts.interfaces.end(),
-                                          [](const comms::Interface& it) { return !it.is_loopback; });
+                                          [](const runtime::Interface& it) { return !it.is_loopback; });
   if (!reaches_others && !facts.settings.on_loopback())
     found.push_back({true, "no interface to other hosts is up: they cannot be reached"});
-  for (const comms::Interface& it : facts.interfaces) {
+  for (const runtime::Interface& it : facts.interfaces) {
     if (it.mtu_bytes > 0 && it.mtu_bytes < kUsualMtu_bytes)
       found.push_back(
           {false, fmt::format("{} has an MTU of {} bytes: longer datagrams are sent in fragments, and "
@@ -42,7 +42,7 @@ bool uses_multicast(const NetworkFacts& facts) {
 void judge_multicast(const NetworkFacts& facts, std::vector<NetworkFinding>& found) {
   if (!uses_multicast(facts)) return;
   const std::vector<std::string>& heard = facts.probe.own_multicast;
-  for (const comms::Interface& it : facts.interfaces) {
+  for (const runtime::Interface& it : facts.interfaces) {
     if (!it.is_loopback && std::count(heard.begin(), heard.end(), it.address) == 0)
       found.push_back(
           {true, fmt::format("multicast that was sent on {} ({}) did not come back{}: use --peer or "

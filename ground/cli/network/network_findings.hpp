@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "swiftlet/ground/cli/network/network_probe.hpp"
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::ground {
 
 struct NetworkFacts {
   comms::NodeSettings settings;
-  std::vector<comms::Interface> interfaces;  // those that are used
+  std::vector<runtime::Interface> interfaces;  // those that are used
   comms::ProbeReport probe;
   std::vector<comms::ProcessIdentity> processes;  // discovered over DDS
   std::vector<std::string> qos_conflicts;         // sentences

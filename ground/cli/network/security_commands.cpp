@@ -10,9 +10,9 @@
 
 #include "swiftlet/ground/cli/network/keys_commands.hpp"
 #include "swiftlet/io/security/security_folder.hpp"
-#include "swiftlet/services/dds/security/policy.hpp"
-#include "swiftlet/services/dds/vehicle_list.hpp"
+#include "swiftlet/services/messages/security_policy.hpp"
 #include "swiftlet/services/messages/topic_roles.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -13,7 +13,7 @@
 #include "swiftlet/ground/command_line/programs.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/view/view_server.hpp"
-#include "swiftlet/services/dds/vehicle_list.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 
 namespace swiftlet::ground {
 namespace {

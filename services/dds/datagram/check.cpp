@@ -225,8 +225,8 @@ const char* DatagramCheck::check_gap(ByteReader body) {
   if (start.value == 0 || base.value < start.value) return "GAP that ends before it begins (8.3.8.4.3)";
   if (base.value - start.value > (is_builtin(writer) ? kLongestBuiltinGap : kLongestGap))
     return "GAP of more than 256 samples, or of discovery 65,536 (8.3.8.4)";
-  if (result_.gap_count == CheckedDatagram::kMostGaps) return "more than 32 GAP";
-  result_.gaps[result_.gap_count++] = {writer, base.value + numbers};
+  if (result_.gaps.size() == result_.gaps.capacity()) return "more than 32 GAP";
+  result_.gaps.push_back({writer, base.value + numbers});
   return check_writer(writer);
 }
 
@@ -243,9 +243,8 @@ const char* DatagramCheck::check_nack_frag(ByteReader body) {
   const std::uint64_t last = base + std::max(numbers, 1U) - 1;
   if (base == 0 || last > limits_.largest_sample_bytes / kSmallestFragment)
     return "NACK_FRAG of fragments that no sample has (9.4.2.8)";
-  if (result_.request_count == CheckedDatagram::kMostRequests) return "more than 8 NACK_FRAG";
-  result_.requests[result_.request_count++] = {destination_, writer, sample.value,
-                                               static_cast<std::uint32_t>(last)};
+  if (result_.requests.size() == result_.requests.capacity()) return "more than 8 NACK_FRAG";
+  result_.requests.push_back({destination_, writer, sample.value, static_cast<std::uint32_t>(last)});
   return nullptr;
 }
 
@@ -267,7 +266,7 @@ const char* DatagramCheck::check_data(Submessage& submessage) {
   if (limits_.security && *topic != BuiltinTopic::kParticipant && *topic != BuiltinTopic::kHandshake)
     return "DATA that is not encrypted (DDS Security 7.4)";
   const bool relays = limits_.discovery_servers && is_discovery_server(result_.source);
-  const ListContext context{result_.source, *topic, limits_.security, relays};
+  const ListContext context{begin_, result_.source, *topic, limits_.security, relays};
   bool names_key = false;
   if (submessage.has(kInlineQosFlag)) {
     if (const char* const fault = check_inline_qos(body, context, names_key)) return fault;
@@ -280,29 +279,18 @@ const char* DatagramCheck::check_payload(Submessage& submessage, const ListConte
   const ByteReader& payload = submessage.body;
   const bool of_discovery =
       context.topic == BuiltinTopic::kParticipant || context.topic == BuiltinTopic::kEndpoint;
-  result_.about_participant |= context.topic == BuiltinTopic::kParticipant;
   if (!submessage.has(kDataFlag | kKeyFlag))
     return of_discovery && !names_key ? "discovery data without GUID (9.6.3)" : nullptr;
   if (payload.rest() < 4) return "payload shorter than its encapsulation (10.2)";
   if (of_discovery) {
-    HiddenParameters hidden;
-    LoopbackAddresses loopback;
     const bool key_only = submessage.has(kKeyFlag);
     Announced announced;
     if (const char* const fault =
-            check_discovery_payload(payload, context, key_only, hidden, loopback, announced))
+            check_discovery_payload(payload, context, key_only, result_.places, announced))
       return fault;
     if (context.topic == BuiltinTopic::kParticipant && !key_only && !context.relays) {
       result_.announces_itself = true;
       result_.announced = announced;
-    }
-    if (result_.hidden_count + hidden.count > CheckedDatagram::kMostHidden)
-      return "discovery data with more than 8 type descriptions (9.6.3.2)";
-    for (std::size_t i = 0; i < hidden.count; ++i)
-      result_.hidden[result_.hidden_count++] = static_cast<std::size_t>(hidden.at[i] - begin_);
-    for (std::size_t i = 0; i < loopback.count; ++i) {
-      if (result_.loopback_count == CheckedDatagram::kMostLoopback || context.relays) break;
-      result_.loopback[result_.loopback_count++] = static_cast<std::size_t>(loopback.at[i] - begin_);
     }
   }
   if (context.topic == BuiltinTopic::kHandshake) return check_handshake_payload(payload);
@@ -324,7 +312,7 @@ const char* DatagramCheck::check_data_frag(Submessage& submessage) {
   if (topic_of(reader, writer) != BuiltinTopic::kUser) return "DATA_FRAG of a built-in endpoint (9.3.1.3)";
   if (submessage.has(kFragmentKeyFlag)) return "DATA_FRAG of a key (9.4.5.5)";
   bool names_key = false;
-  const ListContext context{result_.source, BuiltinTopic::kUser, limits_.security, false};
+  const ListContext context{begin_, result_.source, BuiltinTopic::kUser, limits_.security, false};
   if (submessage.has(kInlineQosFlag)) {
     if (const char* const fault = check_inline_qos(body, context, names_key)) return fault;
   }
@@ -367,16 +355,16 @@ void remove_statistics(std::vector<std::uint8_t>& message) {
 }
 
 void hide_parameters(const CheckedDatagram& checked, std::uint8_t* copy) {
-  for (std::size_t i = 0; i < checked.hidden_count; ++i) {
-    copy[checked.hidden[i]] = 0;
-    copy[checked.hidden[i] + 1] = 0;
+  for (const std::size_t at : checked.places.hidden) {
+    copy[at] = 0;
+    copy[at + 1] = 0;
   }
 }
 
 void name_source(const CheckedDatagram& checked, Ipv4 address, std::uint8_t* copy) {
-  for (std::size_t i = 0; i < checked.loopback_count; ++i) {
+  for (const std::size_t at : checked.places.loopback) {
     for (unsigned byte = 0; byte < 4; ++byte)
-      copy[checked.loopback[i] + byte] = static_cast<std::uint8_t>(address >> (24U - 8U * byte));
+      copy[at + byte] = static_cast<std::uint8_t>(address >> (24U - 8U * byte));
   }
 }
 

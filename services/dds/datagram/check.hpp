@@ -2,10 +2,11 @@
 // datagram in many places, where it then asserts, allocates without bound or reads beyond the end.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include <boost/container/static_vector.hpp>
 
 #include "swiftlet/services/dds/datagram/parameter_list.hpp"
 #include "swiftlet/services/dds/datagram/rtps_ids.hpp"
@@ -45,31 +46,15 @@ struct CheckedDatagram {
   GuidPrefix source{};
   // Bytes to hand to the middleware: less than received if the datagram ends with a submessage that it must not see.
   std::size_t length = 0;
-  bool about_participant = false;  // holds a DATA in which a participant announces itself, or says goodbye
-  bool announces_itself = false;   // holds an announcement of its source
-  Announced announced;             // in that announcement; in the datagram that was checked
+  bool announces_itself = false;  // holds an announcement of its source
+  Announced announced;            // in that announcement; in the datagram that was checked
   // An announcement of a participant that this process ignores.
   bool is_ignored = false;
 
-  static constexpr std::size_t kMostGaps = 32;
-  std::array<Gap, kMostGaps> gaps{};
-  std::size_t gap_count = 0;
-
-  static constexpr std::size_t kMostRequests = 8;
-  std::array<FragmentRequest, kMostRequests> requests{};
-  std::size_t request_count = 0;
-
+  boost::container::static_vector<Gap, 32> gaps;
+  boost::container::static_vector<FragmentRequest, 8> requests;
   bool fragment = false;  // holds a DATA_FRAG
-
-  // Where parameters begin that the middleware must not parse: see hide_parameters().
-  static constexpr std::size_t kMostHidden = 8;
-  std::array<std::size_t, kMostHidden> hidden{};
-  std::size_t hidden_count = 0;
-
-  // Where addresses of the loopback interface begin at which its source receives: see name_source().
-  static constexpr std::size_t kMostLoopback = LoopbackAddresses::kMost;
-  std::array<std::size_t, kMostLoopback> loopback{};
-  std::size_t loopback_count = 0;
+  PlacesToChange places;  // see hide_parameters() and name_source()
 };
 
 // Checks the header, the submessages with their elements, and the parameter lists of discovery.

@@ -11,7 +11,6 @@
 namespace swiftlet::comms {
 namespace {
 
-constexpr std::int64_t kHeardLately_ns = 1'000'000'000;  // half the lease of a process
 constexpr std::int64_t kExpected_ns = 20'000'000'000;
 
 }  // namespace
@@ -28,7 +27,11 @@ DatagramGuard::DatagramGuard(const runtime::NetworkKeys& keys, const DatagramLim
   opener_.emplace(keys);
 }
 
-CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size, const SenderAddress& sender,
+DatagramGuard::DatagramGuard(const std::string& key_file, bool discovery_servers, bool security)
+    : DatagramGuard(key_file.empty() ? runtime::NetworkKeys() : runtime::read_network_keys(key_file),
+                    DatagramLimits{security, discovery_servers}) {}
+
+CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size, Ipv4 sender,
                                      std::uint32_t port, const Now& now) {
   CheckedDatagram checked;
   if (opener_) {
@@ -49,15 +52,14 @@ CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size,
     return checked;
   }
   if (checked.announces_itself) checked.is_ignored = ignores(checked, sender, now);
-  if (limits_.security && checked.about_participant && !checked.is_ignored) note_announcement(checked, now);
   return checked;
 }
 
-bool DatagramGuard::ignores(const CheckedDatagram& checked, const SenderAddress& sender, const Now& now) {
+bool DatagramGuard::ignores(const CheckedDatagram& checked, Ipv4 sender, const Now& now) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const Announced& said = checked.announced;
-  moved_hosts_.heard(said, ipv4_of(sender), now.steady_ns);
-  return !participants_.announced(checked.source, said.discovery_port, concerns_us(said), now.steady_ns);
+  moved_hosts_.heard(said, sender, now.steady_ns);
+  return !participants_.announced(checked.source, said, concerns_us(said), now.steady_ns);
 }
 
 bool DatagramGuard::concerns_us(const Announced& said) const {
@@ -70,34 +72,9 @@ void DatagramGuard::ignore_apart_from(const std::vector<std::uint8_t>& own_user_
   own_user_data_.assign(own_user_data.begin(), own_user_data.end());
 }
 
-void DatagramGuard::note_announcement(const CheckedDatagram& checked, const Now& now) {
-  const std::lock_guard<std::mutex> lock(announcements_mutex_);
-  if (!checked.announces_itself) {
-    announcements_.erase(checked.source);
-    return;
-  }
-  if (announcements_.size() >= kMostAnnouncements && announcements_.count(checked.source) == 0)
-    announcements_.erase(
-        std::min_element(announcements_.begin(), announcements_.end(),
-                         [](const auto& a, const auto& b) { return a.second.heard_ns < b.second.heard_ns; }));
-  const Announced& said = checked.announced;
-  Announcement& known = announcements_[checked.source];
-  if (known.heard_ns == 0 || now.steady_ns - known.heard_ns > kHeardLately_ns) known.since_ns = now.steady_ns;
-  known.heard_ns = now.steady_ns;
-  known.name.clear();
-  if (said.name_size > 0)
-    known.name.assign(said.name, std::find(said.name, said.name + said.name_size - 1, 0));
-  known.user_data.clear();
-  if (said.user_data != nullptr) known.user_data.assign(said.user_data, said.user_data + said.user_data_size);
-}
-
-std::map<GuidPrefix, DatagramGuard::Announcement> DatagramGuard::announcements(const Now& now) {
-  const std::lock_guard<std::mutex> lock(announcements_mutex_);
-  std::map<GuidPrefix, Announcement> lately;
-  for (const auto& [participant, said] : announcements_) {
-    if (now.steady_ns - said.heard_ns < kHeardLately_ns) lately.emplace(participant, said);
-  }
-  return lately;
+std::string DatagramGuard::name_of(const GuidPrefix& participant) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return participants_.name_of(participant);
 }
 
 void DatagramGuard::set_participant(const GuidPrefix& own) {
@@ -122,14 +99,19 @@ std::vector<Joined> DatagramGuard::participants_joined(const Now& now) {
   return participants_.joined(now.steady_ns);
 }
 
+Ipv4 DatagramGuard::now_at(Ipv4 announced) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return moved_hosts_.now_at(announced);
+}
+
 MovedHosts::News DatagramGuard::take_moves() {
   const std::lock_guard<std::mutex> lock(mutex_);
   return moved_hosts_.take_news();
 }
 
-void DatagramGuard::set_own_interfaces(const std::vector<Interface>& own) {
+void DatagramGuard::set_own_interfaces(const std::vector<runtime::Interface>& own) {
   std::vector<Ipv4> addresses;
-  for (const Interface& it : own) addresses.push_back(it.ipv4);
+  for (const runtime::Interface& it : own) addresses.push_back(it.ipv4);
   const std::lock_guard<std::mutex> lock(mutex_);
   moved_hosts_.set_own(std::move(addresses));
 }

@@ -4,19 +4,18 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/services/dds/datagram/check.hpp"
 #include "swiftlet/services/dds/datagram/datagram_seal.hpp"
 #include "swiftlet/services/dds/datagram/heard_participants.hpp"
 #include "swiftlet/services/dds/datagram/moved_hosts.hpp"
 #include "swiftlet/services/dds/datagram/refusal_log.hpp"
 #include "swiftlet/services/dds/datagram/reply_check.hpp"
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
 
 namespace swiftlet::comms {
 
@@ -27,29 +26,25 @@ struct Now {
   static Now read();
 };
 
-// Thread-safe: shared by the transport of a participant and its receiving threads. Allocates only when constructed, for
-// fragments that are sent, and with security for announcements.
+// Thread-safe: shared by the transport of a participant and its receiving threads. Allocates only when constructed, and
+// for fragments that are sent.
 class DatagramGuard {
  public:
-  // What a participant said last about itself. Nothing proves it.
-  struct Announcement {
-    std::string name;
-    std::vector<std::uint8_t> user_data;
-    std::int64_t since_ns = 0;  // of a monotonic clock
-    std::int64_t heard_ns = 0;
-  };
-  static constexpr std::size_t kMostAnnouncements = 64;
-
   // keys: of the network; empty: datagrams are not sealed.
   explicit DatagramGuard(const runtime::NetworkKeys& keys = {}, const DatagramLimits& limits = {});
+  // key_file: with the keys; empty: none. Throws runtime::ConfigError for a bad one.
+  DatagramGuard(const std::string& key_file, bool discovery_servers, bool security);
 
   // Counts a refusal; the result then has a fault. port: the local one.
-  CheckedDatagram admit(const std::uint8_t* data, std::size_t size, const SenderAddress& sender,
-                        std::uint32_t port, const Now& now);
-  // Until then, the transport drops what it receives. By default it listens from the start.
+  CheckedDatagram admit(const std::uint8_t* data, std::size_t size, Ipv4 sender, std::uint32_t port,
+                        const Now& now);
+  // Until then, the transport drops what it receives, and a participant does not announce itself. By default it listens.
   void listen(bool listens) { listens_ = listens; }
   bool listens() const { return listens_; }
-  void refuse(const SenderAddress& sender, const char* rule) { refusals_.note(sender, rule); }
+  // The first port at which its participant receives discovery; 0: none yet.
+  void set_discovery_port(std::uint32_t port) { discovery_port_ = port; }
+  std::uint32_t discovery_port() const { return discovery_port_; }
+  void refuse(Ipv4 sender, const char* rule) { refusals_.note(sender, rule); }
 
   // own: of the participant that receives; all zeros: not known yet (reply_check.hpp).
   void set_participant(const GuidPrefix& own);
@@ -64,8 +59,8 @@ class DatagramGuard {
   std::size_t participants_heard(const Now& now);
   std::vector<Joined> participants_joined(const Now& now);
 
-  // With security: of the participants that have announced themselves within the last second, and not said goodbye.
-  std::map<GuidPrefix, Announcement> announcements(const Now& now);
+  // As they say themselves.
+  std::string name_of(const GuidPrefix& participant);
 
   bool seals() const { return sealer_.has_value(); }
   // Turns a datagram of the middleware into a sealed one. Requires seals().
@@ -76,11 +71,12 @@ class DatagramGuard {
 
   RefusalLog& refusals() { return refusals_; }
 
-  // Where others are reached now, for the threads that send.
-  const MovedHosts& moved_hosts() const { return moved_hosts_; }
+  // Where others are reached now.
+  bool has_moved_hosts() const { return moved_hosts_.any(); }
+  Ipv4 now_at(Ipv4 announced);
   MovedHosts::News take_moves();
   // Those of this host, with an address.
-  void set_own_interfaces(const std::vector<Interface>& own);
+  void set_own_interfaces(const std::vector<runtime::Interface>& own);
 
   // Held while the middleware takes in what a discovery server sent, and while its participant announces a change: Fast DDS
   // takes two locks in one order for the former (PDPClient::assignRemoteEndpoints), and in the other one for the latter
@@ -89,15 +85,14 @@ class DatagramGuard {
 
  private:
   // Notes an announcement. Returns whether this process ignores the participant.
-  bool ignores(const CheckedDatagram& checked, const SenderAddress& sender, const Now& now);
+  bool ignores(const CheckedDatagram& checked, Ipv4 sender, const Now& now);
   bool concerns_us(const Announced& said) const;
-
-  void note_announcement(const CheckedDatagram& checked, const Now& now);
 
   const DatagramLimits limits_;
   std::optional<DatagramSealer> sealer_;
   RefusalLog refusals_;
   std::atomic<bool> listens_{true};
+  std::atomic<std::uint32_t> discovery_port_{0};
   std::mutex changes_mutex_;
   std::mutex mutex_;  // guards what follows; all threads that receive take it, for each datagram
   std::optional<DatagramOpener> opener_;
@@ -107,10 +102,6 @@ class DatagramGuard {
   std::string own_user_data_;  // empty: nobody is ignored
   std::size_t expected_ = 0;
   std::int64_t expected_until_ns_ = 0;
-
-  // Apart, since it is changed with memory allocated: only threads that receive announcements take it.
-  std::mutex announcements_mutex_;
-  std::map<GuidPrefix, Announcement> announcements_;  // the longest silent one is replaced
 };
 
 }  // namespace swiftlet::comms

@@ -9,8 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "swiftlet/services/dds/datagram/output_channels.hpp"
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/io/byte_reader.hpp"
+#include "swiftlet/io/network/interfaces.hpp"
+#include "swiftlet/services/dds/discovery/discovery_ports.hpp"
+#include "swiftlet/services/dds/discovery/repeated_discovery.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -22,20 +24,15 @@ constexpr std::size_t kLongestFragment = 1 << 16;
 // More than a domain has: forged announcements name others.
 constexpr std::size_t kMostPlaces = 4 * kMostParticipants;
 
-SenderAddress address_of(const rtps::Locator_t& locator) {
-  SenderAddress address{};
-  std::copy_n(locator.address, address.size(), address.begin());
-  return address;
+Ipv4 address_of(const rtps::Locator_t& locator) {
+  return runtime::ByteReader(locator.address + 12, 4, false).u32();
 }
 
 class GuardedTransport final : public ChainedTransport {
  public:
   GuardedTransport(const transport::ChainingTransportDescriptor& descriptor,
-                   std::shared_ptr<DatagramGuard> guard, bool on_loopback, bool opens_places)
-      : ChainedTransport(descriptor),
-        guard_(std::move(guard)),
-        on_loopback_(on_loopback),
-        opens_places_(opens_places) {}
+                   std::shared_ptr<DatagramGuard> guard, bool on_loopback, std::optional<int> domain)
+      : ChainedTransport(descriptor), guard_(std::move(guard)), on_loopback_(on_loopback), domain_(domain) {}
 
   // Fast DDS would drop the addresses of a process of this host that uses other interfaces, as ROS 2 does by default.
   bool leads_here(const rtps::Locator_t& announced, rtps::Locator_t& used) const override;
@@ -47,53 +44,21 @@ class GuardedTransport final : public ChainedTransport {
 
   bool OpenOutputChannel(transport::SendResourceList& channels, const rtps::Locator_t& locator) override;
 
-  bool send_through(rtps::SenderResource& below, const OutgoingDatagram& datagram, const Destination& to) {
-    if (!opens_places_ && !guard_->moved_hosts().any()) return send_to(below, datagram, to);
-    // Allocates when a thread sends for the first time.
-    thread_local std::vector<rtps::Locator_t> places;
-    places.clear();
-    for (; *to.begin != *to.end; ++*to.begin) places.push_back(opened(now_at(**to.begin)));
-    rtps::Locators first(places.begin());
-    rtps::Locators last(places.end());
-    return send_to(below, datagram, {&first, &last, to.deadline});
-  }
-  bool send_to(rtps::SenderResource& below, const OutgoingDatagram& datagram, const Destination& to) {
-    if (!guard_->seals()) {
-      const OutgoingDatagram::Piece first = datagram.first_piece();
-      guard_->note_sent(first.bytes, first.size);
-      return comms::send(below, datagram, to);
-    }
-    // Allocates when a thread sends for the first time.
-    thread_local std::vector<rtps::octet> sent(1 << 16);
-    datagram.copy_to(sent);
-    guard_->seal(sent, Now::read());
-    return comms::send(below, sent, to);
-  }
-
   void receive(transport::TransportReceiverInterface* next, const rtps::octet* data, std::uint32_t size,
                const rtps::Locator_t& local, const rtps::Locator_t& remote) override;
 
  private:
+  using Places = RepeatedDiscovery::Places;
+  class Channel;
+  class Receiver;
+
   rtps::Locator_t now_at(rtps::Locator_t place) const;
   const rtps::Locator_t& opened(const rtps::Locator_t& place);
-
-  // Receives from the transport below, for the next receiver.
-  class Receiver final : public transport::TransportReceiverInterface {
-   public:
-    Receiver(GuardedTransport& owner, TransportReceiverInterface* next) : owner_(owner), next_(next) {}
-    void OnDataReceived(const rtps::octet* data, std::uint32_t size, const rtps::Locator_t& local,
-                        const rtps::Locator_t& remote) override {
-      owner_.receive(next_, data, size, local, remote);
-    }
-
-   private:
-    GuardedTransport& owner_;
-    TransportReceiverInterface* const next_;
-  };
+  bool send_to(rtps::SenderResource& below, const OutgoingDatagram& datagram, const Destination& to);
 
   const std::shared_ptr<DatagramGuard> guard_;
   const bool on_loopback_;
-  const bool opens_places_;
+  const std::optional<int> domain_;
   // The participant opens channels and sends under one mutex of its own, which guards these.
   std::set<rtps::Locator_t> opened_;
   transport::SendResourceList found_;  // for interfaces that came up
@@ -101,31 +66,81 @@ class GuardedTransport final : public ChainedTransport {
   std::multimap<rtps::Locator_t, std::unique_ptr<Receiver>> receivers_;
 };
 
-// A channel of the transport below, through which a GuardedTransport sends.
-class GuardedChannel final : public OutputChannel {
+// Receives from the transport below, for the next receiver.
+class GuardedTransport::Receiver final : public transport::TransportReceiverInterface {
  public:
-  GuardedChannel(GuardedTransport& owner, std::unique_ptr<rtps::SenderResource> below)
+  Receiver(GuardedTransport& owner, TransportReceiverInterface* next) : owner_(owner), next_(next) {}
+  void OnDataReceived(const rtps::octet* data, std::uint32_t size, const rtps::Locator_t& local,
+                      const rtps::Locator_t& remote) override {
+    owner_.receive(next_, data, size, local, remote);
+  }
+
+ private:
+  GuardedTransport& owner_;
+  TransportReceiverInterface* const next_;
+};
+
+// Sends through a channel of the transport below.
+class GuardedTransport::Channel final : public OutputChannel {
+ public:
+  Channel(GuardedTransport& owner, std::unique_ptr<rtps::SenderResource> below)
       : OutputChannel(std::move(below)), owner_(owner) {}
 
  private:
   bool send_datagram(const OutgoingDatagram& datagram, const Destination& to) override {
-    return owner_.send_through(below(), datagram, to);
+    const bool of_discovery =
+        owner_.domain_ && *to.begin != *to.end && is_discovery_port(*owner_.domain_, (**to.begin).port);
+    const bool redirects = !owner_.domain_ || owner_.guard_->has_moved_hosts();
+    if (!of_discovery && !redirects) return owner_.send_to(below(), datagram, to);
+    // Allocates when a thread sends for the first time.
+    thread_local Places places;
+    places.clear();
+    for (; *to.begin != *to.end; ++*to.begin)
+      places.push_back(redirects ? owner_.opened(owner_.now_at(**to.begin)) : **to.begin);
+    if (!of_discovery) return send_to(places, datagram, to);
+    std::vector<rtps::octet> bytes;
+    datagram.copy_to(bytes);
+    std::vector<Places> rounds = repeated_.rounds(bytes, places, *owner_.guard_);
+    if (owner_.on_loopback_ && rounds.size() > 1) rounds.resize(1);  // it loses nothing
+    bool sent = true;
+    for (Places& round : rounds) sent = send_to(round, datagram, to) && sent;
+    return sent;
+  }
+  bool send_to(Places& places, const OutgoingDatagram& datagram, const Destination& to) {
+    rtps::Locators first(places.begin());
+    rtps::Locators last(places.end());
+    return owner_.send_to(below(), datagram, {&first, &last, to.deadline});
   }
 
   GuardedTransport& owner_;
+  RepeatedDiscovery repeated_;
 };
+
+bool GuardedTransport::send_to(rtps::SenderResource& below, const OutgoingDatagram& datagram,
+                               const Destination& to) {
+  if (!guard_->seals()) {
+    const OutgoingDatagram::Piece first = datagram.first_piece();
+    guard_->note_sent(first.bytes, first.size);
+    return comms::send(below, datagram, to);
+  }
+  // Allocates when a thread sends for the first time.
+  thread_local std::vector<rtps::octet> sent(1 << 16);
+  datagram.copy_to(sent);
+  guard_->seal(sent, Now::read());
+  return comms::send(below, sent, to);
+}
 
 bool GuardedTransport::leads_here(const rtps::Locator_t& announced, rtps::Locator_t& used) const {
   if (!on_loopback_ || announced.kind != LOCATOR_KIND_UDPv4) return false;
-  if (!is_own_address(rtps::IPLocator::ip_to_string(announced))) return false;
+  if (!runtime::is_own_address(rtps::IPLocator::ip_to_string(announced))) return false;
   used = announced;
-  rtps::IPLocator::setIPv4(used, kLoopback);
+  rtps::IPLocator::setIPv4(used, runtime::kLoopback);
   return true;
 }
 
 rtps::Locator_t GuardedTransport::now_at(rtps::Locator_t place) const {
   if (place.kind != LOCATOR_KIND_UDPv4) return place;
-  const Ipv4 address = guard_->moved_hosts().now_at(ipv4_of(address_of(place)));
+  const Ipv4 address = guard_->now_at(address_of(place));
   for (unsigned byte = 0; byte < 4; ++byte)
     place.address[12 + byte] = static_cast<rtps::octet>(address >> (24U - 8U * byte));
   return place;
@@ -140,14 +155,18 @@ const rtps::Locator_t& GuardedTransport::opened(const rtps::Locator_t& place) {
   return place;
 }
 
+// The transport below recognizes the channels that it opened before only if they are not wrapped, and would open a second one and
+// send everything twice: they are unwrapped meanwhile. All are of this transport, since a participant has no other.
 bool GuardedTransport::OpenOutputChannel(transport::SendResourceList& channels,
                                          const rtps::Locator_t& locator) {
-  for (auto& channel : found_)
-    channels.push_back(std::make_unique<GuardedChannel>(*this, std::move(channel)));
+  transport::SendResourceList below;
+  for (auto& channel : channels) below.push_back(static_cast<OutputChannel&>(*channel).take());
+  for (auto& channel : found_) below.push_back(std::move(channel));
   found_.clear();
-  return open_below(*low_level_transport_, channels, locator, [this](auto channel) {
-    return std::make_unique<GuardedChannel>(*this, std::move(channel));
-  });
+  const bool is_open = low_level_transport_->OpenOutputChannel(below, locator);
+  channels.clear();
+  for (auto& channel : below) channels.push_back(std::make_unique<Channel>(*this, std::move(channel)));
+  return is_open;
 }
 
 bool GuardedTransport::OpenInputChannel(const rtps::Locator_t& locator,
@@ -156,6 +175,8 @@ bool GuardedTransport::OpenInputChannel(const rtps::Locator_t& locator,
   const std::lock_guard<std::mutex> lock(receivers_mutex_);
   auto receiver = std::make_unique<Receiver>(*this, next);
   if (!low_level_transport_->OpenInputChannel(locator, receiver.get(), largest_message)) return false;
+  if (domain_ && guard_->discovery_port() == 0 && discovery_ports(*domain_).index_of(locator.port))
+    guard_->set_discovery_port(locator.port);
   receivers_.emplace(locator, std::move(receiver));
   return true;
 }
@@ -171,19 +192,18 @@ void GuardedTransport::receive(transport::TransportReceiverInterface* next, cons
                                std::uint32_t size, const rtps::Locator_t& local,
                                const rtps::Locator_t& remote) {
   if (!guard_->listens()) return;
-  const SenderAddress sender = address_of(remote);
+  const Ipv4 sender = address_of(remote);
   const CheckedDatagram checked = guard_->admit(data, size, sender, local.port, Now::read());
   if (checked.fault != nullptr || checked.is_ignored) return;
   std::unique_lock<std::mutex> no_change;
   if (is_discovery_server(checked.source)) no_change = std::unique_lock(guard_->changes_mutex());
   try {
-    const Ipv4 source = ipv4_of(sender);
-    const bool lacks_address = checked.loopback_count > 0 && !is_loopback(source);
-    if (checked.hidden_count > 0 || checked.fragment || lacks_address) {
+    const bool lacks_address = !checked.places.loopback.empty() && !runtime::is_loopback(sender);
+    if (!checked.places.hidden.empty() || checked.fragment || lacks_address) {
       std::vector<rtps::octet> copy(checked.length + kLongestFragment);
       std::copy_n(data, checked.length, copy.begin());
       hide_parameters(checked, copy.data());
-      if (lacks_address) name_source(checked, source, copy.data());
+      if (lacks_address) name_source(checked, sender, copy.data());
       next->OnDataReceived(copy.data(), static_cast<std::uint32_t>(checked.length), local, remote);
     } else {
       next->OnDataReceived(data, static_cast<std::uint32_t>(checked.length), local, remote);
@@ -200,25 +220,25 @@ struct GuardedUdp final : transport::ChainingTransportDescriptor {
            (guard->seals() ? static_cast<std::uint32_t>(kSealBytes) : 0U);
   }
   GuardedUdp(const transport::UDPv4TransportDescriptor& udp, std::shared_ptr<DatagramGuard> shared,
-             bool opens)
+             std::optional<int> of)
       : ChainingTransportDescriptor(std::make_shared<transport::UDPv4TransportDescriptor>(udp)),
-        on_loopback(udp.interfaceWhiteList == std::vector<std::string>{kLoopback}),
-        opens_places(opens),
+        on_loopback(udp.interfaceWhiteList == std::vector<std::string>{runtime::kLoopback}),
+        domain(of),
         guard(std::move(shared)) {}
   transport::TransportInterface* create_transport() const override {
-    return new GuardedTransport(*this, guard, on_loopback, opens_places);
+    return new GuardedTransport(*this, guard, on_loopback, domain);
   }
 
   const bool on_loopback;
-  const bool opens_places;
+  const std::optional<int> domain;
   std::shared_ptr<DatagramGuard> guard;
 };
 
 }  // namespace
 
 TransportDescriptor guarded(const transport::UDPv4TransportDescriptor& udp,
-                            std::shared_ptr<DatagramGuard> guard, bool opens_places) {
-  return std::make_shared<GuardedUdp>(udp, std::move(guard), opens_places);
+                            std::shared_ptr<DatagramGuard> guard, std::optional<int> domain) {
+  return std::make_shared<GuardedUdp>(udp, std::move(guard), domain);
 }
 
 }  // namespace swiftlet::comms

@@ -1,7 +1,9 @@
-// A transport of Fast DDS that checks each received datagram before the middleware parses it.
+// The transport of Fast DDS through which everything passes: it checks each received datagram before the middleware parses it,
+// seals what is sent, and sends discovery several times.
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
@@ -10,8 +12,9 @@ namespace swiftlet::comms {
 
 using TransportDescriptor = std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface>;
 
-// A descriptor of the transport with such a check in front. opens_places: sends to places for which no channel was opened, too.
+// A descriptor of the transport before UDP. domain: of a participant, which sends each datagram of its discovery several times
+// (repeated_discovery.hpp). nullopt: of a discovery server, which also sends to places for which no channel was opened.
 TransportDescriptor guarded(const eprosima::fastdds::rtps::UDPv4TransportDescriptor& udp,
-                            std::shared_ptr<DatagramGuard> guard, bool opens_places = false);
+                            std::shared_ptr<DatagramGuard> guard, std::optional<int> domain);
 
 }  // namespace swiftlet::comms

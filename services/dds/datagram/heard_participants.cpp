@@ -15,8 +15,8 @@ bool HeardParticipants::Known::is_heard(std::int64_t now_ns) const {
   return heard_ns > 0 && now_ns - heard_ns < (joined_ns != 0 ? kJoinedLately_ns : kIgnoredLately_ns);
 }
 
-bool HeardParticipants::announced(const GuidPrefix& participant, std::uint32_t discovery_port,
-                                  bool concerns_us, std::int64_t now_ns) {
+bool HeardParticipants::announced(const GuidPrefix& participant, const Announced& said, bool concerns_us,
+                                  std::int64_t now_ns) {
   auto known = std::find_if(known_.begin(), known_.end(),
                             [&](const Known& other) { return other.participant == participant; });
   if (known == known_.end()) {
@@ -26,7 +26,10 @@ bool HeardParticipants::announced(const GuidPrefix& participant, std::uint32_t d
     *known = {participant};
   }
   known->heard_ns = now_ns;
-  known->discovery_port = discovery_port;
+  known->discovery_port = said.discovery_port;
+  known->name = {};
+  if (said.name != nullptr)
+    std::copy_n(said.name, std::min(said.name_size, known->name.size()), known->name.begin());
   if (concerns_us && known->joined_ns == 0) known->joined_ns = now_ns;
   return known->joined_ns != 0;
 }
@@ -43,6 +46,13 @@ std::vector<Joined> HeardParticipants::joined(std::int64_t now_ns) const {
       joined.push_back({known.discovery_port, known.joined_ns});
   }
   return joined;
+}
+
+std::string HeardParticipants::name_of(const GuidPrefix& participant) const {
+  const auto known = std::find_if(known_.begin(), known_.end(),
+                                  [&](const Known& other) { return other.participant == participant; });
+  if (known == known_.end()) return {};
+  return {known->name.begin(), std::find(known->name.begin(), known->name.end(), '\0')};
 }
 
 }  // namespace swiftlet::comms

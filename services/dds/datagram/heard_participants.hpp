@@ -1,10 +1,13 @@
 // The participants that announced themselves to this one, and which of them it ignores.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include "swiftlet/services/dds/datagram/parameter_list.hpp"
 #include "swiftlet/services/dds/datagram/rtps_ids.hpp"
 
 namespace swiftlet::comms {
@@ -26,15 +29,16 @@ class HeardParticipants {
  public:
   HeardParticipants() : known_(kMostParticipants) {}
 
-  // Notes an announcement. concerns_us: else the participant is ignored, unless it has joined before. Returns whether it has
-  // joined: it was not ignored once.
-  bool announced(const GuidPrefix& participant, std::uint32_t discovery_port, bool concerns_us,
-                 std::int64_t now_ns);
+  // Notes what a participant says about itself. concerns_us: else it is ignored, unless it has joined before. Returns whether it
+  // has joined: it was not ignored once.
+  bool announced(const GuidPrefix& participant, const Announced& said, bool concerns_us, std::int64_t now_ns);
 
   // Participants that have announced themselves within the last seconds.
   std::size_t heard_lately(std::int64_t now_ns) const;
   // Those of them that have joined.
   std::vector<Joined> joined(std::int64_t now_ns) const;
+  // What it said last, shortened if it is long; empty if it is not known. Nothing proves it.
+  std::string name_of(const GuidPrefix& participant) const;
 
  private:
   struct Known {
@@ -42,6 +46,7 @@ class HeardParticipants {
     std::int64_t heard_ns = 0;
     std::uint32_t discovery_port = 0;
     std::int64_t joined_ns = 0;  // 0: it is ignored
+    std::array<char, 32> name{};
 
     bool is_heard(std::int64_t now_ns) const;
   };

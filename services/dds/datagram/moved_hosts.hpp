@@ -2,7 +2,6 @@
 // the addresses that a process announced first, or while it had no network.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -15,7 +14,7 @@
 
 namespace swiftlet::comms {
 
-// now_at() and any() are called by all threads, the others by one at a time. Allocates only in set_own().
+// any() is called by all threads, the others by one at a time. Allocates only in set_own().
 class MovedHosts {
  public:
   // A host that moves has been silent at its old address for so long. A recording of an announcement that somebody sends
@@ -46,15 +45,16 @@ class MovedHosts {
 
  private:
   struct Host {
-    std::atomic<std::uint64_t> addresses{0};  // announced in the upper half, in use in the lower one
-    std::int64_t heard_ns = 0;
+    Ipv4 announced;
+    Ipv4 used;
+    std::int64_t heard_ns;
   };
 
   Host& host(Ipv4 announced);
-  void use(Host& host, Ipv4 announced, Ipv4 address);
+  void use(Host& host, Ipv4 address);
 
   std::vector<Ipv4> own_;
-  std::array<Host, 256> hosts_{};  // the longest silent one is forgotten
+  boost::container::static_vector<Host, 256> hosts_;  // the longest silent one is forgotten
   std::atomic<int> moved_{0};
   News news_;
 };

@@ -229,17 +229,19 @@ bool is_unicast_locator(std::uint16_t id) {
 }
 
 // value: of a locator (9.3.2.4), behind its kind: the port, and an address whose last four bytes are those of IPv4.
-void note_locator(std::uint16_t id, ByteReader value, LoopbackAddresses& loopback, Announced& announced) {
+void note_locator(std::uint16_t id, ByteReader value, const ListContext& context, PlacesToChange& places,
+                  Announced& announced) {
   const std::uint32_t port = value.u32();
   value.skip(12);
   const std::uint8_t* const at = value.take(4);
   if (at == nullptr) return;
   const Ipv4 address = ByteReader(at, 4, false).u32();
   if (id == kDiscoveryLocator) announced.discovery_port = port;
-  if (is_loopback(address)) {
-    if (loopback.count < LoopbackAddresses::kMost) loopback.at[loopback.count++] = at;
-  } else if (id == kSamplesLocator && announced.address_count < announced.addresses.size()) {
-    announced.addresses[announced.address_count++] = address;
+  if (runtime::is_loopback(address)) {
+    if (places.loopback.size() < places.loopback.capacity() && !context.relays)
+      places.loopback.push_back(static_cast<std::size_t>(at - context.datagram));
+  } else if (id == kSamplesLocator && announced.addresses.size() < announced.addresses.capacity()) {
+    announced.addresses.push_back(address);
   }
 }
 
@@ -253,8 +255,7 @@ const char* check_inline_qos(ByteReader& body, const ListContext& context, bool&
 }
 
 const char* check_discovery_payload(ByteReader payload, const ListContext& context, bool key_only,
-                                    HiddenParameters& hidden, LoopbackAddresses& loopback,
-                                    Announced& announced) {
+                                    PlacesToChange& places, Announced& announced) {
   const std::uint8_t* const encapsulation = payload.take(4);  // 10.2: PL_CDR_BE or PL_CDR_LE, and two options
   if (encapsulation == nullptr || encapsulation[0] != 0 || (encapsulation[1] != 2 && encapsulation[1] != 3))
     return "discovery data that is not a parameter list (9.6.3)";
@@ -271,12 +272,12 @@ const char* check_discovery_payload(ByteReader payload, const ListContext& conte
       announced.user_data_size = value.u32();
       announced.user_data = value.take(announced.user_data_size);
     } else if (is_unicast_locator(parameter.id) && value.u32() == kUdpV4) {
-      note_locator(parameter.id, value, loopback, announced);
+      note_locator(parameter.id, value, context, places, announced);
     }
     if (parameter.rule->shape != Shape::kHidden) return nullptr;
-    if (hidden.count == HiddenParameters::kMost)
+    if (places.hidden.size() == places.hidden.capacity())
       return "discovery data with more than 8 type descriptions (9.6.3.2)";
-    hidden.at[hidden.count++] = parameter.begin;
+    places.hidden.push_back(static_cast<std::size_t>(parameter.begin - context.datagram));
     return nullptr;
   });
   if (fault != nullptr) return fault;

@@ -2,34 +2,28 @@
 // endpoints.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 
+#include <boost/container/static_vector.hpp>
+
 #include "swiftlet/io/byte_reader.hpp"
+#include "swiftlet/io/network/host_address.hpp"
 #include "swiftlet/services/dds/datagram/rtps_ids.hpp"
 
 namespace swiftlet::comms {
 
 using runtime::ByteReader;
+using runtime::Ipv4;
 
-// Parameters that the middleware must not parse: it reads type descriptions and filter expressions without bounds on
-// depth and size, and nothing here needs them.
-struct HiddenParameters {
-  static constexpr std::size_t kMost = 8;
-  std::array<const std::uint8_t*, kMost> at{};  // where each begins
-  std::size_t count = 0;
-};
-
-using Ipv4 = std::uint32_t;  // 127.0.0.1 is 0x7f000001
-constexpr bool is_loopback(Ipv4 address) { return address >> 24U == 127; }
-
-// Where the addresses of the loopback interface stand at which a process without a network, or an endpoint of it, says that it
-// receives.
-struct LoopbackAddresses {
-  static constexpr std::size_t kMost = 8;  // further ones are not noted
-  std::array<const std::uint8_t*, kMost> at{};
-  std::size_t count = 0;
+// What to change in discovery data before the middleware parses it: places in the datagram.
+struct PlacesToChange {
+  // Where parameters begin that the middleware must not parse: it reads type descriptions and filter expressions without bounds
+  // on depth and size, and nothing here needs them.
+  boost::container::static_vector<std::size_t, 8> hidden;
+  // Where the addresses of the loopback interface stand at which a process without a network, or an endpoint of it, says that it
+  // receives; further ones are not noted.
+  boost::container::static_vector<std::size_t, 8> loopback;
 };
 
 // What a participant announces about itself; null if it does not announce it.
@@ -40,12 +34,12 @@ struct Announced {
   std::size_t user_data_size = 0;
   std::uint32_t discovery_port = 0;  // where it receives discovery by UDP; 0: it does not say
   // At which it receives samples, but for those of the loopback interface; further ones are not noted.
-  std::array<Ipv4, 8> addresses{};
-  std::size_t address_count = 0;
+  boost::container::static_vector<Ipv4, 8> addresses;
 };
 
 // Of the DATA that holds the list.
 struct ListContext {
+  const std::uint8_t* datagram = nullptr;
   GuidPrefix source{};  // of the datagram
   BuiltinTopic topic = BuiltinTopic::kUser;
   bool security = false;
@@ -58,8 +52,7 @@ struct ListContext {
 const char* check_inline_qos(ByteReader& body, const ListContext& context, bool& names_key);
 // Of the topics kParticipant and kEndpoint. key_only: the payload names what is gone, and holds no more.
 const char* check_discovery_payload(ByteReader payload, const ListContext& context, bool key_only,
-                                    HiddenParameters& hidden, LoopbackAddresses& loopback,
-                                    Announced& announced);
+                                    PlacesToChange& places, Announced& announced);
 // Of the topic kLiveliness.
 const char* check_liveliness_payload(ByteReader payload, const ListContext& context);
 // Of the topic kHandshake: ParticipantGenericMessage of DDS Security 1.1, 7.4.4.

@@ -41,7 +41,7 @@ void ReplyCheck::note_sent(const std::uint8_t* message, std::size_t size) {
       const auto writer = bytes_of<4>(body);
       body.skip(4);  // the high word of the number
       const std::uint32_t base = body.u32();
-      if (body.ok()) acknowledged_[hash_of(destination, writer) % kWriters] = {destination, writer, base};
+      if (body.ok()) acknowledged_[place_of(destination, writer)] = {destination, writer, base};
     } else if (kind == kDataFrag) {
       body.skip(4 + 4);  // flags, place of the inline QoS, and the reader
       const auto writer = bytes_of<4>(body);
@@ -58,14 +58,17 @@ void ReplyCheck::note_sent(const std::uint8_t* message, std::size_t size) {
   });
 }
 
+std::size_t ReplyCheck::place_of(const GuidPrefix& participant, const EntityId& writer) {
+  return fnv(writer.data(), writer.size(), fnv(participant.data(), participant.size())) % kWriters;
+}
+
 std::uint32_t ReplyCheck::acknowledged(const GuidPrefix& participant, const EntityId& writer) const {
-  const Acknowledged& known = acknowledged_[hash_of(participant, writer) % kWriters];
+  const Acknowledged& known = acknowledged_[place_of(participant, writer)];
   return known.participant == participant && known.writer == writer ? known.base : 0;
 }
 
 const char* ReplyCheck::fault_of(const CheckedDatagram& received) const {
-  for (std::size_t i = 0; i < received.request_count; ++i) {
-    const FragmentRequest& request = received.requests[i];
+  for (const FragmentRequest& request : received.requests) {
     if (request.destination != GuidPrefix{} && request.destination != own_) continue;
     const auto samples = fragments_.find(request.writer);
     if (samples == fragments_.end()) return "NACK_FRAG of a writer without fragments (8.3.8.12)";
@@ -73,8 +76,7 @@ const char* ReplyCheck::fault_of(const CheckedDatagram& received) const {
     if (sample == samples->second.end() || request.last > sample->second)
       return "NACK_FRAG of fragments that were not sent (8.3.8.12)";
   }
-  for (std::size_t i = 0; i < received.gap_count; ++i) {
-    const Gap& gap = received.gaps[i];
+  for (const Gap& gap : received.gaps) {
     const std::uint32_t ahead = is_builtin(gap.writer) ? gaps_ahead_ : kGapsAhead;
     if (gap.end > ahead && gap.end - ahead > acknowledged(received.source, gap.writer))
       return "GAP far beyond what was acknowledged (8.3.8.4)";

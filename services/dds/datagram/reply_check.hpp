@@ -42,6 +42,7 @@ class ReplyCheck {
     std::uint32_t base = 0;  // all samples before it are
   };
 
+  static std::size_t place_of(const GuidPrefix& participant, const EntityId& writer);
   std::uint32_t acknowledged(const GuidPrefix& participant, const EntityId& writer) const;
 
   const std::uint32_t gaps_ahead_;

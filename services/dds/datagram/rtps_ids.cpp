@@ -1,7 +1,5 @@
 #include "swiftlet/services/dds/datagram/rtps_ids.hpp"
 
-#include <cstring>
-
 namespace swiftlet::comms {
 namespace {
 
@@ -29,16 +27,6 @@ bool is_counterpart(const EntityId& reader, const EntityId& writer) {
 }
 
 }  // namespace
-
-std::size_t hash_of(const GuidPrefix& participant, const EntityId& entity) {
-  std::uint64_t words[2];
-  std::memcpy(words, participant.data(), 8);
-  std::memcpy(words + 1, participant.data() + 8, 4);
-  std::memcpy(reinterpret_cast<unsigned char*>(words + 1) + 4, entity.data(), 4);
-  std::uint64_t mixed = (words[0] ^ (words[1] * 0x9e3779b97f4a7c15U)) * 0xff51afd7ed558ccdU;
-  mixed ^= mixed >> 32U;
-  return static_cast<std::size_t>(mixed);
-}
 
 bool is_discovery_server(const GuidPrefix& participant) {
   constexpr GuidPrefix kServer{0x44, 0x53, 0, 0x5f, 0x45, 0x50, 0x52, 0x4f, 0x53, 0x49, 0x4d, 0x41};

@@ -14,7 +14,12 @@ using EntityId = std::array<std::uint8_t, 4>;     // of one of its endpoints
 // By the prefixes that ROS 2 gives to discovery servers: 44.53.N.5f.45.50.52.4f.53.49.4d.41.
 bool is_discovery_server(const GuidPrefix& participant);
 
-std::size_t hash_of(const GuidPrefix& participant, const EntityId& entity);
+// FNV-1a of bytes, which continues a digest of others.
+inline std::uint64_t fnv(const std::uint8_t* bytes, std::size_t size,
+                         std::uint64_t digest = 0xcbf29ce484222325U) {
+  for (std::size_t i = 0; i < size; ++i) digest = (digest ^ bytes[i]) * 0x100000001b3U;
+  return digest;
+}
 
 constexpr EntityId kUnknownEntity{};
 constexpr EntityId kParticipantWriter{0x00, 0x01, 0x00, 0xc2};  // of announcements of participants

@@ -1,45 +1,31 @@
 #include "swiftlet/services/dds/discovery/address_watch.hpp"
 
+#include <algorithm>
 #include <utility>
 
+#include "swiftlet/io/text.hpp"
+
 namespace swiftlet::comms {
-namespace {
 
-constexpr const char* kNone = "this host has no IPv4 address but that of the loopback interface";
-
-std::string listed(const std::set<std::string>& addresses) {
-  std::string list;
-  for (const std::string& address : addresses) list += (list.empty() ? "" : ", ") + address;
-  return list;
-}
-
-}  // namespace
-
-std::optional<std::string> AddressWatch::poll(const std::vector<Interface>& interfaces,
-                                              const NetworkSettings& network) {
-  std::set<std::string> now;
-  for (const Interface& it : interfaces) {
-    if (!it.is_loopback) now.insert(it.address + " of " + it.name);
+std::optional<std::string> AddressWatch::change(const std::vector<runtime::Interface>& interfaces,
+                                                const NetworkSettings& network) {
+  const std::string none = "this host has no IPv4 address but that of the loopback interface";
+  std::vector<std::string> found;
+  for (const runtime::Interface& it : interfaces) {
+    if (!it.is_loopback) found.push_back(it.address + " of " + it.name);
   }
-  return change(std::move(now), network);
-}
-
-std::optional<std::string> AddressWatch::change(std::set<std::string> now, const NetworkSettings& network) {
-  if (addresses_ == now) return std::nullopt;
-  const bool is_first = !addresses_;
-  addresses_ = std::move(now);
-  const bool is_alone = addresses_->empty();
-  if (is_first)
-    return is_alone
-               ? std::optional(kNone + std::string(": others reach it when it has one; IPv6 is not used"))
-               : std::nullopt;
-  const std::string what = is_alone ? kNone + std::string(" now")
-                                    : "the addresses of this host are " + listed(*addresses_) + " now";
+  std::sort(found.begin(), found.end());
+  const std::string now = runtime::joined(found, ", ");
+  const std::optional<std::string> before = std::exchange(addresses_, now);
+  if (before == now) return std::nullopt;
+  if (!before && !now.empty()) return std::nullopt;
+  if (!before) return none + ": others reach it when it has one; IPv6 is not used";
+  const std::string what = now.empty() ? none + " now" : "the addresses of this host are " + now + " now";
   if (!network.interfaces.empty())
     return what + "; --interface keeps to those of the start: restart this process if they have gone";
   if (!network.discovery_servers.empty())
     return what + "; the discovery server names those of the start: restart this process if they have gone";
-  return what + (is_alone ? ": others reach it when it has one" : ", and announced");
+  return what + (now.empty() ? ": others reach it when it has one" : ", and announced");
 }
 
 }  // namespace swiftlet::comms

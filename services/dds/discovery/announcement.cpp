@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <tuple>
 
-#include "swiftlet/services/runtime/split_text.hpp"
+#include "swiftlet/io/text.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -75,12 +75,6 @@ std::vector<std::string> split_names(const std::string& names) {
   std::vector<std::string> parts = runtime::split_text(names, ',');
   parts.erase(std::remove(parts.begin(), parts.end(), ""), parts.end());
   return parts;
-}
-
-std::string join_names(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ",") + name;
-  return list;
 }
 
 bool yields(const Announcement& own, const Announcement& other) {

@@ -33,7 +33,6 @@ bool are_apart(std::string_view own, std::string_view other);
 // True if a list of names, "kl1,kl2", contains the name.
 bool lists(const std::string& names, const std::string& name);
 std::vector<std::string> split_names(const std::string& names);
-std::string join_names(const std::vector<std::string>& names);
 
 // Of two processes that are to be the only source of a topic, decides whether `own` yields to `other`. The one
 // that is not established yields to the established one. Otherwise the one that joined later yields, so that

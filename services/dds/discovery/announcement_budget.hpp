@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "swiftlet/services/dds/datagram/token_bucket.hpp"
+#include "swiftlet/services/runtime/token_bucket.hpp"
 
 namespace swiftlet::comms {
 
@@ -34,7 +34,7 @@ class AnnouncementBudget {
   int copies(std::uint64_t digest, std::size_t processes, std::int64_t joined_ns, std::int64_t now_ns);
 
  private:
-  TokenBucket tokens_{kBurst, 0.0};
+  runtime::TokenBucket tokens_{kBurst, 0.0};
   std::uint64_t last_digest_ = 0;
   std::int64_t last_ns_ = 0;  // 0: none was sent
 

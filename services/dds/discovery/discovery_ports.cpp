@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <arpa/inet.h>
+#include <cerrno>
 #include <limits>
 #include <netinet/in.h>
 #include <string>
@@ -16,22 +17,12 @@ namespace {
 // Enough for a fleet of four vehicles, in which each process announces itself to all others.
 constexpr std::uint32_t kPortsAbove = 16;
 
-// Above the number of descriptors of any process here.
-constexpr int kMostDescriptors = 4096;
-
-bool is_free(std::uint32_t port, const std::string& own_address) {
-  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (socket < 0) return true;  // unknown; the participant will report the error
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  if (!own_address.empty()) ::inet_pton(AF_INET, own_address.c_str(), &address.sin_addr);
-  const bool free = ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-  ::close(socket);
-  return free;
-}
-
 }  // namespace
+
+std::optional<std::uint32_t> DiscoveryPorts::index_of(std::uint32_t port) const {
+  if (port < first || port > last() || (port - first) % gap != 0) return std::nullopt;
+  return (port - first) / gap;
+}
 
 DiscoveryPorts discovery_ports(int domain) {
   const rtps::PortParameters parameters;
@@ -55,26 +46,25 @@ std::runtime_error domain_is_full(int domain) {
                             ", are taken; choose another with --domain");
 }
 
+int error_of_binding(std::uint32_t port, const std::string& own_address) {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (socket < 0) return 0;  // unknown; Fast DDS will report the error
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  if (!own_address.empty()) ::inet_pton(AF_INET, own_address.c_str(), &address.sin_addr);
+  const bool bound = ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  const int error = bound ? 0 : errno;
+  ::close(socket);
+  return error;
+}
+
 std::uint32_t free_discovery_port(int domain, const std::string& address) {
   const DiscoveryPorts ports = discovery_ports(domain);
   for (std::uint32_t i = 0; i < ports.count; ++i) {
-    if (is_free(ports.first + i * ports.gap, address)) return i;
+    if (error_of_binding(ports.first + i * ports.gap, address) == 0) return i;
   }
   throw domain_is_full(domain);
-}
-
-std::set<std::uint32_t> own_discovery_ports(int domain) {
-  const DiscoveryPorts ports = discovery_ports(domain);
-  std::set<std::uint32_t> own;
-  for (int descriptor = 0; descriptor < kMostDescriptors; ++descriptor) {
-    sockaddr_in address{};
-    socklen_t length = sizeof address;
-    if (::getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &length) != 0) continue;
-    const std::uint32_t port = ntohs(address.sin_port);
-    if (address.sin_family != AF_INET || port < ports.first || port > ports.last()) continue;
-    if ((port - ports.first) % ports.gap == 0) own.insert((port - ports.first) / ports.gap);
-  }
-  return own;
 }
 
 std::uint32_t announced_ports(const DiscoveryPorts& ports, std::uint32_t own) {

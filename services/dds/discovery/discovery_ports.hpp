@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <set>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -15,6 +15,7 @@ struct DiscoveryPorts {
   std::uint32_t gap = 0;
 
   std::uint32_t last() const { return first + (count - 1) * gap; }
+  std::optional<std::uint32_t> index_of(std::uint32_t port) const;  // from 0; nullopt: none of them
 };
 
 // 120 ports; 63 in domain 232, whose ports end with those of UDP.
@@ -23,12 +24,11 @@ DiscoveryPorts discovery_ports(int domain);
 // The error "DDS domain 5 is full ...": all ports are taken. The others would not discover one more process.
 std::runtime_error domain_is_full(int domain);
 
-// Returns the index of the first free port of the domain, from 0. address: an IPv4 address of this host; empty:
-// all of them. Throws domain_is_full().
-std::uint32_t free_discovery_port(int domain, const std::string& address);
+// Why a UDP port cannot be opened, an errno; 0 if it can. address: an IPv4 address of this host; empty: all of them.
+int error_of_binding(std::uint32_t port, const std::string& address);
 
-// Returns the indices of the ports that sockets of this process are bound to.
-std::set<std::uint32_t> own_discovery_ports(int domain);
+// Returns the index of the first free port of the domain, from 0. address: as above. Throws domain_is_full().
+std::uint32_t free_discovery_port(int domain, const std::string& address);
 
 // Returns to how many of the domain's ports a process with port index `own` announces itself: to all ports
 // below its own and some above. Of two processes, the one with the higher port thus always reaches the other,

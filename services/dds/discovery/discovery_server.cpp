@@ -1,28 +1,25 @@
 #include "swiftlet/services/dds/discovery/discovery_server.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <map>
 #include <mutex>
-#include <netinet/in.h>
 #include <stdexcept>
-#include <sys/socket.h>
 #include <thread>
-#include <unistd.h>
 #include <utility>
 #include <vector>
 
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 #include "swiftlet/services/dds/datagram/guarded_transport.hpp"
 #include "swiftlet/services/dds/discovery/announcement.hpp"
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/fast_dds_library.hpp"
-#include "swiftlet/services/dds/network_qos.hpp"
 #include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/dds/participant_qos.hpp"
 #include "swiftlet/services/dds/periodic_task.hpp"
 #include "swiftlet/services/dds/qos/duration.hpp"
 
@@ -37,26 +34,16 @@ constexpr std::chrono::milliseconds kLogPeriod{250};
 constexpr int kPortLooks = 10;  // until a port counts as taken
 constexpr std::chrono::milliseconds kPortPeriod{50};
 
-// 0: the port is free.
-int error_of_binding(int port) {
-  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  const bool bound = ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-  const int error = bound ? 0 : errno;
-  ::close(socket);
-  return error;
-}
-
 // Fast DDS does not say why it fails. A server that was killed with its parent gives the port back a moment later.
 void require_free(int port) {
+  int error = 0;
   for (int look = 0; look < kPortLooks; ++look, std::this_thread::sleep_for(kPortPeriod)) {
-    if (error_of_binding(port) == 0) return;
+    error = error_of_binding(static_cast<std::uint32_t>(port), "");
+    if (error == 0) return;
   }
-  throw std::runtime_error("cannot listen on UDP port " + std::to_string(port) + ": " +
-                           std::strerror(error_of_binding(port)));
+  throw std::runtime_error("cannot listen on UDP port " + std::to_string(port) + ": " + std::strerror(error));
 }
+
 dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings,
                                      const std::shared_ptr<DatagramGuard>& guard) {
   dds::DomainParticipantQos qos;
@@ -68,35 +55,28 @@ dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings,
   protocol.builtin.discovery_config.leaseDuration = duration(kLivelinessLease);
   protocol.builtin.discovery_config.leaseDuration_announcementperiod = duration(kLivelinessPeriod);
   // Fast DDS 3.1 takes the port for taken if it listens on all addresses of a host that is in no network.
-  const std::vector<Interface> interfaces = interfaces_up();
+  const std::vector<runtime::Interface> interfaces = runtime::interfaces_up();
   const bool in_a_network =
-      !settings.on_loopback() &&
-      std::any_of(interfaces.begin(), interfaces.end(), [](const Interface& it) { return !it.is_loopback; });
-  protocol.builtin.metatrafficUnicastLocatorList.push_back(
-      udp_locator(in_a_network ? kAnyAddress : kLoopback, static_cast<std::uint32_t>(settings.port)));
+      !settings.on_loopback() && std::any_of(interfaces.begin(), interfaces.end(),
+                                             [](const runtime::Interface& it) { return !it.is_loopback; });
+  protocol.builtin.metatrafficUnicastLocatorList.push_back(udp_locator(
+      in_a_network ? kAnyAddress : runtime::kLoopback, static_cast<std::uint32_t>(settings.port)));
   UDPv4TransportDescriptor udp;
-  udp.interfaceWhiteList = addresses_of_interfaces(settings.interfaces);
+  udp.interfaceWhiteList = runtime::addresses_of_interfaces(settings.interfaces);
   if (!settings.interfaces.empty() || !in_a_network)
-    udp.interfaceWhiteList.emplace_back(kLoopback);  // for clients of this host
+    udp.interfaceWhiteList.emplace_back(runtime::kLoopback);  // for clients of this host
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(guarded(udp, guard, true));
+  qos.transport().user_transports.push_back(guarded(udp, guard, std::nullopt));
   qos.allocation().participants = {0, kMostParticipants, 1};
   return qos;
-}
-
-std::shared_ptr<DatagramGuard> guard_of(const DiscoveryServerSettings& settings) {
-  DatagramLimits limits;
-  limits.discovery_servers = true;
-  const std::string& file = settings.network_key_file;
-  return std::make_shared<DatagramGuard>(
-      file.empty() ? runtime::NetworkKeys() : runtime::read_network_keys(file), limits);
 }
 
 }  // namespace
 
 struct DiscoveryServer::Impl final : public DiscoveryListener {
   Impl(const DiscoveryServerSettings& settings, std::function<void(const DiscoveryServerEvent&)> event)
-      : guard(guard_of(settings)), on_event(std::move(event)) {}
+      : guard(std::make_shared<DatagramGuard>(settings.network_key_file, true, false)),
+        on_event(std::move(event)) {}
 
   void on_participant(const rtps::GUID_t& guid, const std::string& name,
                       const std::vector<std::uint8_t>& user_data) override {
@@ -135,7 +115,7 @@ DiscoveryServer::DiscoveryServer(const DiscoveryServerSettings& settings,
   set_up_fast_dds();
   require_free(settings.port);
   impl_->guard->listen(false);
-  impl_->guard->set_own_interfaces(interfaces_up());
+  impl_->guard->set_own_interfaces(runtime::interfaces_up());
   impl_->participant = dds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(settings.domain), server_qos(settings, impl_->guard), impl_.get(),
       dds::StatusMask::none());

@@ -1,15 +1,16 @@
-// A transport of Fast DDS that sends each datagram of discovery several times. Discovery waits a second for a lost one that
-// tells of endpoints, because Fast DDS has no setting for the heartbeats of its own endpoints; and a process from which
-// another one hears nothing else is taken for dead after four lost announcements. Receivers ignore the copies.
+// How often each datagram of discovery is sent. Discovery waits a second for a lost one that tells of endpoints, because Fast DDS
+// has no setting for the heartbeats of its own endpoints; and a process from which another one hears nothing else is taken for
+// dead after four lost announcements. Receivers ignore the copies.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <map>
 #include <optional>
+#include <vector>
 
 #include "swiftlet/services/dds/datagram/datagram_guard.hpp"
+#include "swiftlet/services/dds/discovery/announcement_budget.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 
 namespace swiftlet::comms {
@@ -21,12 +22,19 @@ bool is_discovery_port(int domain, std::uint32_t port);
 // without its time. nullopt: another message.
 std::optional<std::uint64_t> announcement_digest(const std::uint8_t* message, std::size_t size);
 
-// Descriptor of the transport below, with as many copies as AnnouncementBudget has for the processes that `guard` has heard;
-// one at most if it loses nothing. No announcement is sent before `listening` is true: Fast DDS begins to announce a
-// participant before it takes in what the others answer.
-std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> repeat_discovery(
-    std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> below, int domain,
-    std::shared_ptr<DatagramGuard> guard, std::shared_ptr<const std::atomic<bool>> listening,
-    bool loses_nothing);
+// Of one channel. Not thread-safe.
+class RepeatedDiscovery {
+ public:
+  using Places = std::vector<rtps::Locator_t>;
+
+  // Of a datagram that is sent to these places: those that get its first copy, those that get a second one, and so on, as
+  // AnnouncementBudget has it for the processes that `guard` has heard. No announcement is sent before that listens: Fast DDS
+  // begins to announce a participant before it takes in what the others answer.
+  std::vector<Places> rounds(const std::vector<std::uint8_t>& datagram, const Places& places,
+                             DatagramGuard& guard);
+
+ private:
+  std::map<rtps::Locator_t, AnnouncementBudget> budgets_;
+};
 
 }  // namespace swiftlet::comms

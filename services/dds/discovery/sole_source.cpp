@@ -10,6 +10,13 @@ namespace {
   throw std::runtime_error(other + "; choose another --vehicle-name or --domain");
 }
 
+NodeSettings announced(NodeSettings network) {
+  network.name = "swiftlet fly";
+  network.source_of = kFlight;
+  network.announcement_period = kFixturePeriod;  // several announcements within kSourceSearchTime
+  return network;
+}
+
 }  // namespace
 
 SoleSource::SoleSource(Participant& participant, const std::string& topic, std::function<void()> on_lost) {
@@ -27,6 +34,15 @@ SoleSource::SoleSource(Participant& participant, const std::string& topic, std::
 void SoleSource::check() const {
   const std::lock_guard<std::mutex> lock(loss_->mutex);
   if (!loss_->other.empty()) refuse(loss_->other);
+}
+
+FlightReservation::FlightReservation(const NodeSettings& network, const std::vector<std::string>& vehicles)
+    : participant_(announced(network), vehicles) {
+  for (const std::string& vehicle : vehicles) nodes_.emplace_back(participant_, vehicle);
+  const auto other = participant_.become_source({kFlight, topics::kImu.name, topics::kMocapPose.name});
+  if (other) {
+    throw std::runtime_error(*other + "; choose another --vehicle-name or --domain, or fly it with --attach");
+  }
 }
 
 }  // namespace swiftlet::comms

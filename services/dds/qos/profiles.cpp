@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/qos/duration.hpp"
@@ -31,14 +30,6 @@ constexpr milliseconds kResponseDelay{1};
 constexpr milliseconds kFirstRequestPeriod{20};
 
 bool is_long(Qos profile) { return profile == Qos::kLatchedLarge || profile == Qos::kRequest; }
-
-// As rmw_dds_common encodes it.
-template <class EndpointQos>
-void set_user_data(EndpointQos& qos, const char* hash) {
-  if (hash == nullptr) return;
-  const std::string text = "typehash=" + std::string(hash) + ";";
-  qos.user_data().data_vec(std::vector<std::uint8_t>(text.begin(), text.end()));
-}
 
 void set_fragments(dds::DataWriterQos& qos) {
   if (kHasFlowControllers) {
@@ -108,9 +99,5 @@ dds::DataReaderQos reader_qos(Qos profile) {
   if (is_reliable(profile)) set_repair_times(qos, duration(kResponseDelay), duration(kFirstRequestPeriod));
   return qos;
 }
-
-void state_type_hash(dds::DataWriterQos& qos, const char* hash) { set_user_data(qos, hash); }
-
-void state_type_hash(dds::DataReaderQos& qos, const char* hash) { set_user_data(qos, hash); }
 
 }  // namespace swiftlet::comms

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
@@ -23,8 +25,12 @@ std::shared_ptr<eprosima::fastdds::rtps::FlowControllerDescriptor> long_message_
 eprosima::fastdds::dds::DataWriterQos writer_qos(Qos profile);
 eprosima::fastdds::dds::DataReaderQos reader_qos(Qos profile);
 
-// States the type hash of an endpoint in its user data, where ROS 2 looks for it. hash: may be null.
-void state_type_hash(eprosima::fastdds::dds::DataWriterQos& qos, const char* hash);
-void state_type_hash(eprosima::fastdds::dds::DataReaderQos& qos, const char* hash);
+// States the type hash of an endpoint in its user data, where ROS 2 looks for it, as rmw_dds_common encodes it. hash: may be null.
+template <class EndpointQos>
+void state_type_hash(EndpointQos& qos, const char* hash) {
+  if (hash == nullptr) return;
+  const std::string text = "typehash=" + std::string(hash) + ";";
+  qos.user_data().data_vec(std::vector<std::uint8_t>(text.begin(), text.end()));
+}
 
 }  // namespace swiftlet::comms

@@ -7,8 +7,6 @@ namespace {
 
 namespace dds = eprosima::fastdds::dds;
 
-constexpr std::chrono::seconds kLinePeriod{1};
-
 const char* name_of(dds::ReliabilityQosPolicyKind kind) {
   return kind == dds::RELIABLE_RELIABILITY_QOS ? "reliable" : "best effort";
 }
@@ -80,24 +78,6 @@ std::string conflicts(const EndpointQos& offered, const EndpointQos& requested) 
   if (!offered.without_positive_acks && requested.without_positive_acks)
     add(list, "disabled positive acknowledgements", "no", "yes");
   return list;
-}
-
-std::optional<std::string> LineLimit::offer(std::string line, Time now) {
-  if (!written_ || now - *written_ >= kLinePeriod) {
-    written_ = now;
-    return line;
-  }
-  kept_ = std::move(line);
-  ++kept_count_;
-  return std::nullopt;
-}
-
-std::optional<std::string> LineLimit::due(Time now) {
-  if (kept_count_ == 0 || now - *written_ < kLinePeriod) return std::nullopt;
-  if (kept_count_ > 1) kept_ += " (and " + std::to_string(kept_count_ - 1) + " more in the last second)";
-  written_ = now;
-  kept_count_ = 0;
-  return std::move(kept_);
 }
 
 }  // namespace swiftlet::comms

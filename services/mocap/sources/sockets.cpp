@@ -11,8 +11,8 @@
 #include <unistd.h>
 #include <utility>
 
-#include "swiftlet/services/dds/discovery/host_address.hpp"
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/io/network/host_address.hpp"
+#include "swiftlet/io/network/interfaces.hpp"
 
 namespace swiftlet::mocap {
 namespace {
@@ -57,11 +57,11 @@ std::string Endpoint::address_text() const {
 std::string Endpoint::to_string() const { return address_text() + ":" + std::to_string(port); }
 
 Endpoint resolve(const std::string& text, std::uint16_t default_port) {
-  const std::string fault = comms::fault_of_host_address(text);
+  const std::string fault = runtime::fault_of_host_address(text);
   if (!fault.empty()) throw std::invalid_argument("server: " + fault);
-  const comms::HostAddress host = comms::parse_host_address(text);
+  const runtime::HostAddress host = runtime::parse_host_address(text);
   try {
-    return {number_of(comms::ipv4_addresses_of(host.host).front()),
+    return {number_of(runtime::ipv4_addresses_of(host.host).front()),
             host.port == 0 ? default_port : host.port};
   } catch (const std::runtime_error& error) {
     throw std::invalid_argument(std::string("server: ") + error.what());
@@ -70,9 +70,9 @@ Endpoint resolve(const std::string& text, std::uint16_t default_port) {
 
 std::string interface_address(const std::string& name_or_address) {
   if (name_or_address.empty()) return "";
-  const std::string fault = comms::fault_of_interface(name_or_address);
+  const std::string fault = runtime::fault_of_interface(name_or_address);
   if (!fault.empty()) throw std::invalid_argument("interface: " + fault);
-  return comms::addresses_of_interfaces({name_or_address}).front();
+  return runtime::addresses_of_interfaces({name_or_address}).front();
 }
 
 Descriptor::~Descriptor() { close(); }

@@ -12,7 +12,6 @@ int main(int argc, char** argv) {
   comms::NodeSettings settings;
   settings.name = "consumer";
   settings.domain = 229;
-  settings.localhost_only = true;
   comms::Node node(settings);
   const auto imu = node.publish(comms::topics::kImu);
 

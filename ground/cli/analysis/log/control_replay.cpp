@@ -407,7 +407,6 @@ ControlReplay replay_into_control(const mcap::Reader& file, const ControlReplayS
   network.name = "plant";
   network.vehicle = settings.vehicle;
   network.domain = domain.domain();
-  network.localhost_only = true;
   comms::Node node(network);
   mcap::Selection recorded;
   const std::string topic = "/" + settings.vehicle + "/" + inputs.command_topic;

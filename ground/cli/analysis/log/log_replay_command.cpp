@@ -15,8 +15,8 @@
 #include "swiftlet/ground/terminal/progress_line.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
-#include "swiftlet/services/dds/discovery/flight_reservation.hpp"
-#include "swiftlet/services/dds/vehicle_list.hpp"
+#include "swiftlet/services/dds/discovery/sole_source.hpp"
+#include "swiftlet/services/messages/vehicle_names.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -12,10 +12,10 @@
 
 #include "swiftlet/ground/batch/batch_plot.hpp"
 #include "swiftlet/ground/batch/batch_report.hpp"
+#include "swiftlet/ground/command_line/child_process.hpp"
 #include "swiftlet/ground/flight/in_process_flight.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/csv.hpp"
-#include "swiftlet/services/runtime/child_process.hpp"
 #include "tests/support/hop_mission.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"

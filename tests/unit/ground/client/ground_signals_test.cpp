@@ -24,7 +24,6 @@ class GroundSignals : public testing::Test {
     comms::NodeSettings settings;
     settings.name = name;
     settings.domain = lock.domain();
-    settings.localhost_only = true;
     return settings;
   }
   comms::DomainLock lock_;

@@ -21,7 +21,6 @@ class TopicStreamTest : public testing::Test {
  protected:
   comms::NodeSettings settings(const std::string& name) const {
     comms::NodeSettings settings{name, "kl1", domain_.domain()};
-    settings.localhost_only = true;
     return settings;
   }
   static double number(const TopicStream& stream, const TopicStream::Sample& sample,

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/services/runtime/child_process.hpp"
+#include "swiftlet/ground/command_line/child_process.hpp"
 #include "tests/support/program_path.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -96,7 +96,7 @@ class CommandServerTest : public testing::Test {
 
   plant::Vehicle vehicle_;
   control::ControlSettings settings_;
-  runtime::Semaphore wake_;
+  Semaphore wake_;
   InnerLoop loop_;
   CommandServer command_server_;
   std::uint64_t sequence_ = 0;

@@ -1,13 +1,12 @@
-#include "swiftlet/services/dds/network_file.hpp"
-
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/io/network_key.hpp"
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/services/dds/node_options.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::comms::network_file_test {
@@ -33,7 +32,6 @@ TEST(NetworkFile, SetsWhatItHas) {
   EXPECT_EQ(peers.network.interfaces, std::vector<std::string>{"lo"});
   EXPECT_EQ(peers.network.dds_profile, "/etc/swiftlet/profile.xml");
   EXPECT_EQ(applied("discovery_servers: [lab1, lab2:11812]\n").network.discovery_servers, "lab1;lab2:11812");
-  EXPECT_TRUE(applied("localhost_only: true\n").localhost_only);
   EXPECT_TRUE(applied("open_network: false\n").on_loopback());
   EXPECT_FALSE(applied("open_network: true\n").on_loopback());
   EXPECT_EQ(applied("interfaces: [lo]\n", peers).network.peers, peers.network.peers);
@@ -50,13 +48,9 @@ TEST(NetworkFile, NamesAValidNetworkKey) {
 }
 
 TEST(NetworkFile, ReplacesAnotherWayOfDiscovery) {
-  NodeSettings local;
-  local.localhost_only = true;
-  const NodeSettings peers = applied("peers: [lab2]\n", local);
-  EXPECT_FALSE(peers.localhost_only);
-  const NodeSettings server = applied("discovery_servers: [lab1]\n", peers);
+  const NodeSettings server = applied("discovery_servers: [lab1]\n", applied("peers: [lab2]\n"));
   EXPECT_TRUE(server.network.peers.empty());
-  EXPECT_TRUE(applied("localhost_only: true\n", server).network.discovery_servers.empty());
+  EXPECT_TRUE(applied("peers: [lab2]\n", server).network.discovery_servers.empty());
 }
 
 TEST(NetworkFile, NamesWhatIsWrong) {
@@ -65,24 +59,18 @@ TEST(NetworkFile, NamesWhatIsWrong) {
       ", must be HOST or HOST:PORT, a name or IPv4 address and a port from 1 to 65535";
   EXPECT_EQ(refusal("peers:\n  - lab2\n  - lab3:0\n"), file + "3: peers[1]: is 'lab3:0'" + address);
   EXPECT_EQ(refusal("discovery_servers: [':1']\n"), file + "1: discovery_servers[0]: is ':1'" + address);
-  EXPECT_EQ(refusal("localhost_only: false\ninterfaces: [wlan9]\n"),
+  EXPECT_EQ(refusal("open_network: true\ninterfaces: [wlan9]\n"),
             file +
                 "2: interfaces[0]: is 'wlan9', must be an interface that is up, by name or IPv4 address: " +
-                interfaces_text(false));
-  EXPECT_EQ(refusal("peers: [lab2]\nlocalhost_only: true\n"),
-            file + "1: peers: excludes localhost_only: true");
+                runtime::interfaces_text(false));
   EXPECT_EQ(refusal("peers: [lab2]\ndiscovery_servers: [lab1]\n"),
             file + "2: discovery_servers: excludes peers");
-  EXPECT_EQ(refusal("interfaces: [lo]\nlocalhost_only: true\n"),
-            file + "1: interfaces: excludes localhost_only: true");
-  for (const std::string key : {"peer", "transport"}) {
+  for (const std::string key : {"peer", "transport", "localhost_only"}) {
     const std::string unknown = refusal("interfaces: [lo]\n" + key + ": udp\n");
     EXPECT_EQ(unknown.find(file + "2: " + key + ": is unknown, must be one of "), 0U) << unknown;
   }
   EXPECT_NE(refusal("peers: []\n"), "accepted");
-  EXPECT_NE(refusal("localhost_only: yes please\n"), "accepted");
-  EXPECT_EQ(refusal("open_network: true\nlocalhost_only: true\n"),
-            file + "1: open_network: excludes localhost_only: true");
+  EXPECT_NE(refusal("open_network: yes please\n"), "accepted");
 }
 
 }  // namespace swiftlet::comms::network_file_test

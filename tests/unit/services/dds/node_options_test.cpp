@@ -53,10 +53,6 @@ TEST_F(NodeOptions, OpenTheNetwork) {
   ASSERT_TRUE(parses("--localhost-only"));
   EXPECT_TRUE(settings_.on_loopback());
   unsetenv("SWIFTLET_OPEN_NETWORK");
-  setenv("ROS_LOCALHOST_ONLY", "1", 1);
-  ASSERT_TRUE(parses("--open-network"));
-  EXPECT_FALSE(settings_.on_loopback());
-  unsetenv("ROS_LOCALHOST_ONLY");
   settings_ = {};
   settings_.network_key_file = "lab.key";
   EXPECT_FALSE(settings_.on_loopback());
@@ -89,14 +85,6 @@ TEST_F(NodeOptions, WinOverTheEnvironment) {
   EXPECT_EQ(settings_.network.discovery_servers, "");
   EXPECT_TRUE(parses("--localhost-only"));
   EXPECT_EQ(settings_.network.discovery_servers, "");
-  setenv("ROS_LOCALHOST_ONLY", "1", 1);
-  EXPECT_TRUE(parses(""));
-  EXPECT_TRUE(settings_.localhost_only);
-  for (const char* line : {"--peer lab2", "--discovery-server lab3", "--interface lo"}) {
-    EXPECT_TRUE(parses(line));
-    EXPECT_FALSE(settings_.localhost_only) << line;
-  }
-  unsetenv("ROS_LOCALHOST_ONLY");
   unsetenv("ROS_DISCOVERY_SERVER");
 }
 
@@ -110,19 +98,7 @@ TEST_F(NodeOptions, TakeThePeersOfRos) {
     EXPECT_TRUE(parses(line));
     EXPECT_TRUE(settings_.network.peers.empty()) << line;
   }
-  setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST", 1);
-  EXPECT_TRUE(parses(""));
-  EXPECT_FALSE(settings_.localhost_only) << "it has peers";
   unsetenv("ROS_STATIC_PEERS");
-  for (const char* range : {"LOCALHOST", "OFF"}) {
-    setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", range, 1);
-    EXPECT_TRUE(parses(""));
-    EXPECT_TRUE(settings_.localhost_only) << range;
-  }
-  setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET", 1);
-  EXPECT_TRUE(parses(""));
-  EXPECT_FALSE(settings_.localhost_only);
-  unsetenv("ROS_AUTOMATIC_DISCOVERY_RANGE");
 }
 
 TEST_F(NodeOptions, TakeTheProfileOfEitherFastDds) {

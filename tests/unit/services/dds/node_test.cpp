@@ -38,7 +38,6 @@ NodeSettings settings(const DomainLock& lock, const char* name) {
   NodeSettings settings;
   settings.name = name;
   settings.domain = lock.domain();
-  settings.localhost_only = true;
   return settings;
 }
 

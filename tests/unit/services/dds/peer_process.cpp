@@ -39,7 +39,6 @@ bool enter_new_network_namespace() {
 int check_isolated_nodes() {
   if (!enter_new_network_namespace()) return kNotPermitted;
   NodeSettings settings;
-  settings.localhost_only = true;
   settings.name = "here";
   Node here(settings);
   settings.name = "there";
@@ -57,7 +56,6 @@ int check_isolated_nodes() {
 
 int run_peer(int domain) {
   NodeSettings settings;
-  settings.localhost_only = true;
   settings.name = "peer";
   settings.domain = domain;
   Node node(settings);

@@ -86,7 +86,6 @@ class Peers : public testing::Test {
     NodeSettings settings;
     settings.name = "observer";
     settings.domain = lock_.domain();
-    settings.localhost_only = true;
     return settings;
   }
   PeerProcess start() const { return PeerProcess(std::to_string(lock_.domain())); }
@@ -225,7 +224,6 @@ TEST(Domain, Holds32Participants) {
   const DomainLock lock;
   NodeSettings settings;
   settings.domain = lock.domain();
-  settings.localhost_only = true;
   settings.name = "first";
   Node first(settings);
   Inbox<PeerEvent> events;

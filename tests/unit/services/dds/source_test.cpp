@@ -11,9 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
-#include "swiftlet/services/dds/discovery/flight_reservation.hpp"
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
 #include "swiftlet/services/dds/discovery/sole_source.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "tests/support/eventually.hpp"
@@ -32,7 +31,6 @@ class Sources : public testing::Test {
     settings.name = name;
     settings.vehicle = vehicle;
     settings.domain = lock_.domain();
-    settings.localhost_only = true;
     settings.source_of = source_of;
     return settings;
   }
@@ -175,8 +173,8 @@ TEST_F(Sources, StayTheSourceOfASubscriptionAfterARejoin) {
 }
 
 TEST(Interfaces, NameTheLoopbackInterface) {
-  EXPECT_EQ(interfaces_text(true), "lo (127.0.0.1)");
-  EXPECT_NE(interfaces_text(false).find("lo (127.0.0.1)"), std::string::npos);
+  EXPECT_EQ(runtime::interfaces_text(true), "lo (127.0.0.1)");
+  EXPECT_NE(runtime::interfaces_text(false).find("lo (127.0.0.1)"), std::string::npos);
 }
 
 }  // namespace swiftlet::comms::fixtures::source_test

@@ -42,7 +42,6 @@ class Lockstep : public testing::Test {
     comms::NodeSettings settings;
     settings.name = name;
     settings.domain = lock.domain();
-    settings.localhost_only = true;
     return settings;
   }
 

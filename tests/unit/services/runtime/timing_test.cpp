@@ -1,16 +1,12 @@
-// The periodic timer and the semaphore against the clock. Bounds are one-sided or generous for loaded
+// The periodic timer against the clock. Bounds are one-sided or generous for loaded
 // machines.
 #include <chrono>
-#include <thread>
 
 #include <gtest/gtest.h>
 
 #include "swiftlet/services/runtime/periodic_timer.hpp"
-#include "swiftlet/services/runtime/semaphore.hpp"
 
 namespace swiftlet::runtime::timing_test {
-
-using namespace std::chrono_literals;
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 
@@ -58,25 +54,6 @@ TEST(PeriodicTimer, KeepsItsPhase) {
   }
   EXPECT_GT(timer.wait(), 0);
   EXPECT_EQ((timer.tick_ns() - origin) % (2 * kMillisecond), 0);
-}
-
-TEST(Semaphore, WakesAWaitingThread) {
-  Semaphore semaphore;
-  std::thread poster([&] { semaphore.post(); });
-  const std::int64_t start = monotonic_ns();
-  semaphore.wait_for(20s);
-  EXPECT_LT(monotonic_ns() - start, 10'000 * kMillisecond);
-  poster.join();
-}
-
-TEST(Semaphore, CountsManyPostsAsOne) {
-  Semaphore semaphore;
-  semaphore.post();
-  semaphore.post();
-  semaphore.wait_for(20s);
-  const std::int64_t start = monotonic_ns();
-  semaphore.wait_for(20ms);
-  EXPECT_GE(monotonic_ns() - start, 20 * kMillisecond);
 }
 
 }  // namespace swiftlet::runtime::timing_test

@@ -88,12 +88,11 @@ TEST(Datagram, ReportsItsSourceAndItsGaps) {
                                             .add(0x08, 0, gap_of(kSedpWriter, 3, 4)));
   ASSERT_EQ(checked.fault, nullptr);
   EXPECT_EQ(checked.source, kBob);
-  EXPECT_FALSE(checked.about_participant);
-  ASSERT_EQ(checked.gap_count, 1U);
+  EXPECT_FALSE(checked.announces_itself);
+  ASSERT_EQ(checked.gaps.size(), 1U);
   EXPECT_EQ(checked.gaps[0].writer, kSedpWriter);
   EXPECT_EQ(checked.gaps[0].end, 4U);
   const CheckedDatagram announced = check(announcement(kAlice, participant_parameters(kAlice)));
-  EXPECT_TRUE(announced.about_participant);
   EXPECT_TRUE(announced.announces_itself);
 }
 
@@ -110,18 +109,18 @@ TEST(Datagram, OfAHostWithoutNetworkIsGivenTheAddressOfItsSender) {
   const RtpsMessage announced = announcement(kAlice, parameters);
   const CheckedDatagram checked = check(announced);
   ASSERT_EQ(checked.fault, nullptr);
-  EXPECT_EQ(checked.loopback_count, 2U);
-  EXPECT_EQ(checked.announced.address_count, 0U);
+  EXPECT_EQ(checked.places.loopback.size(), 2U);
+  EXPECT_EQ(checked.announced.addresses.size(), 0U);
   Bytes copy = announced.bytes();
   name_source(checked, 0x0a000063, copy.data());
   EXPECT_EQ(std::search(copy.begin(), copy.end(), here.begin(), here.end()), copy.end());
   EXPECT_EQ(std::search(copy.begin(), copy.end(), there.begin(), there.end()) == copy.end(), false);
   const CheckedDatagram again = check_datagram(copy.data(), copy.size(), DatagramLimits());
-  ASSERT_EQ(again.announced.address_count, 1U);
+  ASSERT_EQ(again.announced.addresses.size(), 1U);
   EXPECT_EQ(again.announced.addresses[0], 0x0a000063U);
 
   const RtpsMessage endpoint = endpoint_data(endpoint_parameters().parameter(0x002f, locator(here)));
-  EXPECT_EQ(check(endpoint).loopback_count, 1U);
+  EXPECT_EQ(check(endpoint).places.loopback.size(), 1U);
 }
 
 TEST(Datagram, NeedsAHeaderOfThisProtocolAndASource) {
@@ -324,10 +323,10 @@ TEST(Datagram, TypeDescriptionsAreHiddenFromTheMiddleware) {
   const RtpsMessage message = endpoint_data(endpoint_parameters().parameter(0x0072, ByteWriter().zeros(16)));
   const CheckedDatagram checked = check(message);
   ASSERT_EQ(checked.fault, nullptr);
-  ASSERT_EQ(checked.hidden_count, 1U);
+  ASSERT_EQ(checked.places.hidden.size(), 1U);
   Bytes copy = message.bytes();
   hide_parameters(checked, copy.data());
-  const std::size_t at = checked.hidden[0];
+  const std::size_t at = checked.places.hidden[0];
   EXPECT_EQ(message.bytes()[at], 0x72);
   EXPECT_EQ(copy[at], 0);
   EXPECT_EQ(copy[at + 1], 0);

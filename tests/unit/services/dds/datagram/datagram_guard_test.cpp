@@ -16,14 +16,13 @@ namespace swiftlet::comms::datagram_guard_test {
 using namespace swiftlet::tests;
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr SenderAddress kHost{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 10, 0, 0, 1};
+constexpr Ipv4 kHost = 0x0a000001;
 
 RtpsMessage sample(std::uint32_t number, const GuidPrefix& source = kAlice) {
   return RtpsMessage(source).add(0x15, 4, data_fields(kUserReader, kUserWriter, number).u32(0x0100).u32(0));
 }
 
-bool admits(DatagramGuard& guard, const RtpsMessage& message, std::int64_t now_ns,
-            const SenderAddress& host = kHost) {
+bool admits(DatagramGuard& guard, const RtpsMessage& message, std::int64_t now_ns, Ipv4 host = kHost) {
   return guard.admit(message.bytes().data(), message.bytes().size(), host, 7411, {now_ns, now_ns}).fault ==
          nullptr;
 }
@@ -65,8 +64,7 @@ TEST(DatagramGuard, AllocatesNothingWhileItReceives) {
   DatagramGuard guard;
   const test::MallocGuard allocations;
   for (std::size_t i = 0; i < datagrams.size(); ++i) {
-    SenderAddress host = kHost;
-    host[15] = static_cast<std::uint8_t>(i);
+    const Ipv4 host = kHost + static_cast<Ipv4>(i);
     const auto now_ns = static_cast<std::int64_t>(i + 1) * kSecond_ns;
     guard.admit(datagrams[i].data(), datagrams[i].size(), host, 7411, {now_ns, now_ns});
   }
@@ -74,34 +72,22 @@ TEST(DatagramGuard, AllocatesNothingWhileItReceives) {
   EXPECT_EQ(guard.refusals().total(), 1U);
 }
 
-TEST(DatagramGuard, KnowsWithSecurityWhatParticipantsSaidAboutThemselves) {
-  const auto now = [](std::int64_t now_ns) { return Now{now_ns, now_ns}; };
-  const RtpsMessage message =
-      announcement(kAlice, participant_parameters(kAlice)
-                               .parameter(0x0062, ByteWriter().string("control"))
-                               .parameter(0x002c, ByteWriter().u32(4).bytes(std::string("p=1;"))));
-  DatagramGuard open;
-  ASSERT_TRUE(admits(open, message, kSecond_ns));
-  EXPECT_TRUE(open.announcements(now(kSecond_ns)).empty()) << "without security";
-
-  DatagramLimits limits;
-  limits.security = true;
-  DatagramGuard guard({}, limits);
-  ASSERT_TRUE(admits(guard, message, kSecond_ns));
-  ASSERT_TRUE(admits(guard, message, kSecond_ns * 3 / 2));
-  auto heard = guard.announcements(now(2 * kSecond_ns));
-  ASSERT_EQ(heard.count(kAlice), 1U);
-  EXPECT_EQ(heard[kAlice].name, "control");
-  EXPECT_EQ(heard[kAlice].user_data, (std::vector<std::uint8_t>{'p', '=', '1', ';'}));
-  EXPECT_EQ(heard[kAlice].since_ns, kSecond_ns);
-  EXPECT_TRUE(guard.announcements(now(3 * kSecond_ns)).empty()) << "silent";
-  ASSERT_TRUE(admits(guard, message, 4 * kSecond_ns));
-  EXPECT_EQ(guard.announcements(now(4 * kSecond_ns))[kAlice].since_ns, 4 * kSecond_ns) << "came back";
-
-  for (std::uint32_t number = 0; number < 2 * DatagramGuard::kMostAnnouncements; ++number)
-    ASSERT_TRUE(admits(guard, newcomer(number), 4 * kSecond_ns + number));
-  EXPECT_EQ(guard.announcements(now(4 * kSecond_ns + 200)).size(), DatagramGuard::kMostAnnouncements);
-  EXPECT_EQ(guard.announcements(now(4 * kSecond_ns + 200)).count(kAlice), 0U) << "the longest silent one";
+TEST(DatagramGuard, KnowsTheNamesOfParticipants) {
+  DatagramGuard guard;
+  const auto hear_of = [&](const GuidPrefix& participant, const std::string& name) {
+    ASSERT_TRUE(
+        admits(guard,
+               announcement(participant,
+                            participant_parameters(participant).parameter(0x0062, ByteWriter().string(name))),
+               kSecond_ns));
+  };
+  hear_of(kAlice, "control");
+  EXPECT_EQ(guard.name_of(kAlice), "control");
+  EXPECT_EQ(guard.name_of(kBob), "");
+  hear_of(kBob, std::string(200, 'b'));
+  EXPECT_EQ(guard.name_of(kBob), std::string(32, 'b'));
+  ASSERT_TRUE(admits(guard, announcement(kAlice, participant_parameters(kAlice)), kSecond_ns));
+  EXPECT_EQ(guard.name_of(kAlice), "") << "it says none now";
 }
 
 // Announced by `participant`, which serves the vehicles and receives discovery at the port.
@@ -137,15 +123,6 @@ TEST(DatagramGuard, IgnoresParticipantsOfOtherVehicles) {
   EXPECT_FALSE(hear(guard, kAlice, of_kl2, 2 * kSecond_ns).is_ignored) << "serves its vehicle now";
   guard.ignore_apart_from(user_data_of("vehicle=kl1;hears=own;"));
   EXPECT_FALSE(hear(guard, kAlice, of_kl2, 3 * kSecond_ns).is_ignored) << "the middleware knows it";
-}
-
-TEST(DatagramGuard, SaysNothingOfWhomItIgnores) {
-  DatagramLimits limits;
-  limits.security = true;
-  DatagramGuard guard({}, limits);
-  guard.ignore_apart_from(user_data_of("vehicle=kl1;hears=own;"));
-  EXPECT_TRUE(hear(guard, kAlice, "vehicle=kl2;hears=own;", kSecond_ns).is_ignored);
-  EXPECT_TRUE(guard.announcements({kSecond_ns, kSecond_ns}).empty());
 }
 
 TEST(DatagramGuard, CountsTheParticipantsThatItExpects) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <netinet/in.h>
+#include <optional>
 #include <stdexcept>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -15,6 +16,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/io/network/interfaces.hpp"
 #include "tests/support/rtps_message.hpp"
 
 namespace swiftlet::comms::guarded_transport_test {
@@ -54,17 +56,35 @@ class Receiver {
   sockaddr_in address_{};
 };
 
+// As Fast DDS 3 uses it, or as 2.9 does, which has no other form.
+template <class Transport>
+auto transform(const Transport& transport, const rtps::Locator_t& announced, rtps::Locator_t& used, int)
+    -> decltype(transport.transform_remote_locator(announced, used, true, true)) {
+  return transport.transform_remote_locator(announced, used, true, true);
+}
+template <class Transport>
+auto transform(const Transport& transport, const rtps::Locator_t& announced, rtps::Locator_t& used, long)
+    -> decltype(transport.transform_remote_locator(announced, used)) {
+  return transport.transform_remote_locator(announced, used);
+}
+
 // A chain of transports, and a channel that it opened for one place.
 class Chain {
  public:
-  Chain(std::shared_ptr<DatagramGuard> guard, bool opens_places, const rtps::Locator_t& first) {
+  Chain(std::shared_ptr<DatagramGuard> guard, std::optional<int> domain, const rtps::Locator_t& first) {
     transport::UDPv4TransportDescriptor udp;
     udp.interfaceWhiteList = {"127.0.0.1"};
-    chain_.reset(guarded(udp, std::move(guard), opens_places)->create_transport());
+    chain_.reset(guarded(udp, std::move(guard), domain)->create_transport());
     if (!chain_->init() || !open(first)) throw std::runtime_error("no transport");
   }
   bool open(const rtps::Locator_t& place) { return chain_->OpenOutputChannel(channels_, place); }
   std::size_t channels() const { return channels_.size(); }
+  // Where a process of this address is reached; port 0: nowhere.
+  rtps::Locator_t reached(const rtps::Locator_t& announced) const {
+    rtps::Locator_t used;
+    if (!transform(*chain_, announced, used, 0)) used.port = 0;
+    return used;
+  }
   void send(std::vector<rtps::Locator_t> places) {
     const std::vector<rtps::octet> datagram(100);
     for (auto& channel : channels_) {
@@ -83,7 +103,7 @@ class Chain {
 // Fast DDS fails an assertion for a place for which no channel was opened.
 TEST(GuardedTransport, OpensThePlacesToWhichItSends) {
   const Receiver first, other;
-  Chain chain(std::make_shared<DatagramGuard>(), true, first.locator());
+  Chain chain(std::make_shared<DatagramGuard>(), std::nullopt, first.locator());
   chain.send({first.locator(), other.locator()});
   EXPECT_EQ(first.received(), 1);
   EXPECT_EQ(other.received(), 1);
@@ -94,20 +114,31 @@ TEST(GuardedTransport, OpensThePlacesToWhichItSends) {
   EXPECT_EQ(other.received(), 1);
 }
 
+// As ROS 2 does by default, which uses all interfaces but that of the loopback.
+TEST(GuardedTransport, ReachesProcessesOfThisHostThatAnnounceAnotherInterface) {
+  const Receiver receiver;
+  const Chain chain(std::make_shared<DatagramGuard>(), 0, receiver.locator());
+  for (const runtime::Interface& own : runtime::interfaces_up()) {
+    rtps::Locator_t announced = receiver.locator();
+    rtps::IPLocator::setIPv4(announced, own.address);
+    EXPECT_EQ(chain.reached(announced), receiver.locator()) << own.address;
+  }
+}
+
 TEST(GuardedTransport, SendsToWhereAHostIsHeardNow) {
   const Receiver receiver;
   rtps::Locator_t before = receiver.locator();
   rtps::IPLocator::setIPv4(before, "10.1.2.3");
   auto guard = std::make_shared<DatagramGuard>();
-  Chain chain(guard, false, before);
+  Chain chain(guard, 0, before);
   tests::ByteWriter parameters = tests::participant_parameters(tests::kAlice);
   parameters.parameter(
       0x0031, tests::ByteWriter().u32(1).u32(before.port).zeros(12).bytes(tests::Bytes{10, 1, 2, 3}));
   const tests::Bytes announcement = tests::announcement(tests::kAlice, parameters).bytes();
-  const SenderAddress loopback{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 127, 0, 0, 1};
   for (const std::int64_t now_ns : {std::int64_t{1'000'000'000}, std::int64_t{2'500'000'000}})
-    EXPECT_EQ(guard->admit(announcement.data(), announcement.size(), loopback, 7410, {now_ns, now_ns}).fault,
-              nullptr);
+    EXPECT_EQ(
+        guard->admit(announcement.data(), announcement.size(), INADDR_LOOPBACK, 7410, {now_ns, now_ns}).fault,
+        nullptr);
   chain.send({before});
   EXPECT_EQ(receiver.received(), 1);
 }

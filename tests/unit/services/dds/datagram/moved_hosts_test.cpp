@@ -16,7 +16,7 @@ constexpr Ipv4 kLoopback = 0x7f000001;
 
 Announced at(std::initializer_list<Ipv4> addresses) {
   Announced said;
-  for (const Ipv4 address : addresses) said.addresses[said.address_count++] = address;
+  said.addresses.assign(addresses.begin(), addresses.end());
   return said;
 }
 

@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 class RefusalLogTest : public testing::Test {
  protected:
   void refuse(std::uint8_t host, const char* rule, int times = 1) {
-    for (int i = 0; i < times; ++i) log_.note({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 10, 0, 0, host}, rule);
+    for (int i = 0; i < times; ++i) log_.note(0x0a000000U + host, rule);
   }
   std::string lines_after(std::chrono::steady_clock::duration time) {
     text_.clear();

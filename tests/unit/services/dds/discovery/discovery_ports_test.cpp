@@ -2,9 +2,9 @@
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 
 #include <arpa/inet.h>
+#include <memory>
 #include <netinet/in.h>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <sys/socket.h>
@@ -15,6 +15,7 @@
 
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/dds/participant_session.hpp"
 #include "tests/support/eventually.hpp"
 
 namespace swiftlet::comms::discovery_ports_test {
@@ -52,7 +53,6 @@ NodeSettings settings(const DomainLock& lock, const char* name) {
   NodeSettings settings;
   settings.name = name;
   settings.domain = lock.domain();
-  settings.localhost_only = true;
   return settings;
 }
 
@@ -115,13 +115,21 @@ TEST(DiscoveryPorts, AreAnnouncedToFromAllHigherPorts) {
   EXPECT_EQ(announced_ports(ports, ports.count - 1), ports.count);
 }
 
-TEST(DiscoveryPorts, OfThisProcessAreListed) {
+TEST(DiscoveryPorts, AreTakenInTheirOrder) {
   const DomainLock lock;
   const TakenPorts three(lock.domain(), 3);
-  EXPECT_EQ(own_discovery_ports(lock.domain()), (std::set<std::uint32_t>{0, 1, 2}));
   EXPECT_EQ(free_discovery_port(lock.domain(), "127.0.0.1"), 3U);
-  const Node node(settings(lock, "fourth"));
-  EXPECT_EQ(own_discovery_ports(lock.domain()), (std::set<std::uint32_t>{0, 1, 2, 3}));
+  const auto guard = std::make_shared<DatagramGuard>();
+  const ParticipantSession session(settings(lock, "fourth"), {}, guard, nullptr);
+  EXPECT_EQ(discovery_ports(lock.domain()).index_of(guard->discovery_port()), 3U);
+  EXPECT_EQ(free_discovery_port(lock.domain(), "127.0.0.1"), 4U);
+}
+
+TEST(DiscoveryPorts, HaveNumbers) {
+  const DiscoveryPorts ports = discovery_ports(0);
+  EXPECT_EQ(ports.index_of(7410), 0U);
+  EXPECT_EQ(ports.index_of(7414), 2U);
+  for (const std::uint32_t other : {7400U, 7411U, 7650U}) EXPECT_FALSE(ports.index_of(other)) << other;
 }
 
 TEST(DiscoveryPorts, FullDomainIsRefused) {
@@ -144,7 +152,6 @@ TEST(DiscoveryPorts, LastDomainCanBeJoined) {
   NodeSettings settings;
   settings.name = "here";
   settings.domain = 232;
-  settings.localhost_only = true;
   EXPECT_NO_THROW(Node node(settings));
 }
 

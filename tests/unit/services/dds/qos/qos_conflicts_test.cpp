@@ -64,24 +64,6 @@ TEST(QosConflicts, MatchWhenMoreIsOfferedThanRequested) {
   EXPECT_EQ(conflicts(offered, requested), "");
 }
 
-TEST(LineLimit, WritesOneLineASecondAndCountsTheRest) {
-  const LineLimit::Time begin{};
-  LineLimit limit;
-  EXPECT_EQ(limit.offer("a", begin), "a");
-  EXPECT_EQ(limit.due(begin + 2s), std::nullopt);
-
-  EXPECT_EQ(limit.offer("b", begin + 10s), "b");
-  EXPECT_EQ(limit.offer("c", begin + 10s), std::nullopt);
-  EXPECT_EQ(limit.due(begin + 10900ms), std::nullopt);
-  EXPECT_EQ(limit.due(begin + 11s), "c");
-
-  EXPECT_EQ(limit.offer("d", begin + 11100ms), std::nullopt);
-  EXPECT_EQ(limit.offer("e", begin + 11200ms), std::nullopt);
-  EXPECT_EQ(limit.offer("f", begin + 11300ms), std::nullopt);
-  EXPECT_EQ(limit.due(begin + 12s), "f (and 2 more in the last second)");
-  EXPECT_EQ(limit.due(begin + 20s), std::nullopt);
-}
-
 class LineSink final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   explicit LineSink(Inbox<std::string>& lines) : lines_(lines) {}
@@ -115,7 +97,6 @@ class QosConflictLog : public testing::Test {
     NodeSettings settings;
     settings.name = name;
     settings.domain = lock_.domain();
-    settings.localhost_only = true;
     return settings;
   }
 
@@ -170,18 +151,6 @@ TEST_F(QosConflictLog, IncludesALateSubscriber) {
   EXPECT_TRUE(is_logged({"rt/kl1/actuator_command: 'talker' (", "is not received", policies})) << all_lines();
   EXPECT_TRUE(is_logged({"rt/kl1/actuator_command: 'listener' (", "does not receive", policies}))
       << all_lines();
-}
-
-TEST_F(QosConflictLog, IsLimitedToOneLineASecond) {
-  const auto publisher = talker_.publish(topics::kImu);
-  std::vector<Subscription> subscriptions;
-  subscriptions.reserve(5);
-  for (int i = 0; i < 5; ++i)
-    subscriptions.push_back(listener_.subscribe<msg::Imu>(kReliableImu, [](const msg::Imu&) {}));
-
-  EXPECT_TRUE(is_logged({"does not receive from this process", "(and 3 more in the last second)"}))
-      << all_lines();
-  EXPECT_EQ(count(lines_.items(), {"does not receive from this process"}), 2) << all_lines();
 }
 
 TEST_F(QosConflictLog, OmitsEndpointsThatMatch) {
