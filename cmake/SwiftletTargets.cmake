@@ -136,7 +136,7 @@ if(SWIFTLET_PRECOMPILED_HEADERS)
 endif()
 
 # Headers are included as <swiftlet/FOLDER/...> in the build tree and after installation.
-set(SWIFTLET_HEADER_FOLDERS math plant control record identification io simulation services ground)
+set(SWIFTLET_HEADER_FOLDERS math plant control record identification io simulation services ground analysis)
 set(SWIFTLET_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
 foreach(folder IN LISTS SWIFTLET_HEADER_FOLDERS)
   file(MAKE_DIRECTORY ${SWIFTLET_INCLUDE_DIR}/swiftlet)

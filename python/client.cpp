@@ -9,8 +9,8 @@
 #include "bindings.hpp"
 
 #include "swiftlet/ground/client/context.hpp"
+#include "swiftlet/ground/client/topic_stream.hpp"
 #include "swiftlet/ground/client/vehicle.hpp"
-#include "swiftlet/ground/recording/topic_stream.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/record/mcap/signal_arrays.hpp"
 

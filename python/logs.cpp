@@ -4,7 +4,7 @@
 
 #include "bindings.hpp"
 
-#include "swiftlet/ground/logs/flight_log_files.hpp"
+#include "swiftlet/analysis/logs/flight_log_files.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
 #include "swiftlet/record/mcap/series.hpp"
 #include "swiftlet/record/mcap/signal_arrays.hpp"

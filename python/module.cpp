@@ -6,7 +6,7 @@
 #include "bindings.hpp"
 
 #include "swiftlet/ground/client/client.hpp"
-#include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/io/command_line/command.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/program_directory.hpp"
 

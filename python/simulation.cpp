@@ -14,9 +14,9 @@
 #include "swiftlet/ground/batch/batch.hpp"
 #include "swiftlet/ground/batch/batch_report.hpp"
 #include "swiftlet/ground/client/vehicle_setpoints.hpp"
-#include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/ground/flight/in_process_flight.hpp"
 #include "swiftlet/ground/flight/recorded_flight.hpp"
+#include "swiftlet/io/command_line/command.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/simulation/open_loop.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <fmt/core.h>
 
+#include "swiftlet/analysis/pages/page.hpp"
 #include "swiftlet/ground/batch/batch_plot.hpp"
-#include "swiftlet/ground/pages/page.hpp"
 #include "swiftlet/io/format.hpp"
 
 namespace swiftlet::ground {

@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/ground/plot/gnuplot.hpp"
+#include "swiftlet/analysis/plot/gnuplot.hpp"
 #include "swiftlet/io/format.hpp"
 
 namespace swiftlet::ground {

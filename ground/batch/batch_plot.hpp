@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include "swiftlet/analysis/plot/figure.hpp"
 #include "swiftlet/ground/batch/batch_report.hpp"
-#include "swiftlet/ground/plot/figure.hpp"
 
 namespace swiftlet::ground {
 

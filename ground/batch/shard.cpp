@@ -9,8 +9,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/io/atomic_write.hpp"
+#include "swiftlet/io/command_line/command.hpp"
 #include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::ground {

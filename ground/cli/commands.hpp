@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/io/command_line/command.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,7 +1,7 @@
 #include <cstdio>
 
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/programs.hpp"
+#include "swiftlet/io/command_line/programs.hpp"
 
 namespace swiftlet::ground {
 

@@ -7,7 +7,7 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
 #include "swiftlet/ground/cli/fly_vehicles.hpp"
-#include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/ground/client/network_options.hpp"
 #include "swiftlet/ground/flight/launch_configuration.hpp"
 #include "swiftlet/io/text.hpp"
 #include "swiftlet/plant/model/airframe.hpp"

@@ -12,7 +12,6 @@
 
 #include "swiftlet/ground/cli/live_view.hpp"
 #include "swiftlet/ground/cli/preflight.hpp"
-#include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/ground/fleet/fleet_watch.hpp"
 #include "swiftlet/ground/flight/attached_vehicle.hpp"
 #include "swiftlet/ground/flight/flight_outcome.hpp"
@@ -21,6 +20,7 @@
 #include "swiftlet/ground/flight/process_flight.hpp"
 #include "swiftlet/ground/flight/process_group.hpp"
 #include "swiftlet/ground/terminal/fleet_progress.hpp"
+#include "swiftlet/io/command_line/command.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/discovery/sole_source.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/flight/launch_configuration.hpp"
-#include "swiftlet/ground/terminal/progress.hpp"
+#include "swiftlet/io/command_line/progress.hpp"
 
 namespace swiftlet::ground {
 

@@ -11,8 +11,8 @@
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/client/context.hpp"
 #include "swiftlet/ground/client/controllers.hpp"
+#include "swiftlet/ground/client/network_options.hpp"
 #include "swiftlet/ground/client/silence.hpp"
-#include "swiftlet/ground/command_line/network_options.hpp"
 #include "swiftlet/ground/terminal/state_lines.hpp"
 #include "swiftlet/services/dds/reach.hpp"
 

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "swiftlet/ground/command_line/installation.hpp"
-#include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/ground/client/network_options.hpp"
+#include "swiftlet/io/command_line/installation.hpp"
 
 namespace swiftlet::ground {
 namespace {

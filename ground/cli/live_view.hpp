@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "swiftlet/ground/command_line/child_process.hpp"
+#include "swiftlet/io/command_line/child_process.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::ground {

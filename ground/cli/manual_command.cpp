@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/programs.hpp"
 #include "swiftlet/io/atomic_write.hpp"
+#include "swiftlet/io/command_line/programs.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -10,7 +10,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/ground/client/network_options.hpp"
 #include "swiftlet/services/messages/vehicle_names.hpp"
 
 namespace swiftlet::ground {

@@ -10,9 +10,9 @@
 
 #include "swiftlet/ground/cli/await_actions.hpp"
 #include "swiftlet/ground/client/action.hpp"
+#include "swiftlet/ground/client/network_options.hpp"
 #include "swiftlet/ground/client/vehicle.hpp"
-#include "swiftlet/ground/command_line/command.hpp"
-#include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/io/command_line/command.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::ground {

@@ -7,8 +7,8 @@
 #include <fmt/core.h>
 
 #include "swiftlet/ground/cli/fly_options.hpp"
-#include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/ground/flight/attached_vehicle.hpp"
+#include "swiftlet/io/command_line/command.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"

@@ -13,7 +13,7 @@
 #include "swiftlet/ground/cli/fly_options.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
-#include "swiftlet/ground/terminal/progress_line.hpp"
+#include "swiftlet/io/command_line/progress_line.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/flight_csv.hpp"

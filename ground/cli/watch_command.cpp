@@ -6,7 +6,7 @@
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/client/connection_watch.hpp"
-#include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/ground/client/network_options.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/terminal/terminal_screen.hpp"
 #include "swiftlet/ground/terminal/watch_screen.hpp"

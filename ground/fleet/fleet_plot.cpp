@@ -7,7 +7,7 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/ground/plot/path_figure.hpp"
+#include "swiftlet/analysis/plot/path_figure.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -1,8 +1,8 @@
 // The picture of a checked fleet.
 #pragma once
 
+#include "swiftlet/analysis/plot/figure.hpp"
 #include "swiftlet/ground/fleet/fleet_check.hpp"
-#include "swiftlet/ground/plot/figure.hpp"
 
 namespace swiftlet::ground {
 

@@ -10,7 +10,7 @@
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/fleet/fleet_monitor.hpp"
 #include "swiftlet/ground/fleet/order_sender.hpp"
-#include "swiftlet/ground/terminal/progress.hpp"
+#include "swiftlet/io/command_line/progress.hpp"
 #include "swiftlet/services/dds/periodic_task.hpp"
 
 namespace swiftlet::ground {

@@ -11,7 +11,7 @@
 
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/fleet/order_execution.hpp"
-#include "swiftlet/ground/terminal/progress.hpp"
+#include "swiftlet/io/command_line/progress.hpp"
 
 namespace swiftlet::ground {
 

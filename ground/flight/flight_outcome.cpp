@@ -8,8 +8,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/ground/command_line/command.hpp"
-#include "swiftlet/ground/report/flight_files.hpp"
+#include "swiftlet/analysis/report/flight_files.hpp"
+#include "swiftlet/io/command_line/command.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
 
 namespace swiftlet::ground {

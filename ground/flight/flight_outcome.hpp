@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "swiftlet/ground/report/flight_report.hpp"
-#include "swiftlet/ground/terminal/progress_line.hpp"
+#include "swiftlet/analysis/report/flight_report.hpp"
+#include "swiftlet/io/command_line/progress_line.hpp"
 #include "swiftlet/record/evaluation.hpp"
 
 namespace swiftlet::ground {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <functional>
 
+#include "swiftlet/analysis/report/flight_report.hpp"
 #include "swiftlet/ground/flight/launch_configuration.hpp"
-#include "swiftlet/ground/report/flight_report.hpp"
 #include "swiftlet/record/flight.hpp"
 #include "swiftlet/record/flight_trace.hpp"
 #include "swiftlet/simulation/closed_loop.hpp"

@@ -8,12 +8,12 @@
 #include <fmt/ranges.h>
 
 #include "swiftlet/control/planning/checks.hpp"
-#include "swiftlet/ground/command_line/command.hpp"
-#include "swiftlet/ground/command_line/installation.hpp"
-#include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/ground/client/network_options.hpp"
 #include "swiftlet/ground/flight/flight_inputs.hpp"
 #include "swiftlet/ground/mission/mission_check.hpp"
 #include "swiftlet/ground/mission/shifted_mission.hpp"
+#include "swiftlet/io/command_line/command.hpp"
+#include "swiftlet/io/command_line/installation.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"

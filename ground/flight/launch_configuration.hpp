@@ -9,11 +9,11 @@
 
 #include <Eigen/Core>
 
+#include "swiftlet/analysis/report/flight_report.hpp"
 #include "swiftlet/control/types/settings.hpp"
-#include "swiftlet/ground/command_line/child_process.hpp"
 #include "swiftlet/ground/flight/record_folder.hpp"
 #include "swiftlet/ground/mission/pace.hpp"
-#include "swiftlet/ground/report/flight_report.hpp"
+#include "swiftlet/io/command_line/child_process.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"

@@ -7,7 +7,7 @@
 
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/flight/start_barrier.hpp"
-#include "swiftlet/ground/terminal/progress.hpp"
+#include "swiftlet/io/command_line/progress.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/services/clocks/clock_client.hpp"
 #include "swiftlet/services/runtime/clock.hpp"

@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "swiftlet/analysis/report/flight_report.hpp"
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/flight/launch_configuration.hpp"
 #include "swiftlet/ground/flight/message_record.hpp"
 #include "swiftlet/ground/flight/process_group.hpp"
 #include "swiftlet/ground/flight/start_barrier.hpp"
-#include "swiftlet/ground/report/flight_report.hpp"
-#include "swiftlet/ground/terminal/progress.hpp"
+#include "swiftlet/io/command_line/progress.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::ground {

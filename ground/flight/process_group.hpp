@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "swiftlet/ground/command_line/child_process.hpp"
+#include "swiftlet/io/command_line/child_process.hpp"
 
 namespace swiftlet::ground {
 

@@ -14,7 +14,7 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/io/command_line/command.hpp"
 
 namespace swiftlet::ground {
 namespace {

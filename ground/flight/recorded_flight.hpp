@@ -3,9 +3,9 @@
 
 #include <functional>
 
+#include "swiftlet/analysis/report/flight_report.hpp"
 #include "swiftlet/ground/flight/launch_configuration.hpp"
-#include "swiftlet/ground/report/flight_report.hpp"
-#include "swiftlet/ground/terminal/progress.hpp"
+#include "swiftlet/io/command_line/progress.hpp"
 #include "swiftlet/record/flight.hpp"
 
 namespace swiftlet::ground {

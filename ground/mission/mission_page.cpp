@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <fmt/core.h>
 
-#include "swiftlet/ground/pages/flight_page.hpp"
+#include "swiftlet/analysis/pages/flight_page.hpp"
 #include "swiftlet/math/angles.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 

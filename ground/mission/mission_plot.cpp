@@ -7,8 +7,8 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/ground/plot/gnuplot.hpp"
-#include "swiftlet/ground/plot/path_figure.hpp"
+#include "swiftlet/analysis/plot/gnuplot.hpp"
+#include "swiftlet/analysis/plot/path_figure.hpp"
 #include "swiftlet/io/format.hpp"
 #include "swiftlet/math/angles.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"

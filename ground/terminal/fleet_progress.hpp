@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "swiftlet/ground/terminal/progress.hpp"
-#include "swiftlet/ground/terminal/progress_line.hpp"
+#include "swiftlet/io/command_line/progress.hpp"
+#include "swiftlet/io/command_line/progress_line.hpp"
 
 namespace swiftlet::ground {
 

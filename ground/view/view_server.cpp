@@ -24,7 +24,7 @@
 #include <boost/beast/websocket.hpp>
 #include <fmt/core.h>
 
-#include "swiftlet/ground/pages/live_page.hpp"
+#include "swiftlet/analysis/pages/live_page.hpp"
 #include "swiftlet/ground/view/access.hpp"
 #include "swiftlet/ground/view/found_vehicles.hpp"
 #include "swiftlet/ground/view/live_topics.hpp"

@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/analysis/tuning/delay_design.hpp"
 #include "swiftlet/ground/cli/analysis/level_gains.hpp"
-#include "swiftlet/ground/tuning/delay_design.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"

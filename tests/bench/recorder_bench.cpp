@@ -18,11 +18,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/ground/command_line/child_process.hpp"
+#include "swiftlet/analysis/logs/flight_log_files.hpp"
 #include "swiftlet/ground/flight/in_process_flight.hpp"
 #include "swiftlet/ground/flight/simulated_recorder.hpp"
-#include "swiftlet/ground/logs/flight_log_files.hpp"
-#include "swiftlet/ground/recording/topic_publishers.hpp"
+#include "swiftlet/ground/replay/topic_publishers.hpp"
+#include "swiftlet/io/command_line/child_process.hpp"
 #include "swiftlet/io/temporary_folder.hpp"
 #include "swiftlet/record/mcap/reader.hpp"
 #include "swiftlet/record/recorder/flight_recorder.hpp"

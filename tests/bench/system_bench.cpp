@@ -19,7 +19,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/client/client.hpp"
-#include "swiftlet/ground/command_line/child_process.hpp"
+#include "swiftlet/io/command_line/child_process.hpp"
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/runtime/process.hpp"

@@ -22,7 +22,7 @@ GROWTH = 0.05
 GROWTH_ELSEWHERE = 0.20
 SAME_SPEED = 0.1
 LEAST_REFERENCE_S = 1.0
-ROOMS = ["math", "plant", "control", "record", "identification", "io", "simulation", "idl", "services", "ground", "python", "tests"]
+ROOMS = ["math", "plant", "control", "record", "identification", "io", "simulation", "idl", "services", "ground", "analysis", "python", "tests"]
 TARGETS = {"first flight": "fly", "all programs": "programs", "quick tests": "quick_tests", "all tests": "tests"}
 
 

@@ -10,8 +10,8 @@
 
 #include "swiftlet/ground/batch/batch_page.hpp"
 #include "swiftlet/ground/batch/batch_plot.hpp"
-#include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/io/atomic_write.hpp"
+#include "swiftlet/io/command_line/command.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "swiftlet/ground/batch/batch_report.hpp"
-#include "swiftlet/ground/terminal/progress_line.hpp"
+#include "swiftlet/io/command_line/progress_line.hpp"
 
 namespace swiftlet::ground {
 

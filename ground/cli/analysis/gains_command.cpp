@@ -8,7 +8,7 @@
 #include "swiftlet/ground/batch/gains_report.hpp"
 #include "swiftlet/ground/cli/analysis/level_gains.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/programs.hpp"
+#include "swiftlet/io/command_line/programs.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/io/command_line/command.hpp"
 #include "swiftlet/plant/model/control_level.hpp"
 
 namespace swiftlet::ground {

@@ -5,11 +5,11 @@
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
-#include "swiftlet/ground/command_line/programs.hpp"
 #include "swiftlet/ground/mission/mission_page.hpp"
 #include "swiftlet/ground/mission/mission_plot.hpp"
 #include "swiftlet/ground/mission/pace.hpp"
 #include "swiftlet/io/atomic_write.hpp"
+#include "swiftlet/io/command_line/programs.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"

@@ -10,15 +10,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/analysis/pages/flight_page.hpp"
+#include "swiftlet/analysis/pages/recorded/process_logs.hpp"
+#include "swiftlet/analysis/pages/recorded/recorded_flight.hpp"
+#include "swiftlet/analysis/report/flight_comparison.hpp"
+#include "swiftlet/analysis/report/recorded_flights.hpp"
 #include "swiftlet/ground/cli/analysis/log/log_commands.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/programs.hpp"
-#include "swiftlet/ground/pages/flight_page.hpp"
-#include "swiftlet/ground/pages/recorded/process_logs.hpp"
-#include "swiftlet/ground/pages/recorded/recorded_flight.hpp"
-#include "swiftlet/ground/report/flight_comparison.hpp"
-#include "swiftlet/ground/report/recorded_flights.hpp"
 #include "swiftlet/io/atomic_write.hpp"
+#include "swiftlet/io/command_line/programs.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
 
 namespace swiftlet::ground {

@@ -14,10 +14,10 @@
 #include "swiftlet/ground/cli/analysis/batch_output.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
-#include "swiftlet/ground/command_line/programs.hpp"
 #include "swiftlet/ground/flight/flight_outcome.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
-#include "swiftlet/ground/terminal/progress_line.hpp"
+#include "swiftlet/io/command_line/programs.hpp"
+#include "swiftlet/io/command_line/progress_line.hpp"
 #include "swiftlet/io/format.hpp"
 
 namespace swiftlet::ground {

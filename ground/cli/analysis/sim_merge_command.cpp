@@ -7,9 +7,9 @@
 #include "swiftlet/ground/batch/shard.hpp"
 #include "swiftlet/ground/cli/analysis/batch_output.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/programs.hpp"
 #include "swiftlet/ground/flight/record_folder.hpp"
-#include "swiftlet/ground/terminal/progress_line.hpp"
+#include "swiftlet/io/command_line/programs.hpp"
+#include "swiftlet/io/command_line/progress_line.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/programs.hpp"
+#include "swiftlet/io/command_line/programs.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"

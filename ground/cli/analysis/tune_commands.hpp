@@ -1,7 +1,7 @@
 // The subcommands of `swiftlet tune`.
 #pragma once
 
-#include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/io/command_line/command.hpp"
 
 namespace swiftlet::ground {
 

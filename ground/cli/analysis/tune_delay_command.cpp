@@ -8,14 +8,14 @@
 
 #include <fmt/core.h>
 
+#include "swiftlet/analysis/tuning/delay_design.hpp"
 #include "swiftlet/control/design/flown_loops.hpp"
 #include "swiftlet/ground/cli/analysis/level_gains.hpp"
 #include "swiftlet/ground/cli/analysis/tune_commands.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
-#include "swiftlet/ground/command_line/output_files.hpp"
-#include "swiftlet/ground/tuning/delay_design.hpp"
 #include "swiftlet/io/atomic_write.hpp"
+#include "swiftlet/io/command_line/output_files.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/edit_yaml.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"

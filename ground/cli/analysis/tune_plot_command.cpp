@@ -9,11 +9,11 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/analysis/tuning/tuning_figure.hpp"
+#include "swiftlet/analysis/tuning/tuning_table.hpp"
 #include "swiftlet/ground/cli/analysis/tune_commands.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/output_files.hpp"
-#include "swiftlet/ground/tuning/tuning_figure.hpp"
-#include "swiftlet/ground/tuning/tuning_table.hpp"
+#include "swiftlet/io/command_line/output_files.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"

@@ -1,5 +1,5 @@
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/programs.hpp"
+#include "swiftlet/io/command_line/programs.hpp"
 
 namespace swiftlet::ground {
 

@@ -16,7 +16,7 @@
 #include "swiftlet/ground/cli/check/operator_dialog.hpp"
 #include "swiftlet/ground/cli/check/sample_recorder.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/ground/client/network_options.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/vehicle_check/commands.hpp"
 #include "swiftlet/ground/vehicle_check/hand_motion.hpp"

@@ -3,7 +3,7 @@
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fleet/fleet_commands.hpp"
-#include "swiftlet/ground/command_line/programs.hpp"
+#include "swiftlet/io/command_line/programs.hpp"
 
 namespace swiftlet::ground {
 

@@ -10,7 +10,7 @@
 #include "swiftlet/ground/cli/fleet/fleet_commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
 #include "swiftlet/ground/cli/fly_vehicles.hpp"
-#include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/ground/client/network_options.hpp"
 #include "swiftlet/ground/fleet/fleet_check.hpp"
 #include "swiftlet/ground/fleet/fleet_watch.hpp"
 #include "swiftlet/io/configuration.hpp"

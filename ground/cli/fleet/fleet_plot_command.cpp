@@ -2,10 +2,10 @@
 #include <memory>
 #include <string>
 
+#include "swiftlet/analysis/plot/gnuplot.hpp"
 #include "swiftlet/ground/cli/fleet/fleet_commands.hpp"
 #include "swiftlet/ground/fleet/fleet_check.hpp"
 #include "swiftlet/ground/fleet/fleet_plot.hpp"
-#include "swiftlet/ground/plot/gnuplot.hpp"
 #include "swiftlet/io/configuration.hpp"
 
 namespace swiftlet::ground {

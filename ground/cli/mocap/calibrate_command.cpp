@@ -18,7 +18,7 @@
 #include "swiftlet/ground/cli/mocap/flight_calibration.hpp"
 #include "swiftlet/ground/cli/mocap/mocap_commands.hpp"
 #include "swiftlet/ground/cli/mocap/recorded_motion.hpp"
-#include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/ground/client/network_options.hpp"
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/text_file.hpp"

@@ -14,7 +14,7 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/mocap/body_statistics.hpp"
 #include "swiftlet/ground/cli/mocap/mocap_commands.hpp"
-#include "swiftlet/ground/command_line/programs.hpp"
+#include "swiftlet/io/command_line/programs.hpp"
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/mocap/sources/source.hpp"
 #include "swiftlet/services/mocap/sources/source_options.hpp"

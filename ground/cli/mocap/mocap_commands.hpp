@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/io/command_line/command.hpp"
 #include "swiftlet/services/mocap/sources/source.hpp"
 #include "swiftlet/services/mocap/sources/source_options.hpp"
 #include "swiftlet/services/runtime/stop_signal.hpp"

@@ -11,9 +11,9 @@
 
 #include <fmt/core.h>
 
+#include "swiftlet/analysis/logs/flight_log_files.hpp"
 #include "swiftlet/ground/cli/check/sample_recorder.hpp"
 #include "swiftlet/ground/cli/mocap/mocap_commands.hpp"
-#include "swiftlet/ground/logs/flight_log_files.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"

@@ -15,7 +15,7 @@
 #include <fmt/core.h>
 
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/programs.hpp"
+#include "swiftlet/io/command_line/programs.hpp"
 #include "swiftlet/io/network/host_address.hpp"
 #include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/services/dds/discovery/discovery_server.hpp"

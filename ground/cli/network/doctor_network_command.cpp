@@ -9,7 +9,7 @@
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/network/network_findings.hpp"
-#include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/ground/client/network_options.hpp"
 #include "swiftlet/io/network/host_address.hpp"
 
 namespace swiftlet::ground {

@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/programs.hpp"
+#include "swiftlet/io/command_line/programs.hpp"
 #include "swiftlet/services/runtime/version.hpp"
 
 int main(int argc, char** argv) {

@@ -14,14 +14,14 @@
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
-#include "swiftlet/ground/command_line/programs.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/teleop/input_device.hpp"
 #include "swiftlet/ground/teleop/key_sticks.hpp"
 #include "swiftlet/ground/teleop/teleop.hpp"
-#include "swiftlet/ground/terminal/progress_line.hpp"
 #include "swiftlet/ground/terminal/state_lines.hpp"
 #include "swiftlet/ground/terminal/terminal_screen.hpp"
+#include "swiftlet/io/command_line/programs.hpp"
+#include "swiftlet/io/command_line/progress_line.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -9,10 +9,10 @@
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/client/context.hpp"
-#include "swiftlet/ground/command_line/network_options.hpp"
-#include "swiftlet/ground/command_line/programs.hpp"
+#include "swiftlet/ground/client/network_options.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/view/view_server.hpp"
+#include "swiftlet/io/command_line/programs.hpp"
 #include "swiftlet/services/messages/vehicle_names.hpp"
 
 namespace swiftlet::ground {

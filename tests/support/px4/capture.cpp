@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "swiftlet/ground/logs/compressed_file.hpp"
+#include "swiftlet/analysis/logs/compressed_file.hpp"
 #include "swiftlet/io/byte_reader.hpp"
 #include "swiftlet/io/mocap/capture_file.hpp"
 #include "swiftlet/services/dds/datagram/submessage.hpp"

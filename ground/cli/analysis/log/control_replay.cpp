@@ -16,10 +16,10 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/ground/command_line/installation.hpp"
 #include "swiftlet/ground/flight/process_group.hpp"
-#include "swiftlet/ground/recording/topic_publishers.hpp"
+#include "swiftlet/ground/replay/topic_publishers.hpp"
 #include "swiftlet/io/atomic_write.hpp"
+#include "swiftlet/io/command_line/installation.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/temporary_folder.hpp"
 #include "swiftlet/record/mcap/attached_file.hpp"

@@ -7,7 +7,7 @@
 #include <functional>
 #include <string>
 
-#include "swiftlet/ground/recording/log_diff.hpp"
+#include "swiftlet/analysis/logs/log_diff.hpp"
 #include "swiftlet/record/mcap/reader.hpp"
 
 namespace swiftlet::ground {

@@ -4,8 +4,8 @@
 
 #include "swiftlet/ground/cli/analysis/log/log_commands.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/output_files.hpp"
-#include "swiftlet/ground/command_line/programs.hpp"
+#include "swiftlet/io/command_line/output_files.hpp"
+#include "swiftlet/io/command_line/programs.hpp"
 #include "swiftlet/math/time.hpp"
 
 namespace swiftlet::ground {

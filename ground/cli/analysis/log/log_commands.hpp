@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/io/command_line/command.hpp"
 #include "swiftlet/record/mcap/reader.hpp"
 
 namespace swiftlet::ground {

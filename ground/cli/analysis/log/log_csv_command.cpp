@@ -1,8 +1,8 @@
 #include <memory>
 
+#include "swiftlet/analysis/logs/flight_csv.hpp"
+#include "swiftlet/analysis/logs/log_table.hpp"
 #include "swiftlet/ground/cli/analysis/log/log_commands.hpp"
-#include "swiftlet/ground/recording/flight_csv.hpp"
-#include "swiftlet/ground/recording/log_table.hpp"
 #include "swiftlet/io/csv_writer.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
 

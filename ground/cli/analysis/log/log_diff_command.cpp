@@ -6,8 +6,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/analysis/logs/log_diff.hpp"
 #include "swiftlet/ground/cli/analysis/log/log_commands.hpp"
-#include "swiftlet/ground/recording/log_diff.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -7,8 +7,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/analysis/logs/log_table.hpp"
 #include "swiftlet/ground/cli/analysis/log/log_commands.hpp"
-#include "swiftlet/ground/recording/log_table.hpp"
 #include "swiftlet/record/mcap/reader.hpp"
 
 namespace swiftlet::ground {

@@ -2,9 +2,9 @@
 
 #include <fmt/core.h>
 
+#include "swiftlet/analysis/logs/log_table.hpp"
+#include "swiftlet/analysis/logs/npz_writer.hpp"
 #include "swiftlet/ground/cli/analysis/log/log_commands.hpp"
-#include "swiftlet/ground/recording/log_table.hpp"
-#include "swiftlet/ground/recording/npz_writer.hpp"
 #include "swiftlet/record/mcap/signal_arrays.hpp"
 
 namespace swiftlet::ground {

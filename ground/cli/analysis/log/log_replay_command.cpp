@@ -9,10 +9,10 @@
 
 #include "swiftlet/ground/cli/analysis/log/control_replay.hpp"
 #include "swiftlet/ground/cli/analysis/log/log_commands.hpp"
-#include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/ground/client/network_options.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
-#include "swiftlet/ground/recording/log_replay.hpp"
-#include "swiftlet/ground/terminal/progress_line.hpp"
+#include "swiftlet/ground/replay/log_replay.hpp"
+#include "swiftlet/io/command_line/progress_line.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
 #include "swiftlet/services/dds/discovery/sole_source.hpp"

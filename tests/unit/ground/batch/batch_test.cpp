@@ -12,8 +12,8 @@
 
 #include "swiftlet/ground/batch/batch_plot.hpp"
 #include "swiftlet/ground/batch/batch_report.hpp"
-#include "swiftlet/ground/command_line/child_process.hpp"
 #include "swiftlet/ground/flight/in_process_flight.hpp"
+#include "swiftlet/io/command_line/child_process.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "tests/support/hop_mission.hpp"

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/io/command_line/command.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -8,9 +8,9 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/ground/flight/flight_inputs.hpp"
 #include "swiftlet/ground/flight/in_process_flight.hpp"
+#include "swiftlet/io/command_line/command.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/ground/flight/launch_configuration.hpp"
+#include "swiftlet/io/command_line/command.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::ground::record_folder_test {

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/analysis/identify/bench_files.hpp"
 #include "swiftlet/control/design/control_design.hpp"
 #include "swiftlet/ground/flight/in_process_flight.hpp"
-#include "swiftlet/ground/identify/bench_files.hpp"
 #include "swiftlet/identification/bench/bench.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/ground/tuning/delay_design.hpp"
+#include "swiftlet/analysis/tuning/delay_design.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/simulation_file.hpp"

@@ -15,7 +15,7 @@
 #include "swiftlet/math/rotation_vector.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 #include "tests/support/campaign.hpp"
-#include "tests/unit/ground/identify/identified_flights.hpp"
+#include "tests/unit/analysis/identify/identified_flights.hpp"
 
 namespace swiftlet::ground::flight_calibration_test {
 

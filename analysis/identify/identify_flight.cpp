@@ -1,0 +1,124 @@
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "swiftlet/analysis/identify/flight_identification_report.hpp"
+#include "swiftlet/analysis/identify/identify_actions.hpp"
+#include "swiftlet/analysis/identify/identify_ulog.hpp"
+#include "swiftlet/analysis/logs/flight_log_files.hpp"
+#include "swiftlet/io/atomic_write.hpp"
+#include "swiftlet/io/command_line/output_files.hpp"
+#include "swiftlet/io/command_line/progress_line.hpp"
+#include "swiftlet/io/configuration.hpp"
+#include "swiftlet/io/format.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/io/settings/vehicle_writer.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Base {
+  fs::path file;
+  bool assumed;  // neither given nor found in a record
+};
+
+// The base vehicle: --base, else that of the record around the log, else kaylion.
+Base base_of(const IdentifyFlightOptions& options) {
+  if (!options.base.empty())
+    return {runtime::configuration_file(runtime::kinds::kVehicle, options.base), false};
+  const fs::path log = options.logs.front();
+  const fs::path record_vehicle = (fs::is_directory(log) ? log : log.parent_path()) / "vehicle.yaml";
+  if (fs::is_regular_file(record_vehicle)) return {record_vehicle, false};
+  return {runtime::configuration_file(runtime::kinds::kVehicle, "kaylion"), true};
+}
+
+}  // namespace
+
+int identify_flight(IdentifyFlightOptions options) {
+  std::vector<fs::path> inputs;
+  for (const std::string& log : options.logs) {
+    for (const fs::path& file : files_of(log)) inputs.push_back(file);
+  }
+  const auto [base_path, is_assumed] = base_of(options);
+  if (is_ulog(options.logs.front()))
+    return identify_ulog(options, runtime::load_vehicle(base_path.string()), base_path.stem().string());
+  inputs.push_back(base_path);
+  refuse_overwriting({{"--out", options.out}, {"--report", options.report}}, inputs);
+  const plant::Vehicle base = runtime::load_vehicle(base_path.string());
+  FlightIdentificationReport report;
+  report.logs = options.logs;
+  report.base_vehicle = options.base.empty() ? base_path.string() : options.base;
+  if (is_assumed)
+    report.assumptions.push_back("the base vehicle is " + base.name +
+                                 ": --base is not given, and the log is not part of a record");
+
+  ProgressLine progress;
+  const auto started = std::chrono::steady_clock::now();
+  int iterations = 0;
+  options.fit.progress = [&](const std::string& what) {
+    ++iterations;
+    if (std::chrono::steady_clock::now() - started > kProgressAfter)
+      progress.update(0, fmt::format("{}, iteration {}", what.c_str(), iterations));
+  };
+  std::vector<identification::FlightLog> logs;
+  for (const std::string& file : options.logs) {
+    ReadFlightLog read = read_flight_log(file, base, options.axes, options.vehicle);
+    for (const std::string& assumption : read.assumptions)
+      report.assumptions.push_back(options.logs.size() > 1 ? file + ": " + assumption : assumption);
+    logs.push_back(std::move(read.log));
+  }
+  try {
+    report.found = identification::identify_flight(logs, base, options.fit);
+  } catch (const identification::BadData& fault) {
+    throw InputError(fault.what());
+  }
+  progress.close();
+  plant::Vehicle& vehicle = report.found.vehicle;
+  if (!options.out.empty())
+    vehicle.name = options.name.empty() ? fs::path(options.out).stem().string() : options.name;
+
+  if (options.json) {
+    std::printf("%s\n", flight_identification_json(report).c_str());
+  } else {
+    std::printf("%s", flight_identification_table(report).c_str());
+  }
+  if (!options.report.empty())
+    runtime::write_atomically(options.report, flight_identification_page(report).html());
+  if (!report.found.converged)
+    throw std::runtime_error(options.out.empty() ? "the fit did not converge within its bounds"
+                                                 : "the fit did not converge within its bounds: " +
+                                                       options.out + " is not written");
+  if (!options.out.empty()) {
+    if (report.found.uncertainty.parameters.empty())
+      throw std::runtime_error("no parameter is identifiable, see above: " + options.out + " is not written");
+    for (const plant::Violation& broken : plant::validate(vehicle)) {
+      throw InputError("the identified vehicle cannot fly: " + broken.key + ": " + broken.message +
+                       "; parameters that are not identified are those of " + report.base_vehicle);
+    }
+    runtime::VehicleSources sources = runtime::load_vehicle_sources(base_path.string());
+    for (const auto& [key, source] : report.found.sources) sources[key] = source;
+    const std::string text = runtime::vehicle_text(
+        vehicle, sources, report.found.uncertainty,
+        "Identified by `swiftlet identify flight`; parameters that were not identified are those of " +
+            base.name + ". Frame: Forward-Right-Down, origin at the centre of mass.");
+    runtime::parse_vehicle(text, options.out);
+    runtime::write_atomically(options.out, text);
+  }
+  std::string wrote;
+  for (const std::string& file : {options.out, options.report}) {
+    if (!file.empty()) wrote += (wrote.empty() ? "; wrote " : " and ") + file;
+  }
+  std::fprintf(stderr, "swiftlet: %s identified from %s%s\n",
+               counted(report.found.uncertainty.parameters.size(), "parameter").c_str(),
+               counted(logs.size(), "flight").c_str(), wrote.c_str());
+  return kDone;
+}
+
+}  // namespace swiftlet::ground

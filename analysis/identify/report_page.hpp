@@ -1,0 +1,26 @@
+// Common parts of the reports of identifications.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "swiftlet/analysis/pages/page.hpp"
+#include "swiftlet/identification/fitting/estimate.hpp"
+
+namespace swiftlet::ground {
+
+// A unit, "V*s^2/rad^2", with superscript 2 and centred dots, UTF-8.
+std::string written_unit(const std::string& unit);
+
+// The same for a cell of a table: empty for the unit 1.
+std::string unit_cell(const std::string& unit);
+
+// Keys: parameter, symbol, value, standard_error, interval_95, unit.
+nlohmann::ordered_json json_of(const identification::ParameterEstimate& estimate);
+
+// Adds a table with a row for each estimate.
+void add_estimates(pages::Page& page, const std::vector<identification::ParameterEstimate>& estimates);
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,15 @@
+// The logs of the processes of a flight, swiftlet-plant.log and so on, which `swiftlet fly` writes beside flight.mcap.
+#pragma once
+
+#include <filesystem>
+
+#include "swiftlet/analysis/pages/flight_log.hpp"
+
+namespace swiftlet::pages {
+
+// Adds the lines of the logs in a folder that fall into the flight as events. Their times of day are those of this
+// computer's zone. A flight in simulated time gets none: its logs have the times of the wall clock. Throws ConfigError if a
+// log cannot be read.
+void add_process_logs(const std::filesystem::path& folder, FlightLog& flight);
+
+}  // namespace swiftlet::pages

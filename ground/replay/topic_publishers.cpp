@@ -1,0 +1,42 @@
+#include "swiftlet/ground/replay/topic_publishers.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <type_traits>
+
+#include "swiftlet/services/dds/payload.hpp"
+#include "swiftlet/services/messages/all_topics.hpp"
+
+namespace swiftlet::ground {
+
+TopicPublishers::TopicPublishers(comms::Node& node, const std::set<std::string>& names) {
+  comms::for_each_topic([&](const auto& topic) {
+    using Message = typename std::decay_t<decltype(topic)>::Message;
+    if (names.count(topic.name) == 0) return;
+    const auto publisher = std::make_shared<comms::Publisher<Message>>(node.publish(topic));
+    topics_[topic.name] = {
+        [publisher] { return publisher->matched() > 0; },
+        [publisher](mcap::ByteView payload) {
+          Message message;
+          return comms::from_payload(payload.data, payload.size, message) && publisher->publish(message);
+        },
+        [publisher](std::chrono::milliseconds timeout) { return publisher->wait_until_received(timeout); }};
+  });
+}
+
+bool TopicPublishers::matched() const {
+  return std::all_of(topics_.begin(), topics_.end(),
+                     [](const auto& topic) { return topic.second.matched(); });
+}
+
+bool TopicPublishers::publish(const std::string& name, mcap::ByteView payload) {
+  const auto topic = topics_.find(name);
+  return topic != topics_.end() && topic->second.publish(payload);
+}
+
+bool TopicPublishers::wait_until_received(const std::string& name, std::chrono::milliseconds timeout) {
+  const auto topic = topics_.find(name);
+  return topic == topics_.end() || topic->second.wait_until_received(timeout);
+}
+
+}  // namespace swiftlet::ground

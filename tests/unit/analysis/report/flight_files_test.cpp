@@ -1,0 +1,102 @@
+#include "swiftlet/analysis/report/flight_files.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/io/command_line/child_process.hpp"
+#include "tests/support/program_path.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::ground::flight_files_test {
+
+namespace fs = std::filesystem;
+
+class FlightFilesTest : public testing::Test {
+ protected:
+  tests::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
+};
+
+std::string text_of(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+// Truth at 500 Hz, and a reference with every fifth sample up to `last_reference`.
+record::Flight flown(int count, int last_reference) {
+  record::Flight flight;
+  for (int i = 0; i < count; ++i) {
+    record::TruthRow truth;
+    truth.stamp_ns = 1'000'000'000 + i * 2'000'000LL;
+    truth.position_ned = {0.5 + 0.001 * i, 0.25, -1.0};
+    truth.rotor_count = 4;
+    truth.rotor_speeds = {1600, 1601, 1602, 1603};
+    truth.supply_voltage_v = 4.1;
+    flight.truth.push_back(truth);
+    if (i % 5 != 0 || i > last_reference) continue;
+    record::ReferenceRow reference;
+    reference.stamp_ns = truth.stamp_ns;
+    reference.mode = 4;
+    reference.position_ned = {0.501 + 0.001 * i, 0.25, -1.0};
+    reference.acceleration_ned = {0.0, 0.0, 0.25};
+    reference.q_ned_from_frd = {0.8, 0.6, 0.0, 0.0};
+    reference.thrust_n = 0.4;
+    reference.moment_frd = {0.001, 0.002, 0.003};
+    flight.reference.push_back(reference);
+  }
+  return flight;
+}
+
+TEST_F(FlightFilesTest, DrawsAPicture) {
+  ASSERT_FALSE(find_program("gnuplot").empty()) << "install the packages of packages.txt";
+  const record::Window window = {1'000'000'000, 3'000'000'000};
+  FlightReport report;
+  report.mission = "it's_a 'square'";  // must be escaped for gnuplot
+  report.duration_s = 2.0;
+  EXPECT_EQ(draw_flight(folder_, flown(1000, 1000), report, window), "");
+  std::ifstream picture(folder_ / "flight.png", std::ios::binary);
+  std::string magic(8, '\0');
+  picture.read(magic.data(), 8);
+  EXPECT_EQ(magic, "\x89PNG\r\n\x1a\n");
+  EXPECT_GT(fs::file_size(folder_ / "flight.png"), 20'000U);
+  EXPECT_TRUE(fs::exists(folder_ / "flight.gp")) << "kept to draw the picture again";
+}
+
+// The script contains the data that it draws.
+TEST_F(FlightFilesTest, DrawsPositionsPathAndErrors) {
+  FlightReport report;
+  report.mission = "square";
+  report.vehicle = "kaylion";
+  report.control = "motor_lag";
+  report.errors.rms_3d_m = 0.001;
+  report.errors.peak_3d_m = 0.0047;
+  draw_flight(folder_, flown(30, 10), report, {1'010'000'000, 1'100'000'000});
+  const std::string script = text_of(folder_ / "flight.gp");
+  for (const char* const part :
+       {"'square - kaylion, motor_lag: 3-D error RMS 1.0 mm, peak 4.7 mm over 0 s - NOT completed'",
+        "'north x (m)'", "'east y (m)'", "'down z (m)'", "'error, flown - reference (mm)'", "'time (s)'",
+        "'plan view'", "'height -z (m)'", "title 'flown'", "title 'reference'", "title '3-D'",
+        "\n0.01 0.51 0\n",               // north over time, of the truth
+        "\n0.01 0.511 0\n",              // and of the reference
+        "\n0.04 0.525 0\n",              // also without a reference
+        "\n0.25 0.51 1\n",               // east, north, height
+        "EOD\n0 -1 0\n0.01 -1 0\nEOD"})  // north errors, mm, in the window alone
+    EXPECT_NE(script.find(part), std::string::npos) << part << "\n" << script;
+}
+
+TEST_F(FlightFilesTest, ReportsWhyNoPictureIsDrawn) {
+  const tests::ProgramPath empty(folder_);
+  EXPECT_EQ(draw_flight(folder_, {}, {}, {}),
+            "no picture was drawn: gnuplot is not installed (flight.gp draws it)");
+}
+
+TEST_F(FlightFilesTest, ThrowsWhenTheFolderIsMissing) {
+  EXPECT_THROW(write_report_json(folder_ / "gone" / "report.json", {}), std::runtime_error);
+}
+
+}  // namespace swiftlet::ground::flight_files_test
