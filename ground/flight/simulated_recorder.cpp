@@ -188,37 +188,18 @@ void SimulatedRecorder::write_changes() {
 
 void SimulatedRecorder::write_status(const control::Status& status) {
   status_ns_ = loop_.plant.stamp_ns();
-  comms::msg::ControlStatus message;
-  message.wire_version(comms::kWireVersion);
+  comms::msg::ControlStatus message = comms::to_message(status, loop_.controller.gains(), failsafe_);
   message.stamp_ns(status_ns_);
   message.sequence_number(++status_sequence_);
-  message.mode(static_cast<std::uint8_t>(status.mode));
-  message.reason_code(static_cast<std::uint8_t>(status.reason));
-  message.reason() = control::to_string(status.reason);
-  message.airborne(status.airborne);
-  message.has_pose(status.has_pose);
-  message.pose_age_s(status.pose_age_s);
-  message.supply_voltage_v(status.supply_voltage_v);
-  message.low_battery_voltage_v(failsafe_.low_battery_voltage);
-  message.critical_battery_voltage_v(failsafe_.critical_battery_voltage);
-  message.saturated(status.saturated);
   message.rate_hz(loop_.imu_rate_hz);
-  message.control_level(plant::ControlLevels(status.level).bits());
-  message.settings() = status.settings.data();
-  message.gains_progress(status.gains_progress);
-  message.gains(comms::to_message(loop_.controller.gains()));
   write(topics::kControlStatus, message, status_ns_);
 }
 
 void SimulatedRecorder::write_mission(const control::Status& status) {
   mission_ns_ = loop_.plant.stamp_ns();
-  comms::msg::MissionStatus message;
+  comms::msg::MissionStatus message = comms::to_message(status.mission);
   message.stamp_ns(mission_ns_);
   message.sequence_number(++mission_sequence_);
-  message.mission_id(status.mission.id);
-  message.state(static_cast<std::uint8_t>(status.mission.state));
-  message.item_index(static_cast<std::uint32_t>(std::max(status.mission.item_index, 0)));
-  message.item_count(static_cast<std::uint32_t>(std::max(status.mission.item_count, 0)));
   if (is_over(status.mission.state)) {
     message.reason_code(static_cast<std::uint8_t>(status.reason));
     message.reason() = control::to_string(status.reason);

@@ -191,14 +191,10 @@ const DelayMonitor::Report& Telemetry::update_delay() {
 
 void Telemetry::publish_status() {
   const control::Status& status = last_.status;
-  comms::msg::ControlStatus message;
-  message.wire_version(comms::kWireVersion);
+  comms::msg::ControlStatus message = comms::to_message(status, last_.gains, thresholds_);
   message.stamp_ns(last_.stamp_ns);
   message.sequence_number(++status_count_);
-  message.mode(static_cast<std::uint8_t>(status.mode));
-  message.reason_code(static_cast<std::uint8_t>(status.reason));
   message.reason() = reason_text(status.reason);
-  message.airborne(status.airborne);
   // The controller's own age of the pose stands still while no IMU sample arrives.
   const double pose_age_s = status.pose_age_s + (ages_.imu_s > kImuSilence_s ? ages_.imu_s : 0.0);
   message.has_pose(status.has_pose && pose_age_s <= thresholds_.mocap_timeout_s);
@@ -207,9 +203,6 @@ void Telemetry::publish_status() {
   message.mocap_age_s(ages_.pose_s);
   message.battery_age_s(ages_.battery_s);
   message.source_conflict() = source_conflict_.c_str();
-  message.supply_voltage_v(status.supply_voltage_v);
-  message.low_battery_voltage_v(thresholds_.low_battery_voltage);
-  message.critical_battery_voltage_v(thresholds_.critical_battery_voltage);
   message.saturated(saturated_);
   message.cycles(last_.timing.cycles);
   message.deadline_misses(last_.timing.deadline_misses);
@@ -218,7 +211,6 @@ void Telemetry::publish_status() {
   message.period_jitter_p50_us(static_cast<double>(last_.timing.jitter_p50_ns) * 1e-3);
   message.period_jitter_p99_us(static_cast<double>(last_.timing.jitter_p99_ns) * 1e-3);
   message.period_jitter_max_us(static_cast<double>(last_.timing.jitter_max_ns) * 1e-3);
-  message.ground_links(static_cast<std::uint8_t>(status.ground_links));
   message.setpoints_accepted(last_.setpoints.accepted);
   message.setpoints_refused(last_.setpoints.refused);
   message.setpoint_refusal() = last_.setpoints.refusal.reason;
@@ -228,16 +220,7 @@ void Telemetry::publish_status() {
   message.delay_margin_s(delay.margin_s);
   message.delay_near_margin(delay.near_margin);
   message.realtime_scheduling(realtime_);
-  message.control_level(plant::ControlLevels(status.level).bits());
-  message.estimate_source(status.odometry.in_force ? comms::msg::ControlStatus_Constants::ESTIMATE_OF_VEHICLE
-                                                   : comms::msg::ControlStatus_Constants::ESTIMATE_OF_MOCAP);
-  message.odometry_distance_m(status.odometry.distance_m);
-  message.odometry_angle_rad(status.odometry.angle_rad);
-  message.odometry_resets(status.odometry.resets);
   message.controller(controller_);
-  message.settings() = status.settings.data();
-  message.gains_progress(status.gains_progress);
-  message.gains(comms::to_message(last_.gains));
   const control::RequestStatuses& requests = last_.requests;
   message.request() = comms::to_message(requests.back());
   for (std::size_t i = 0; i < message.earlier_requests().size(); ++i)
@@ -249,14 +232,9 @@ void Telemetry::publish_status() {
 }
 
 void Telemetry::publish_mission() {
-  const control::MissionProgress& mission = last_.status.mission;
-  comms::msg::MissionStatus message;
+  comms::msg::MissionStatus message = comms::to_message(last_.status.mission);
   message.stamp_ns(last_.stamp_ns);
   message.sequence_number(++mission_count_);
-  message.mission_id(mission.id);
-  message.state(static_cast<std::uint8_t>(mission.state));
-  message.item_index(static_cast<std::uint32_t>(std::max(mission.item_index, 0)));
-  message.item_count(static_cast<std::uint32_t>(std::max(mission.item_count, 0)));
   message.reason_code(mission_end_code_);
   message.reason() = mission_end_;
   missions_.publish(message);

@@ -12,7 +12,9 @@
 #include "swiftlet/control/types/gains.hpp"
 #include "swiftlet/control/types/mission.hpp"
 #include "swiftlet/control/types/polynomial.hpp"
+#include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/control/types/request.hpp"
+#include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/control/types/settings_request.hpp"
 #include "swiftlet/plant/model/samples.hpp"
 #include "swiftlet/plant/model/vehicle_command.hpp"
@@ -86,6 +88,10 @@ msg::Trajectory to_message(const control::Trajectory& in);
 msg::ControlSettings to_message(const control::SettingsRequest& in);
 msg::ControlGains to_message(const control::ControlGains& in);
 msg::RequestStatus to_message(const control::RequestStatus& in);
+// What the status of a controller says, without stamp, number, and what only its process knows: timing, links, requests.
+msg::ControlStatus to_message(const control::Status& in, const control::ControlGains& gains,
+                              const control::FailsafeSettings& thresholds);
+msg::MissionStatus to_message(const control::MissionProgress& in);
 // RequestStatus::ended_by, and likewise in ControllerState.
 std::uint8_t kind_of_end(const control::RequestStatus& in);
 
