@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "swiftlet/services/messages/convert.hpp"
-#include "swiftlet/services/messages/wire_version.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
