@@ -8,11 +8,11 @@
 #include "swiftlet/io/command_line/command.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/flat_yaml.hpp"
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/record/evaluation.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
 #include "swiftlet/record/mcap/attached_file.hpp"
-#include "swiftlet/services/runtime/split_text.hpp"
 
 namespace swiftlet::ground {
 namespace {
