@@ -1,6 +1,7 @@
 #include "swiftlet/ground/client/controllers.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <tuple>
 
 #include "swiftlet/ground/client/connection_watch.hpp"
@@ -22,7 +23,7 @@ LiveControllers controllers_of(const View& view, Clock::time_point now) {
   for (const auto& [number, latest] : view.controllers) {
     if (latest.age_s(now) >= kStateSilence_s) continue;
     const bool active = latest.message.role() == msg::ControllerState_Constants::ACTIVE;
-    live.known.push_back({number, active, latest.message});
+    live.known.push_back({number, active, std::make_shared<const msg::ControllerState>(latest.message)});
   }
   const std::uint64_t reporting = is_connected(view, now) ? view.control.message.controller() : 0;
   const bool listed = std::any_of(live.known.begin(), live.known.end(),

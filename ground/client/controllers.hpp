@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include "swiftlet/ground/client/client.hpp"
@@ -12,7 +12,7 @@ namespace swiftlet::ground {
 struct LiveController {
   std::uint64_t number = 0;
   bool active = false;
-  std::optional<msg::ControllerState> state{};  // unset while it answers no IMU samples
+  std::shared_ptr<const msg::ControllerState> state{};  // null while it answers no IMU samples
 };
 
 struct LiveControllers {

@@ -69,13 +69,10 @@ void ScriptedPx4::run() {
   runtime::PeriodicTimer timer(Px4Simulation::kPeriodNs, 10 * Px4Simulation::kPeriodNs);
   while (!stop_) {
     timer.wait();
-    Px4Messages messages;
-    plant::TruthSample truth;
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      messages = simulation_.advance(stamp_us());
-      truth = simulation_.truth();
-    }
+    std::unique_lock<std::mutex> lock(mutex_);
+    Px4Messages messages = simulation_.advance(stamp_us());
+    const plant::TruthSample truth = simulation_.truth();
+    lock.unlock();
     publish(std::move(messages), truth);
   }
 }
