@@ -24,6 +24,7 @@
 #include "swiftlet/ground/replay/topic_publishers.hpp"
 #include "swiftlet/io/command_line/child_process.hpp"
 #include "swiftlet/io/temporary_folder.hpp"
+#include "swiftlet/record/file/flight_reader.hpp"
 #include "swiftlet/record/mcap/reader.hpp"
 #include "swiftlet/record/recorder/flight_recorder.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
