@@ -9,7 +9,7 @@
 namespace swiftlet::pages {
 namespace {
 
-constexpr int kCompressionLevel = 5;
+constexpr int kCompressionLevel = 2;
 constexpr double kMicrosecondsPerS = 1e6;
 
 std::string base64(const std::vector<std::uint8_t>& bytes) {

@@ -243,7 +243,12 @@ void SimulatedRecorder::request(const control::Request& request, const control::
 }
 
 std::string SimulatedRecorder::finish() {
-  attempt([&] { file_.close(); });
+  std::uint64_t messages = 0;
+  for (const auto& [channel, count] : counts_) messages += count;
+  attempt([&] {
+    file_.write(record::counts_metadata({{"received", messages}, {"dropped", 0}, {"lost", 0}}));
+    file_.close();
+  });
   return fault_;
 }
 

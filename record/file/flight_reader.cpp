@@ -308,7 +308,10 @@ std::map<std::string, Flight> read(const mcap::Reader& file, const std::set<std:
   std::map<std::string, Flight> flights;
   for (const std::string& vehicle : vehicles) flights[vehicle];
   if (selection.topics.empty()) return flights;
-  std::map<std::string, Series> all = mcap::read_series(file, selection);
+  const auto is_of_message = [](const mcap::Column& column) {
+    return column.name.find('.') == std::string::npos;  // not of one inside it
+  };
+  std::map<std::string, Series> all = mcap::read_series(file, selection, is_of_message);
   for (auto at = all.begin(); at != all.end(); at = all.erase(at)) {  // its memory serves the next one
     const Series& series = at->second;
     const auto topic = topic_name(at->first);

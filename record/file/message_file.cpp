@@ -18,6 +18,12 @@ mcap::Metadata recorder_metadata(RecordClock clock) {
            {"time", clock == RecordClock::kVehicle ? "vehicle" : "wall"}}};
 }
 
+mcap::Metadata counts_metadata(const std::map<std::string, std::uint64_t>& counts) {
+  mcap::Metadata metadata{kCountsMetadata, {}};
+  for (const auto& [name, count] : counts) metadata.values[name] = std::to_string(count);
+  return metadata;
+}
+
 MessageFile::MessageFile(std::filesystem::path file, mcap::WriterSettings settings, bool standard_messages)
     : file_(std::move(file), std::move(settings)), standard_messages_(standard_messages) {}
 

@@ -22,6 +22,10 @@ enum class RecordClock {
 // Metadata swiftlet/recorder: host, start, and the clock of the times.
 mcap::Metadata recorder_metadata(RecordClock clock);
 
+// Metadata swiftlet/counts, which a whole file has: messages received, dropped and lost, also of a topic ("lost /kl1/imu").
+constexpr const char* kCountsMetadata = "swiftlet/counts";
+mcap::Metadata counts_metadata(const std::map<std::string, std::uint64_t>& counts);
+
 // All functions throw std::runtime_error as mcap::Writer does.
 class MessageFile {
  public:

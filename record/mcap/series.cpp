@@ -27,6 +27,7 @@ Series::Series(std::string file, std::string topic, const std::vector<Column>& c
     : file_(std::move(file)),
       topic_(std::move(topic)),
       columns_(columns),
+      kept_(columns.size(), 1),
       numbers_(columns.size()),
       integers_(columns.size()),
       texts_(columns.size()) {
@@ -36,11 +37,16 @@ Series::Series(std::string file, std::string topic, const std::vector<Column>& c
   }
 }
 
+void Series::keep_only(const std::function<bool(const Column&)>& keeps) {
+  for (std::size_t i = 0; i < columns_.size(); ++i) kept_[i] = keeps(columns_[i]) ? 1 : 0;
+}
+
 void Series::reserve(std::size_t rows) {
   log_time_ns_.reserve(rows);
   publish_time_ns_.reserve(rows);
   if (stamp_column_ >= 0) stamp_ns_.reserve(rows);
   for (std::size_t i = 0; i < columns_.size(); ++i) {
+    if (kept_[i] == 0) continue;
     if (is_number(columns_[i].kind)) numbers_[i].reserve(rows);
     if (is_unsigned(columns_[i].kind)) integers_[i].reserve(rows);
   }
@@ -50,6 +56,7 @@ void Series::append(const Message& message, const std::vector<Value>& values) {
   log_time_ns_.push_back(message.log_time_ns);
   publish_time_ns_.push_back(message.publish_time_ns);
   for (std::size_t i = 0; i < columns_.size(); ++i) {
+    if (kept_[i] == 0) continue;
     if (const auto* const text = std::get_if<std::string>(&values[i])) {
       texts_[i].push_back(*text);
     } else {
@@ -125,7 +132,8 @@ std::size_t messages_of(const Reader& file, const std::string& topic) {
 
 }  // namespace
 
-std::map<std::string, Series> read_series(const Reader& file, const Selection& selection) {
+std::map<std::string, Series> read_series(const Reader& file, const Selection& selection,
+                                          const std::function<bool(const Column&)>& keeps) {
   Selection selected = selection;
   if (selected.topics.empty()) {
     const std::vector<std::string> all = decodable_topics(file);
@@ -135,15 +143,22 @@ std::map<std::string, Series> read_series(const Reader& file, const Selection& s
   std::map<std::string, Series> series;
   for (const std::string& topic : selected.topics) {
     const TopicDecoder& decoder = decoders.try_emplace(topic, file, topic).first->second;
-    series.try_emplace(topic, file.name(), topic, decoder.columns())
-        .first->second.reserve(messages_of(file, topic));
+    Series& one = series.try_emplace(topic, file.name(), topic, decoder.columns()).first->second;
+    if (keeps) one.keep_only(keeps);
+    one.reserve(messages_of(file, topic));
+  }
+  std::map<std::uint16_t, std::pair<TopicDecoder*, Series*>> of_channel;
+  for (const auto& [id, channel] : file.channels()) {
+    if (const auto found = decoders.find(channel.topic); found != decoders.end())
+      of_channel[id] = {&found->second, &series.at(channel.topic)};
   }
   Messages messages(file, selected);
   std::vector<Value> values;
   while (messages.next()) {
-    const std::string& topic = messages.channel().topic;
-    decoders.at(topic).decode(messages.message(), values);
-    series.at(topic).append(messages.message(), values);
+    const Message& message = messages.message();
+    const auto& [decoder, one] = of_channel.at(message.channel_id);
+    decoder->decode(message, values);
+    one->append(message, values);
   }
   return series;
 }

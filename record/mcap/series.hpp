@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -45,6 +46,8 @@ class Series {
   const std::vector<double>* find_numbers(const std::string& column) const;
   const std::vector<std::string>* find_texts(const std::string& column) const;
 
+  // Before the first row.
+  void keep_only(const std::function<bool(const Column&)>& keeps);
   void reserve(std::size_t rows);
   void append(const Message& message, const std::vector<Value>& values);
 
@@ -57,6 +60,7 @@ class Series {
   std::string file_;
   std::string topic_;
   std::vector<Column> columns_;
+  std::vector<char> kept_;  // by column: whether its values are kept
   int stamp_column_ = -1;
   std::vector<std::int64_t> log_time_ns_;
   std::vector<std::int64_t> publish_time_ns_;
@@ -67,8 +71,9 @@ class Series {
   std::vector<std::vector<std::string>> texts_;
 };
 
-// Reads the selected topics in one pass, without topics all that can be decoded. Throws ConfigError as TopicDecoder
-// does.
-std::map<std::string, Series> read_series(const Reader& file, const Selection& selection);
+// Reads the selected topics in one pass, without topics all that can be decoded. keeps: the columns to keep; of the others the
+// series have no values; empty: all. Throws ConfigError as TopicDecoder does.
+std::map<std::string, Series> read_series(const Reader& file, const Selection& selection,
+                                          const std::function<bool(const Column&)>& keeps = {});
 
 }  // namespace swiftlet::mcap

@@ -17,7 +17,6 @@ using namespace std::chrono_literals;
 
 constexpr auto kBatchPeriod = 100ms;
 constexpr auto kFlushPeriod = 500ms;
-constexpr const char* kCounts = "swiftlet/counts";
 constexpr const char* kClocks = "swiftlet/clocks";
 
 bool is_motion(const std::string& topic) {
@@ -183,17 +182,16 @@ void FlightRecorder::stop() {
 
 void FlightRecorder::write_counts() {
   const RecorderTotals sums = totals();
-  std::map<std::string, std::string> counts = {{"received", std::to_string(sums.received)},
-                                               {"dropped", std::to_string(sums.dropped)},
-                                               {"lost", std::to_string(sums.lost)}};
+  std::map<std::string, std::uint64_t> counts = {
+      {"received", sums.received}, {"dropped", sums.dropped}, {"lost", sums.lost}};
   {
     const std::lock_guard<std::mutex> lock(channels_mutex_);
     for (const auto& channel : channels_) {
-      if (channel->dropped > 0) counts["dropped " + channel->topic] = std::to_string(channel->dropped);
-      if (channel->lost > 0) counts["lost " + channel->topic] = std::to_string(channel->lost);
+      if (channel->dropped > 0) counts["dropped " + channel->topic] = channel->dropped;
+      if (channel->lost > 0) counts["lost " + channel->topic] = channel->lost;
     }
   }
-  add(mcap::Metadata{kCounts, counts});
+  add(counts_metadata(counts));
   std::map<std::string, std::string> clocks;
   for (const auto& vehicle : vehicles_) {
     if (vehicle->least_age_ns != std::numeric_limits<std::int64_t>::max())

@@ -50,14 +50,13 @@ def measure(options, folder):
                 if kind == "with":
                     recorder = subprocess.Popen([options.bin / "swiftlet", "record", "-o", folder / f"{number}.mcap", *domain],
                                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-                before = counts(options, domain)
                 swiftlet(options, "arm", *domain)
                 swiftlet(options, "mission", "fly", mission, *domain)
-                after = counts(options, domain)
+                flown = counts(options, domain)
                 if recorder is not None:
                     recorder.send_signal(signal.SIGINT)
                     recorder.wait()
-                late[kind].append((after[0] - before[0], after[1] - before[1]))
+                late[kind].append(flown)
         print("late by more than half a period, of all steps")
         for kind, flights in late.items():
             sums = [sum(values) for values in zip(*flights)]
@@ -75,7 +74,7 @@ def swiftlet(options, *words):
 
 
 def counts(options, domain):
-    """Late steps and steps of the controller since its start."""
+    """Late steps and steps of the controller since it was armed."""
     status = json.loads(swiftlet(options, "status", "--json", *domain))
     return status["control"]["deadline_misses"], status["control"]["cycles"]
 

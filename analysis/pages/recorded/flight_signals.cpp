@@ -41,10 +41,11 @@ class Rows {
       : table_(flight.tables[table]), zero_ns_(zero_ns) {}
 
   void begin(std::int64_t stamp_ns) {
+    next_ = 0;
     table_.time_s.push_back(static_cast<double>(stamp_ns - zero_ns_) / math::kNsPerS);
   }
   void add(const std::string& name, double value) {
-    std::vector<double>& column = table_.signals[name];
+    std::vector<double>& column = column_of(name);
     column.resize(table_.time_s.size() - 1, kNoValue);
     column.push_back(value);
   }
@@ -53,8 +54,19 @@ class Rows {
   }
 
  private:
+  // Most rows have the same columns in the same order, which are found without a search.
+  std::vector<double>& column_of(const std::string& name) {
+    if (next_ == columns_.size() || columns_[next_].first != name) {
+      columns_.resize(next_);
+      columns_.emplace_back(name, &table_.signals[name]);
+    }
+    return *columns_[next_++].second;
+  }
+
   SignalTable& table_;
   std::int64_t zero_ns_;
+  std::vector<std::pair<std::string, std::vector<double>*>> columns_;  // of the last row
+  std::size_t next_ = 0;
 };
 
 constexpr std::array<const char*, 3> kAxes = {"north", "east", "down"};

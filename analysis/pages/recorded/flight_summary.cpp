@@ -10,6 +10,7 @@
 #include "swiftlet/analysis/pages/recorded/flight_pieces.hpp"
 #include "swiftlet/record/evaluation.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
+#include "swiftlet/record/file/message_file.hpp"
 
 namespace swiftlet::pages {
 namespace {
@@ -109,7 +110,7 @@ std::string within_bounds(const FlightLog& flight, const char* table, const char
 }
 
 std::string counts(const mcap::Reader& file) {
-  const auto counted = record::metadata_of(file, "swiftlet/counts");
+  const auto counted = record::metadata_of(file, record::kCountsMetadata);
   const auto lost = counted.find("lost");
   const auto dropped = counted.find("dropped");
   if (lost == counted.end() || dropped == counted.end()) return "not counted: the recorder was killed";
