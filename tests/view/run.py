@@ -16,7 +16,7 @@ import sys
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
-ASSETS = HERE.parent.parent / "ground" / "pages" / "assets"
+ASSETS = HERE.parent.parent / "analysis" / "pages" / "assets"
 VEHICLES = "kl1,kl2"
 
 
