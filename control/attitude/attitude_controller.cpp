@@ -14,7 +14,6 @@ AttitudeController::AttitudeController(const plant::Vehicle& vehicle, const Atti
     : model_(settings.model),
       error_(settings.error),
       feed_forward_(settings.feed_forward),
-      rotor_lag_s_(design.rotor_lag_s),
       inertia_(vehicle.inertia),
       k_angle_(design.roll.k[0], design.pitch.k[0], design.yaw.k[0]),
       k_rate_(design.roll.k[1], design.pitch.k[1], design.yaw.k[1]),
@@ -34,11 +33,9 @@ Eigen::Vector3d AttitudeController::moments(const Eigen::Quaterniond& q_ned_from
   Eigen::Vector3d angle_error;
   Eigen::Vector3d rates_r = Eigen::Vector3d::Zero();
   Eigen::Vector3d accelerations_r = Eigen::Vector3d::Zero();
-  Eigen::Vector3d jerks_r = Eigen::Vector3d::Zero();
   if (feed_forward_) {
     rates_r = reference.body_rates;
     accelerations_r = reference.body_accelerations;
-    jerks_r = reference.body_jerks;
   }
   if (error_ == AttitudeErrorKind::kEulerAngles) {
     angle_error = euler_error(q_ned_from_frd, reference.body_z_ned, reference.heading.yaw_rad);
@@ -47,11 +44,9 @@ Eigen::Vector3d AttitudeController::moments(const Eigen::Quaterniond& q_ned_from
     angle_error = error.angle;
     rates_r = error.r_frd_from_reference * rates_r;
     accelerations_r = error.r_frd_from_reference * accelerations_r;
-    jerks_r = error.r_frd_from_reference * jerks_r;
   }
-  Eigen::Vector3d command =
+  const Eigen::Vector3d command =
       accelerations_r + k_angle_.cwiseProduct(angle_error) + k_rate_.cwiseProduct(rates_r - body_rates_frd);
-  if (model_ == AttitudeModel::kMotorLag) command += rotor_lag_s_ * jerks_r;
   return linearised(command, body_rates_frd, present_moment_frd, accelerations_r);
 }
 

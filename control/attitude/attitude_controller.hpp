@@ -18,7 +18,6 @@ struct AttitudeReference {
   // Feed-forward in the reference's own body axes. Leave at zero if not known.
   Eigen::Vector3d body_rates = Eigen::Vector3d::Zero();          // rad/s
   Eigen::Vector3d body_accelerations = Eigen::Vector3d::Zero();  // rad/s^2
-  Eigen::Vector3d body_jerks = Eigen::Vector3d::Zero();          // rad/s^3, leads the rotor lag (kMotorLag)
 };
 
 class AttitudeController {
@@ -31,9 +30,8 @@ class AttitudeController {
   //   u = J (k (reference - state) + feed forward) + omega x J omega, the last term as in Eq. (35)-(37).
   // The state is (error of attitude.error's kind, body rate), with Eq. (38)-(40) approximating (29)-(31).
   // With kMotorLag it also has the present angular acceleration, from present_moment_frd, the present moment
-  // of the rotors (unused otherwise). The feed-forward is alpha_r, with kMotorLag alpha_r + tau
-  // d(alpha_r)/dt, which compensates the lag; with kRotation it is rotated from the reference's axes into
-  // the body's.
+  // of the rotors (unused otherwise). The feed-forward is omega_r and alpha_r; with kRotation it is rotated from
+  // the reference's axes into the body's.
   //
   // Finite at every attitude. Inputs that are not finite give moments that are not finite, which Allocator
   // handles.
@@ -64,7 +62,6 @@ class AttitudeController {
   AttitudeModel model_;
   AttitudeErrorKind error_;
   bool feed_forward_;
-  double rotor_lag_s_;
   Eigen::Matrix3d inertia_;
   Eigen::Matrix3d inverse_inertia_;
   Eigen::Vector3d k_angle_, k_rate_, k_acceleration_;  // roll, pitch, yaw

@@ -212,7 +212,7 @@ void end_requests(SupervisorContext& context, const Transition& row) {
   }
 }
 
-void follow_requests(SupervisorContext& context, const Reference& reference) {
+void follow_requests(SupervisorContext& context, const Reference& reference, bool progress_due) {
   for (RequestStatus& request : context.state.requests) {
     if (!is_under_way(request)) continue;
     const bool begins = request.state == RequestState::kAccepted;
@@ -221,7 +221,7 @@ void follow_requests(SupervisorContext& context, const Reference& reference) {
       if (!begins) follow_gains(request, context.inputs.gains_progress);
       continue;
     }
-    request.progress = std::max(request.progress, progress(request, context));
+    if (progress_due || begins) request.progress = std::max(request.progress, progress(request, context));
     if (ends_at_rest(request.kind) && reference_rests(context.state) &&
         is_at_reference(context.estimate(), reference))
       succeed(request);

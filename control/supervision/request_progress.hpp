@@ -24,7 +24,7 @@ void note_accepted(SupervisorContext& context);
 // Ends the requests that this row ends; the row is that of a condition or a request.
 void end_requests(SupervisorContext& context, const Transition& row);
 
-// Updates progress and success in each step, after its row.
-void follow_requests(SupervisorContext& context, const Reference& reference);
+// Updates state and success in each step, after its row. Progress, which only reports show, is computed where it is due.
+void follow_requests(SupervisorContext& context, const Reference& reference, bool progress_due);
 
 }  // namespace swiftlet::control

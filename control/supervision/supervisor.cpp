@@ -9,6 +9,11 @@
 #include "swiftlet/control/supervision/request_progress.hpp"
 
 namespace swiftlet::control {
+namespace {
+
+constexpr std::int64_t kProgressPeriod_ns = 20'000'000;  // of requests: that of the telemetry that reports it
+
+}  // namespace
 
 Supervisor::Supervisor(const SupervisionSettings& settings)
     : settings_(settings), tip_over_cosine_(tip_over_cosine(settings.failsafe)) {}
@@ -37,7 +42,10 @@ ControlSetpoint Supervisor::step(const SupervisorInputs& inputs, ClientInputs& c
   if (link_answered && conditions.has(Event::kGroundLinkLost))
     forget_silent_ground_links(state_, settings_.failsafe);
   ControlSetpoint wanted = setpoint(inputs);
-  follow_requests(now, wanted.reference);
+  const bool progress_due =
+      state_.now_ns < progress_ns_ || state_.now_ns >= progress_ns_ + kProgressPeriod_ns;
+  if (progress_due) progress_ns_ = state_.now_ns;
+  follow_requests(now, wanted.reference, progress_due);
   return wanted;
 }
 

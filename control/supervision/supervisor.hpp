@@ -61,6 +61,7 @@ class Supervisor {
   double tip_over_cosine_;
   SupervisorState state_;
   FlownPlan plan_;
+  std::int64_t progress_ns_ = 0;  // when the progress of requests was computed
 };
 
 }  // namespace swiftlet::control

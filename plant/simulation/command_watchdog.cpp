@@ -71,18 +71,23 @@ CommandFault CommandWatchdog::accept(const VehicleCommand& command, std::int64_t
   const bool turns_off =
       header.rotor_state == RotorState::kOff && level_of(command) == ControlLevel::kActuators;
   if (!levels_.has(level_of(command)) && !turns_off) return CommandFault::kLevel;
-  const CommandFault content = std::visit([&](const auto& one) { return check(one); }, command);
+  const auto* const actuators = std::get_if<ActuatorCommand>(&command);
+  const CommandFault content = actuators != nullptr
+                                   ? check(*actuators)
+                                   : std::visit([&](const auto& one) { return check(one); }, command);
   if (content != CommandFault::kNone) return content;
   if (header.stamp_ns > now_ns) return CommandFault::kFuture;
   if (last_stamp_ns_ && header.stamp_ns < *last_stamp_ns_) return CommandFault::kStale;
   if (header.stamp_ns < now_ns - timeout_ns_) return CommandFault::kStale;
   if (header.term < header_of(command_).term && !expired(now_ns)) return CommandFault::kOvertaken;
   last_stamp_ns_ = header.stamp_ns;
-  command_ = command;
   idle_.state = header.rotor_state;
   motor_command_ = idle_;
-  if (const auto* actuators = std::get_if<ActuatorCommand>(&command)) {
+  if (actuators != nullptr) {
+    command_ = *actuators;
     std::copy_n(actuators->throttle.begin(), rotor_count_, motor_command_.throttle.begin());
+  } else {
+    command_ = command;
   }
   return CommandFault::kNone;
 }

@@ -37,12 +37,12 @@ std::optional<PoseSample> Mocap::update(std::int64_t stamp_ns, const Eigen::Vect
     count_ = 0;
   }
   if (events.exposes) {
-    in_flight_[(oldest_ + count_) % in_flight_.size()] = expose(stamp_ns, position_ned, q_ned_from_frd);
+    in_flight_[wrapped(oldest_ + count_)] = expose(stamp_ns, position_ned, q_ned_from_frd);
     ++count_;
   }
   if (!events.delivers) return std::nullopt;
   const PoseSample due = in_flight_[oldest_];
-  oldest_ = (oldest_ + 1) % in_flight_.size();
+  oldest_ = wrapped(oldest_ + 1);
   --count_;
   return due;
 }

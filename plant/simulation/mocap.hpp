@@ -39,6 +39,7 @@ class Mocap {
                     const Eigen::Quaterniond& q_ned_from_frd);
   Eigen::Vector3d error(RandomStream& noise) const;  // of unit bound (kBounded) or unit standard deviation
   bool in_dropout(std::int64_t stamp_ns);
+  std::size_t wrapped(std::size_t i) const { return i < in_flight_.size() ? i : i - in_flight_.size(); }
 
   MocapSettings settings_;
   MocapSchedule schedule_;

@@ -34,12 +34,12 @@ MocapSchedule::Events MocapSchedule::advance(std::int64_t stamp_ns) {
   events.exposes = next_exposure_ns_ <= stamp_ns && count_ < in_flight_.size();
   while (next_exposure_ns_ <= stamp_ns) next_exposure_ns_ += interval_ns();
   if (events.exposes) {
-    in_flight_[(oldest_ + count_) % in_flight_.size()] = stamp_ns;
+    in_flight_[wrapped(oldest_ + count_)] = stamp_ns;
     ++count_;
   }
   events.delivers = count_ > 0 && in_flight_[oldest_] + latency_ns_ <= stamp_ns;
   if (events.delivers) {
-    oldest_ = (oldest_ + 1) % in_flight_.size();
+    oldest_ = wrapped(oldest_ + 1);
     --count_;
     ++delivered_;
   }

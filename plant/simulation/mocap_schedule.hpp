@@ -33,6 +33,7 @@ class MocapSchedule {
  private:
   void start(std::int64_t stamp_ns);
   std::int64_t interval_ns();
+  std::size_t wrapped(std::size_t i) const { return i < in_flight_.size() ? i : i - in_flight_.size(); }
 
   MocapSettings settings_;
   std::uint64_t seed_;

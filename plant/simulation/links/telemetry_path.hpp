@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "swiftlet/plant/model/samples.hpp"
 #include "swiftlet/plant/simulation/links/radio.hpp"
@@ -24,30 +25,40 @@ struct TelemetryPacket {
 class TelemetryPath {
  public:
   TelemetryPath(const SimulationSettings& settings, std::uint64_t seed)
-      : packets_(settings, seed, streams::kRadioTelemetry) {}
+      : has_radio_(settings.radio.on()), packets_(settings, seed, streams::kRadioTelemetry) {}
 
-  bool has_radio() const { return packets_.on(); }
+  bool has_radio() const { return has_radio_; }
 
   // Call after each integration step, and once before the first: collects the samples, and sends them with one of the
   // IMU. obeyed: by the vehicle so far. odometry: that of this IMU sample, if the vehicle brings it in its place.
   void collect(const PlantSimulation& plant, const ObeyedCommand& obeyed,
                const std::optional<OdometrySample>& odometry) {
+    if (sent_) {
+      next_.battery.reset();
+      next_.rotor_speeds.reset();
+    }
     if (plant.battery()) next_.battery = plant.battery();
     if (plant.rotor_speeds()) next_.rotor_speeds = plant.rotor_speeds();
-    if (!plant.imu()) return;
+    sent_ = plant.imu().has_value();
+    arrived_ = sent_ && !has_radio();
+    if (!sent_) return;
     next_.imu = *plant.imu();
     next_.odometry = odometry;
     next_.obeyed = obeyed;
-    packets_.send(next_, plant.stamp_ns());
-    next_.battery.reset();
-    next_.rotor_speeds.reset();
+    if (has_radio()) packets_.send(next_, plant.stamp_ns());
   }
 
   // The next packet that has arrived and was not taken; null if there is none. Valid until the next collect().
-  const TelemetryPacket* take(std::int64_t now_ns) { return packets_.take(now_ns); }
+  const TelemetryPacket* take(std::int64_t now_ns) {
+    if (has_radio()) return packets_.take(now_ns);
+    return std::exchange(arrived_, false) ? &next_ : nullptr;
+  }
 
  private:
+  bool has_radio_;
   TelemetryPacket next_;
+  bool sent_ = false;     // next_, with the last collect()
+  bool arrived_ = false;  // next_, without a radio, and was not taken
   RadioLine<TelemetryPacket> packets_;
 };
 

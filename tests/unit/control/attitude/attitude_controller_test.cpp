@@ -145,15 +145,13 @@ TEST_P(AttitudeControllerTest, MomentsMatchTheControlLaw) {
       reference.heading = euler_r.z();
       reference.body_rates = any(3.0);
       reference.body_accelerations = any(20.0);
-      reference.body_jerks = any(300.0);
 
       const Matrix3d r = Law::matrix_of(euler);
       const bool turns = GetParam() == AttitudeErrorKind::kRotation;
       const Matrix3d turn = turns ? Matrix3d(r.transpose() * Law::matrix_of(euler_r)) : Matrix3d::Identity();
       const Vector3d accelerations_r = turn * reference.body_accelerations;
-      Vector3d command = accelerations_r + law.k_angle.cwiseProduct(law.angle_error(r, euler_r)) +
-                         law.k_rate.cwiseProduct(turn * reference.body_rates - rates);
-      if (model == AttitudeModel::kMotorLag) command += law.lag_s * (turn * reference.body_jerks);
+      const Vector3d command = accelerations_r + law.k_angle.cwiseProduct(law.angle_error(r, euler_r)) +
+                               law.k_rate.cwiseProduct(turn * reference.body_rates - rates);
       const Vector3d expected = law.moment(command, rates, present, accelerations_r);
       const Vector3d found = controlled.controller->moments(Quaterniond(r), rates, present, reference);
       ASSERT_LT((found - expected).norm(), 1e-7 * expected.norm()) << "trial " << trial;
@@ -207,7 +205,6 @@ TEST_P(AttitudeControllerTest, FeedForwardCanBeDisabled) {
   AttitudeReference moving = still;
   moving.body_rates = any(2.0);
   moving.body_accelerations = any(9.0);
-  moving.body_jerks = any(30.0);
   EXPECT_EQ(controlled.controller->moments(q, rates, Vector3d::Zero(), moving),
             controlled.controller->moments(q, rates, Vector3d::Zero(), still));
 }
@@ -273,32 +270,6 @@ TEST_P(AttitudeControllerTest, BringsALargeAttitudeErrorToRest) {
     EXPECT_LT(body.q.angularDistance(quaternion_from_euler(wanted)), 1e-3);
     EXPECT_LT(body.rates.norm(), 1e-3);
   }
-}
-
-TEST_P(AttitudeControllerTest, FeedForwardOfTheJerkCompensatesTheLag) {
-  // Pitch follows 0.3 sin(4 t): behind the lag of 82 ms alone it would be 0.3 rad late in phase.
-  const ControlledVehicle controlled(AttitudeModel::kMotorLag, GetParam());
-  const auto worst = [&](bool lead) {
-    constexpr double kStep = 5e-4;
-    constexpr double kSize = 0.3;
-    constexpr double kOmega = 4.0;
-    Body body;
-    double error = 0.0;
-    for (int i = 0; i < 12000; ++i) {
-      const double s = kSize * std::sin(kOmega * i * kStep);
-      const double c = kSize * std::cos(kOmega * i * kStep);
-      AttitudeReference reference = reference_at({0.0, s, 0.0});
-      reference.body_rates.y() = kOmega * c;
-      reference.body_accelerations.y() = -kOmega * kOmega * s;
-      if (lead) reference.body_jerks.y() = -kOmega * kOmega * kOmega * c;
-      if (i > 6000) error = std::max(error, std::abs(euler_angles(body.q).vector().y() - s));
-      body.step(controlled, controlled.controller->moments(body.q, body.rates, body.moment, reference),
-                kStep);
-    }
-    return error;
-  };
-  EXPECT_LT(worst(true), 2e-3);
-  EXPECT_GT(worst(false), 1e-2);
 }
 
 // Pitching through the vertical, the Euler angles phi and psi jump by half a turn.
