@@ -133,7 +133,7 @@ struct FlightController::Impl {
   SentCommands sent_commands;
   plant::VehicleCommand sent;  // the command at the level
   Reference reference;
-  Heading heading;  // of the reference's yaw
+  math::Heading heading;  // of the reference's yaw
   AttitudeSetpoint attitude_setpoint;
   Status status;
 };

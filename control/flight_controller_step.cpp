@@ -317,7 +317,7 @@ AttitudeDemand FlightController::Impl::descend_level(double speed) const {
   AttitudeDemand braking;
   braking.thrust_n = outer.thrust_n;
   braking.attitude.body_z_ned = outer.body_z_ned;
-  braking.attitude.heading = euler_angles(estimate.q_ned_from_frd).heading;
+  braking.attitude.heading = math::euler_angles(estimate.q_ned_from_frd).heading;
   return braking;
 }
 
@@ -328,7 +328,7 @@ AttitudeDemand FlightController::Impl::follow_direct_setpoint(const ControlSetpo
   const Eigen::Quaterniond& q = demand.rates_only ? estimate().q_ned_from_frd : setpoint.q_ned_from_frd;
   demand.thrust_n = setpoint.specific_thrust * carried_mass_kg();
   demand.attitude.body_z_ned = body_z(q);
-  demand.attitude.heading = euler_angles(q).heading;
+  demand.attitude.heading = math::euler_angles(q).heading;
   demand.attitude.body_rates = setpoint.body_rates_frd;
   return demand;
 }

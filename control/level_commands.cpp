@@ -45,7 +45,7 @@ plant::TrajectorySetpoint trajectory_command(const ControlSetpoint& setpoint, co
     wanted.acceleration_ned.z() = (1.0 - setpoint.lift_fraction) * plant::kGravity;
   } else if (setpoint.control_mode == ControlMode::kLevelDescent) {
     wanted.velocity_ned.z() = setpoint.descent_speed;
-    wanted.yaw_rad = euler_angles(estimate.q_ned_from_frd).heading.yaw_rad;
+    wanted.yaw_rad = math::euler_angles(estimate.q_ned_from_frd).heading.yaw_rad;
   } else {
     wanted.position_used = setpoint.control_mode == ControlMode::kFly;
     wanted.position_ned = reference.position_ned;
@@ -66,13 +66,13 @@ plant::VehicleCommand in_vehicle_frame(const plant::VehicleCommand& command, con
     trajectory->position_ned = source.position_in_vehicle(trajectory->position_ned);
     trajectory->velocity_ned = turn * trajectory->velocity_ned;
     trajectory->acceleration_ned = turn * trajectory->acceleration_ned;
-    trajectory->yaw_rad = wrap_angle(trajectory->yaw_rad + turn_rad);
+    trajectory->yaw_rad = math::wrap_angle(trajectory->yaw_rad + turn_rad);
   }
   return out;
 }
 
 plant::VehicleCommand idle_command(plant::ControlLevel level, const Estimate& estimate) {
-  const Heading now = euler_angles(estimate.q_ned_from_frd).heading;
+  const math::Heading now = math::euler_angles(estimate.q_ned_from_frd).heading;
   if (level == plant::ControlLevel::kRates) return plant::RatesSetpoint();
   if (level == plant::ControlLevel::kAttitude) {
     plant::AttitudeSetpoint upright;

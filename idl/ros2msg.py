@@ -159,7 +159,7 @@ def main(output, files):
     package, messages = parse_all(files)
     out = ['#include "swiftlet/services/messages/schemas.hpp"', "", f"namespace {package}::msg {{",
            *(f"class {name};" for name in sorted(messages)), f"}}  // namespace {package}::msg", "",
-           "namespace swiftlet::comms {", ""]
+           "namespace swiftlet::messages {", ""]
     fields = {f"{package}/msg/{name}": message.fields for name, message in messages.items()}
     for name, message in sorted(messages.items()):
         text = definition(package, messages, name)
@@ -169,7 +169,7 @@ def main(output, files):
                 f"                                           {message.stamp_offset},",
                 f'                                           "{type_hash(f"{package}/msg/{name}", fields)}"}};',
                 "  return kSchema;", "}", ""]
-    out += ["}  // namespace swiftlet::comms", ""]
+    out += ["}  // namespace swiftlet::messages", ""]
     Path(output).write_text("\n".join(out))
 
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <system_error>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 namespace fs = std::filesystem;
 
@@ -43,4 +43,4 @@ std::string write_fault(const fs::path& file, int error) {
          (error == 0 ? "" : ": " + std::generic_category().message(error));
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

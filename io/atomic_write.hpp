@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // Returns FILE.part, the name under which a file is written until it is complete; the file itself if it is a
 // device, a terminal or a pipe.
@@ -20,4 +20,4 @@ void write_atomically(const std::filesystem::path& file, const std::string& text
 // The sentence for a file that cannot be written. error: an errno.
 std::string write_fault(const std::filesystem::path& file, int error);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

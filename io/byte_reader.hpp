@@ -6,7 +6,7 @@
 #include <cstring>
 #include <string_view>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // A read beyond the end returns zeros and makes ok() false for good, so that a sequence of reads needs one check.
 class ByteReader {
@@ -87,4 +87,4 @@ class ByteReader {
   bool ok_ = true;
 };
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -16,7 +16,7 @@
 #include "swiftlet/io/text.hpp"
 #include "swiftlet/io/text_file.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 namespace {
 
@@ -509,4 +509,4 @@ ConfigNode load_config(const std::string& path) {
   return parse_config(read_text_file(path, kMaxBytes), path);
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -25,7 +25,7 @@
 
 #include "swiftlet/io/config_error.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // The valid range of a number. An open end excludes the bound itself.
 struct Bounds {
@@ -125,4 +125,4 @@ class ConfigNode {
 ConfigNode parse_config(std::string_view text, const std::string& file_name);
 ConfigNode load_config(const std::string& path);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -6,7 +6,7 @@
 
 #include "swiftlet/io/text_file.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // what() is one sentence: "FILE:LINE: KEY: is VALUE, must be LIMIT". It omits a line of 0 and an empty key,
 // and is printable().
@@ -32,4 +32,4 @@ class ConfigError : public std::runtime_error {
   std::string key_;
 };
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

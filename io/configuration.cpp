@@ -11,7 +11,7 @@
 #include "swiftlet/io/program_directory.hpp"
 #include "swiftlet/io/text_file.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 namespace fs = std::filesystem;
 
@@ -112,4 +112,4 @@ std::string description_of(const fs::path& file) {
   return printable(comment);
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

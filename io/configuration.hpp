@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // The folders that are searched for vehicles/, control/, missions/, in order: $SWIFTLET_CONFIG_DIR if it is
 // set, then, relative to the folder of the running executable, ../share/swiftlet/config (installed) and
@@ -51,4 +51,4 @@ std::filesystem::path configuration_file(const ConfigurationKind& kind, const st
 // The description in the file, else its first comment; "" if it has neither or cannot be read.
 std::string description_of(const std::filesystem::path& file);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

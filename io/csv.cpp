@@ -9,7 +9,7 @@
 #include "swiftlet/io/text.hpp"
 #include "swiftlet/io/text_file.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 namespace {
 
@@ -250,4 +250,4 @@ std::string exact(double number) {
   return {buffer.data(), result.ptr};
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

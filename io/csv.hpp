@@ -19,7 +19,7 @@
 
 #include "swiftlet/io/config.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 class CsvTable {
  public:
@@ -97,4 +97,4 @@ CsvTable parse_csv_as_headed(std::string_view text, const std::string& file_name
 // The shortest decimal that reads back as the same number.
 std::string exact(double number);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -8,7 +8,7 @@
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/csv.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 CsvWriter::CsvWriter(const std::filesystem::path& file, const std::vector<std::string>& columns)
     : path_(file), file_(std::fopen(unfinished_name(file).c_str(), "w")) {
@@ -36,7 +36,7 @@ CsvWriter& CsvWriter::fixed(double value, int decimals) {
 
 CsvWriter& CsvWriter::exact(double value) {
   separate();
-  row_ += runtime::exact(value);
+  row_ += io::exact(value);
   return *this;
 }
 
@@ -73,4 +73,4 @@ void CsvWriter::finish() {
   finish_file(path_);
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

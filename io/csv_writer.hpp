@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 class CsvWriter {
  public:
@@ -49,4 +49,4 @@ class CsvWriter {
   int error_ = 0;  // errno of the first row that could not be written
 };
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -9,7 +9,7 @@
 
 #include "swiftlet/io/config_error.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 namespace {
 
 struct Replacement {
@@ -82,4 +82,4 @@ std::string with_scalars(const std::string& text, const std::string& file_name,
   return out;
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

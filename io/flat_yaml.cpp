@@ -6,7 +6,7 @@
 
 #include "swiftlet/io/config_error.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 namespace {
 
 using Settings = std::vector<std::pair<std::string, std::string>>;
@@ -50,4 +50,4 @@ std::vector<std::pair<std::string, std::string>> flatten_yaml(std::string_view t
   return settings;
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // Returns pairs such as "position.x.omega_n" -> "2.0", in the order of the text. The elements of a list have
 // the keys key[0], key[1], ...; a list of scalars is one pair with the value "[1, 2, 3]". Values are as
@@ -14,4 +14,4 @@ namespace swiftlet::runtime {
 std::vector<std::pair<std::string, std::string>> flatten_yaml(std::string_view text,
                                                               const std::string& file_name);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // columns: of the first line. True also for records of older versions, whose columns have no units.
 inline bool is_flight_csv(const std::vector<std::string>& columns) {
@@ -15,4 +15,4 @@ inline bool is_flight_csv(const std::vector<std::string>& columns) {
   return has("mode") && (has("ref_x_ned [m]") || has("ref_px"));
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

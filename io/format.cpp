@@ -1,9 +1,9 @@
 #include "swiftlet/io/format.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 std::string counted(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

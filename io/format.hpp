@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <string>
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 // "1 flight", "2 flights". The plural of the noun must end in -s.
 std::string counted(std::size_t count, const std::string& noun);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

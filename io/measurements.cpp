@@ -9,7 +9,7 @@
 #include "swiftlet/io/text.hpp"
 #include "swiftlet/io/text_file.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 namespace {
 
@@ -267,4 +267,4 @@ Measurements load_measurements(const std::string& path, const std::vector<Quanti
   return parse_measurements(read_text_file(path), path, allowed);
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // The quantity of a column, and the unit of its values after reading. Throttle and pulse width share column
 // names; the unit distinguishes them.
@@ -86,4 +86,4 @@ Measurements parse_measurements(std::string_view text, const std::string& file_n
                                 const std::vector<Quantity>& allowed);
 Measurements load_measurements(const std::string& path, const std::vector<Quantity>& allowed);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -37,4 +37,4 @@ bool comes_before(std::string_view a, std::string_view b) {
   return a < b;  // "01" and "1"
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 namespace {
 
 constexpr std::size_t kLongestName = 100;
@@ -49,4 +49,4 @@ std::string or_nearest(const std::vector<std::string>& names, const std::string&
   return nearest.empty() ? "" : "; nearest is " + nearest;
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

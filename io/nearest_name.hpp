@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // The nearest of the names by edit distance, if `wanted` differs from it by few letters or is its beginning;
 // else "".
@@ -15,4 +15,4 @@ std::string did_you_mean(const std::vector<std::string>& names, const std::strin
 // "; nearest is hold_s", to follow a list in a sentence; "" if no name is near.
 std::string or_nearest(const std::vector<std::string>& names, const std::string& wanted);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -12,7 +12,7 @@
 #include "swiftlet/io/owner_only.hpp"
 #include "swiftlet/io/text_file.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 namespace {
 
 constexpr std::size_t kLargestKeyFile = 4096;  // bytes
@@ -77,4 +77,4 @@ void write_network_keys(const std::filesystem::path& file, const NetworkKeys& ke
   write_for_owner_only(file, text);
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 using NetworkKey = std::array<std::uint8_t, 32>;
 
@@ -25,4 +25,4 @@ NetworkKeys read_network_keys(const std::filesystem::path& file);
 // Writes the file as a whole, for its owner only. Throws std::runtime_error.
 void write_network_keys(const std::filesystem::path& file, const NetworkKeys& keys);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

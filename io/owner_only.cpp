@@ -11,7 +11,7 @@
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/config_error.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 namespace {
 
 constexpr mode_t kRightsOfOthers = S_IRWXG | S_IRWXO;
@@ -67,4 +67,4 @@ void write_for_owner_only(const std::filesystem::path& file, const std::string& 
   }
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // Throws ConfigError if the file cannot be found, or gives others than its owner any right.
 void require_owner_only(const std::filesystem::path& file);
@@ -16,4 +16,4 @@ void write_for_owner_only(const std::filesystem::path& file, const std::string& 
 // never writes to where a link leads.
 void write_unfinished_for_owner_only(const std::filesystem::path& file, const std::string& text);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -2,7 +2,7 @@
 
 #include <system_error>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 namespace {
 
 std::filesystem::path& chosen() {
@@ -20,4 +20,4 @@ std::filesystem::path program_directory() {
 
 void set_program_directory(const std::filesystem::path& folder) { chosen() = folder; }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

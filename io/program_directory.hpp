@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // The folder of the running executable, or that of set_program_directory(); empty if it is not known.
 std::filesystem::path program_directory();
@@ -12,4 +12,4 @@ std::filesystem::path program_directory();
 // library belongs to. Call it before other threads begin.
 void set_program_directory(const std::filesystem::path& folder);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

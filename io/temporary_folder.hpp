@@ -8,7 +8,7 @@
 #include <system_error>
 #include <utility>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // An empty folder for its owner only, named PREFIX.XXXXXX with six random characters. Removed with its contents at the
 // end, unless keep() was called.
@@ -40,4 +40,4 @@ class TemporaryFolder {
   bool kept_ = false;
 };
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // The text without the blanks at both ends.
 inline std::string_view trimmed(std::string_view text, std::string_view blanks = " \t") {
@@ -39,4 +39,4 @@ inline std::string joined(const std::vector<std::string>& texts, std::string_vie
 // No control character. Each byte of a UTF-8 character is printable.
 inline bool is_printable(char c) { return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f; }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

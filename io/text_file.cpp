@@ -10,7 +10,7 @@
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/text.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 namespace {
 
@@ -72,4 +72,4 @@ std::string read_text_file(const std::string& path, std::size_t max_bytes) {
   return text;
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

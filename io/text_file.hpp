@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // Throws ConfigError "FILE: cannot be read: REASON", or "is too large" if the file exceeds max_bytes.
 std::string read_text_file(const std::string& path, std::size_t max_bytes = std::size_t{256} << 20);
@@ -21,4 +21,4 @@ std::string printable(std::string_view text);
 // The line, from 1, of the first control character that no text file has; 0 if there is none.
 int line_of_control_character(std::string_view text);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

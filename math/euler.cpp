@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace swiftlet::control {
+namespace swiftlet::math {
 namespace {
 
 constexpr double kGimbalCosine = 1e-6;  // cos(theta) below which psi is set to 0
@@ -36,4 +36,4 @@ Eigen::Quaterniond quaternion_from_euler(const Eigen::Vector3d& euler_rad) {
          AngleAxisd(euler_rad[0], Vector3d::UnitX());
 }
 
-}  // namespace swiftlet::control
+}  // namespace swiftlet::math

@@ -6,7 +6,7 @@
 
 #include "swiftlet/math/heading.hpp"
 
-namespace swiftlet::control {
+namespace swiftlet::math {
 
 struct EulerAngles {
   double roll_rad = 0.0;   // phi, -pi .. pi
@@ -26,4 +26,4 @@ Eigen::Quaterniond quaternion_from_euler(const Eigen::Vector3d& euler_rad);
 // Wraps an angle to -pi .. pi.
 double wrap_angle(double angle_rad);
 
-}  // namespace swiftlet::control
+}  // namespace swiftlet::math

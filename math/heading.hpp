@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace swiftlet::control {
+namespace swiftlet::math {
 
 struct Heading {
   Heading() = default;
@@ -15,4 +15,4 @@ struct Heading {
   double sine = 0.0;
 };
 
-}  // namespace swiftlet::control
+}  // namespace swiftlet::math

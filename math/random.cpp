@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace swiftlet::plant {
+namespace swiftlet::math {
 
 namespace {
 
@@ -123,4 +123,4 @@ Eigen::Vector3d RandomStream::on_unit_sphere() {
   }
 }
 
-}  // namespace swiftlet::plant
+}  // namespace swiftlet::math

@@ -10,7 +10,7 @@
 
 #include <Eigen/Core>
 
-namespace swiftlet::plant {
+namespace swiftlet::math {
 
 // Table of the ziggurat method: the area under exp(-x^2 / 2), x > 0, in layers of equal area. Layer i is the
 // rectangle of width edge[i] between height[i] and height[i + 1]. Layer 0 is the area below height[1]
@@ -79,4 +79,4 @@ inline Eigen::Vector3d RandomStream::normal3() {
   return {x, y, z};
 }
 
-}  // namespace swiftlet::plant
+}  // namespace swiftlet::math

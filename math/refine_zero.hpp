@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace swiftlet::control {
+namespace swiftlet::math {
 
 // Returns the zero of f near x0 by the secant method, at most 20 steps. It stops at a step of 0.1 or more and
 // returns the value before that step.
@@ -24,4 +24,4 @@ double refine_zero(const Function& f, double x0) {
   return x1;
 }
 
-}  // namespace swiftlet::control
+}  // namespace swiftlet::math

@@ -10,7 +10,7 @@
 
 #include "swiftlet/math/linear_algebra.hpp"
 
-namespace swiftlet::control {
+namespace swiftlet::math {
 namespace {
 
 using Eigen::MatrixXcd;
@@ -163,4 +163,4 @@ MatrixXd lqr(const MatrixXd& a, const MatrixXd& b, const MatrixXd& q, const Matr
   return math::solve_positive_definite(r, b.transpose() * solve_care(a, b, q, r));
 }
 
-}  // namespace swiftlet::control
+}  // namespace swiftlet::math

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace swiftlet::control {
+namespace swiftlet::math {
 
 // The stabilising solution X of A'X + XA - XBR^-1B'X + Q = 0: symmetric, positive semidefinite, A - BR^-1B'X
 // stable. A is n x n, B n x m, Q n x n symmetric positive semidefinite, R m x m symmetric positive definite.
@@ -30,4 +30,4 @@ Eigen::MatrixXd lqr(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, const Ei
 // Solves the Lyapunov equation A'X + XA + Q = 0 for a stable A and a symmetric Q.
 Eigen::MatrixXd solve_lyapunov(const Eigen::MatrixXd& a, const Eigen::MatrixXd& q);
 
-}  // namespace swiftlet::control
+}  // namespace swiftlet::math

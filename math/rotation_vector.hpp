@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-namespace swiftlet::plant {
+namespace swiftlet::math {
 
 // Unit quaternion of a rotation vector: (cos h, sin(h) / h * half) with half = vector / 2 and h = |half|.
 // Small vectors use series; the first omitted term is below 1e-16.
@@ -44,4 +44,4 @@ inline Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
   return (q.w() < 0.0 ? -angle_over_s : angle_over_s) * q.vec();
 }
 
-}  // namespace swiftlet::plant
+}  // namespace swiftlet::math

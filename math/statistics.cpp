@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-namespace swiftlet::ground {
+namespace swiftlet::math {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -74,4 +74,4 @@ double chance_correlation(std::size_t pairs) {
   return pairs < 3 ? 1.0 : std::min(1.0, 1.96 / std::sqrt(static_cast<double>(pairs - 1)));
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::math

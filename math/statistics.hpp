@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace swiftlet::ground {
+namespace swiftlet::math {
 
 // Distribution of a set of numbers. All fields except count are NaN for an empty set.
 struct Spread {
@@ -30,4 +30,4 @@ double rank_correlation(const std::vector<double>& x, const std::vector<double>&
 // number of pairs.
 double chance_correlation(std::size_t pairs);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::math

@@ -28,9 +28,9 @@ using ground::Vehicle;
 // How long it waits before it looks whether the user wants an end.
 constexpr std::chrono::milliseconds kSignalPeriod{100};
 
-comms::NodeSettings network_of(int domain, bool open_network, const std::string& network_key,
-                               const std::string& security) {
-  comms::NodeSettings network;
+dds::NodeSettings network_of(int domain, bool open_network, const std::string& network_key,
+                             const std::string& security) {
+  dds::NodeSettings network;
   network.name = "ground";
   network.domain = domain;
   network.open_network = open_network;
@@ -225,7 +225,7 @@ void add_context(py::module_& module) {
                       "A participant of a DDS domain, which the vehicles of a program share.")
       .def(py::init([](int domain, bool open_network, const std::string& network_key,
                        const std::string& security) {
-             const comms::NodeSettings network = network_of(domain, open_network, network_key, security);
+             const dds::NodeSettings network = network_of(domain, open_network, network_key, security);
              const py::gil_scoped_release without_gil;
              return std::make_unique<Context>(network);
            }),
@@ -272,13 +272,13 @@ void add_requests(py::class_<Vehicle>& vehicle) {
           "speed_m_s"_a = 0.4, "timeout_s"_a = 5.0, "Done: the rotors are off.")
       .def(
           "upload",
-          [](Vehicle& self, const ground::MissionFile& mission, double timeout_s) {
+          [](Vehicle& self, const io::MissionFile& mission, double timeout_s) {
             return ask(self, [&](Vehicle& one) { return one.upload(mission.mission, limit_of(timeout_s)); });
           },
           "mission"_a, "timeout_s"_a = 5.0, "Uploads a mission without starting it.")
       .def(
           "follow",
-          [](Vehicle& self, const ground::MissionFile& mission, double timeout_s) {
+          [](Vehicle& self, const io::MissionFile& mission, double timeout_s) {
             return ask(self, [&](Vehicle& one) { return one.follow(mission.mission, limit_of(timeout_s)); });
           },
           "mission"_a, "timeout_s"_a = 5.0, "Uploads a mission and starts it. Done: it is completed.");

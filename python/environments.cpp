@@ -15,8 +15,8 @@ namespace swiftlet::python {
 namespace {
 
 using namespace py::literals;
-using ground::HoverTask;
-using ground::VectorEnvironment;
+using simulation::HoverTask;
+using simulation::VectorEnvironment;
 
 // Another thread may call it while a step has released the GIL.
 struct HoverEnvironments : VectorEnvironment {
@@ -24,14 +24,14 @@ struct HoverEnvironments : VectorEnvironment {
   std::mutex in_use;
 };
 
-ground::Dispersion dispersion_of(const std::string& name, const VehicleArgument& vehicle,
-                                 const ground::World& world) {
+simulation::Dispersion dispersion_of(const std::string& name, const VehicleArgument& vehicle,
+                                     const simulation::World& world) {
   if (name.empty()) return {};
-  if (name == ground::kUncertainty) {
+  if (name == simulation::kUncertainty) {
     const FileUncertainty of = uncertainty_of(vehicle);
-    return ground::dispersion_of(of.parameters, world.vehicle, of.file);
+    return simulation::dispersion_of(of.parameters, world.vehicle, of.file);
   }
-  return ground::load_dispersion_file(runtime::configuration_file(runtime::kinds::kDispersion, name), world);
+  return simulation::load_dispersion_file(io::configuration_file(io::kinds::kDispersion, name), world);
 }
 
 std::unique_ptr<HoverEnvironments> make(std::size_t count, std::size_t threads,
@@ -41,7 +41,7 @@ std::unique_ptr<HoverEnvironments> make(std::size_t count, std::size_t threads,
   if (count == 0) refuse("count is 0, must be at least 1");
   HoverTask at_level = task;
   at_level.level = level_of(level);
-  const ground::World world{vehicle_of(vehicle), simulation_of(simulation)};
+  const simulation::World world{vehicle_of(vehicle), simulation_of(simulation)};
   const std::size_t used = threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
   return std::make_unique<HoverEnvironments>(world, at_level, dispersion_of(dispersion, vehicle, world),
                                              count, used);

@@ -11,11 +11,11 @@ namespace {
 using namespace py::literals;
 
 // The uncertainty of a vehicle file; none of a model that is in no file.
-ground::Dispersion dispersion_of(const VehicleArgument& argument, const plant::Vehicle& vehicle) {
+simulation::Dispersion dispersion_of(const VehicleArgument& argument, const plant::Vehicle& vehicle) {
   if (!std::holds_alternative<std::string>(argument)) return {};
   const FileUncertainty of = uncertainty_of(argument);
-  return of.parameters.parameters.empty() ? ground::Dispersion{}
-                                          : ground::dispersion_of(of.parameters, vehicle, of.file);
+  return of.parameters.parameters.empty() ? simulation::Dispersion{}
+                                          : simulation::dispersion_of(of.parameters, vehicle, of.file);
 }
 
 using Report = std::string (*)(const control::ControlDesign&, const ground::MarginStudy&,

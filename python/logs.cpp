@@ -93,7 +93,7 @@ py::array_t<double> per_rotor(const std::vector<plant::PerRotor>& rows, int roto
 py::dict read_sensors(const std::string& path, const VehicleArgument& vehicle,
                       const std::string& vehicle_name) {
   const identification::FlightLog log =
-      ground::read_flight_log(path, vehicle_of(vehicle), ground::BodyAxes::kDetected, vehicle_name).log;
+      analysis::read_flight_log(path, vehicle_of(vehicle), analysis::BodyAxes::kDetected, vehicle_name).log;
   py::dict out("time_s"_a = array_of(log.time_s), "specific_force_frd"_a = vectors(log.specific_force_frd),
                "body_rates_frd"_a = vectors(log.body_rates_frd),
                "throttle"_a = per_rotor(log.command, log.rotor_count));

@@ -16,20 +16,19 @@ using namespace py::literals;
 
 plant::Vehicle vehicle_of(const VehicleArgument& argument) {
   if (const auto* vehicle = std::get_if<plant::Vehicle>(&argument)) return *vehicle;
-  return runtime::load_vehicle(
-      runtime::configuration_file(runtime::kinds::kVehicle, std::get<std::string>(argument)));
+  return io::load_vehicle(io::configuration_file(io::kinds::kVehicle, std::get<std::string>(argument)));
 }
 
 control::ControlSettings control_of(const ControlArgument& argument) {
   if (const auto* settings = std::get_if<control::ControlSettings>(&argument)) return *settings;
-  return runtime::load_control_settings(
-      runtime::configuration_file(runtime::kinds::kControl, std::get<std::string>(argument)));
+  return io::load_control_settings(
+      io::configuration_file(io::kinds::kControl, std::get<std::string>(argument)));
 }
 
 plant::SimulationSettings simulation_of(const SimulationArgument& argument) {
   if (const auto* settings = std::get_if<plant::SimulationSettings>(&argument)) return *settings;
-  return runtime::load_simulation_settings(
-      runtime::configuration_file(runtime::kinds::kSimulation, std::get<std::string>(argument)));
+  return io::load_simulation_settings(
+      io::configuration_file(io::kinds::kSimulation, std::get<std::string>(argument)));
 }
 
 plant::ControlLevel level_of(const std::string& text) {
@@ -45,8 +44,8 @@ void refuse_uncertainty_of_model() {
 FileUncertainty uncertainty_of(const VehicleArgument& argument) {
   const auto* const name = std::get_if<std::string>(&argument);
   if (name == nullptr) refuse_uncertainty_of_model();
-  const std::string file = runtime::configuration_file(runtime::kinds::kVehicle, *name).string();
-  return {file, runtime::load_vehicle_uncertainty(file)};
+  const std::string file = io::configuration_file(io::kinds::kVehicle, *name).string();
+  return {file, io::load_vehicle_uncertainty(file)};
 }
 
 namespace {
@@ -157,7 +156,7 @@ void add_vehicle(py::module_& module) {
       .def(
           "text",
           [](const Vehicle& self, const std::string& comment) {
-            return runtime::vehicle_text(self, {}, {}, comment);
+            return io::vehicle_text(self, {}, {}, comment);
           },
           "comment"_a = "",
           "The text of a vehicle file, from which parse_vehicle() makes an equal model. Every source is "
@@ -171,7 +170,7 @@ void add_vehicle(py::module_& module) {
   module.def(
       "parse_vehicle",
       [](const std::string& text, const std::string& file_name) {
-        return runtime::parse_vehicle(text, file_name);
+        return io::parse_vehicle(text, file_name);
       },
       "text"_a, "file_name"_a = "vehicle",
       "Reads the text of a vehicle file. file_name: for messages. Throws InputError.");
@@ -296,20 +295,20 @@ void add_simulation_settings(py::module_& module) {
 }
 
 void add_missions(py::module_& module) {
-  py::class_<ground::MissionFile>(module, "Mission", "A mission, read from a file or a text.")
-      .def_readonly("name", &ground::MissionFile::name)
-      .def_readonly("description", &ground::MissionFile::description)
-      .def_readonly("tolerance_m", &ground::MissionFile::tolerance_m,
+  py::class_<io::MissionFile>(module, "Mission", "A mission, read from a file or a text.")
+      .def_readonly("name", &io::MissionFile::name)
+      .def_readonly("description", &io::MissionFile::description)
+      .def_readonly("tolerance_m", &io::MissionFile::tolerance_m,
                     "Largest peak error of a completed flight, m.")
-      .def_readonly("assumptions", &ground::MissionFile::assumptions,
+      .def_readonly("assumptions", &io::MissionFile::assumptions,
                     "Made in reading a file of another project.")
       .def_property_readonly("item_count",
-                             [](const ground::MissionFile& self) { return self.mission.items.size(); });
+                             [](const io::MissionFile& self) { return self.mission.items.size(); });
   module.def(
       "load_mission",
       [](const std::string& name, const ControlArgument& control) {
-        return ground::load_mission_file(runtime::configuration_file(runtime::kinds::kMission, name),
-                                         control_of(control).limits);
+        return io::load_mission_file(io::configuration_file(io::kinds::kMission, name),
+                                     control_of(control).limits);
       },
       "name"_a = "square", "control"_a = "motor_lag",
       "Reads a mission file, also one of another project. name: a path, or the name of one in "
@@ -318,7 +317,7 @@ void add_missions(py::module_& module) {
   module.def(
       "parse_mission",
       [](const std::string& text, const ControlArgument& control, const std::string& file_name) {
-        return ground::parse_mission_file(text, file_name, control_of(control).limits);
+        return io::parse_mission_file(text, file_name, control_of(control).limits);
       },
       "text"_a, "control"_a = "motor_lag", "file_name"_a = "mission",
       "Reads the text of a mission file in YAML. Throws InputError.");

@@ -26,7 +26,7 @@ void find_programs() {
   for (int up = 0; up < 4; ++up) {
     folder = folder.parent_path();
     if (fs::exists(folder / "bin" / "swiftlet")) {
-      runtime::set_program_directory(folder / "bin");
+      io::set_program_directory(folder / "bin");
       return;
     }
   }
@@ -34,7 +34,7 @@ void find_programs() {
 
 }  // namespace
 
-void refuse(const std::string& sentence) { throw ground::InputError(sentence); }
+void refuse(const std::string& sentence) { throw io::InputError(sentence); }
 
 void raise(const char* exception, const std::string& reason, const char* kind) {
   const py::object type = py::module_::import("swiftlet._core").attr(exception);
@@ -63,16 +63,16 @@ InUse::InUse(std::mutex& mutex) : lock_(mutex, std::try_to_lock) {
 }
 
 void add_errors(py::module_& module) {
-  static py::exception<runtime::ConfigError> input_error(module, "InputError", PyExc_ValueError);
+  static py::exception<io::ConfigError> input_error(module, "InputError", PyExc_ValueError);
   input_error.attr("__doc__") =
       "Bad input: a file, a name or a value. The text is one sentence, with file, line, key, value and "
       "limit.";
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);
-    } catch (const runtime::ConfigError& error) {
+    } catch (const io::ConfigError& error) {
       PyErr_SetString(input_error.ptr(), error.what());
-    } catch (const ground::InputError& error) {
+    } catch (const io::InputError& error) {
       PyErr_SetString(input_error.ptr(), error.what());
     } catch (const std::invalid_argument& error) {
       PyErr_SetString(input_error.ptr(), error.what());

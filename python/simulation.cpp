@@ -24,16 +24,16 @@ namespace swiftlet::python {
 namespace {
 
 using namespace py::literals;
-using MissionArgument = std::variant<std::string, ground::MissionFile>;
+using MissionArgument = std::variant<std::string, io::MissionFile>;
 
 struct PlannedFlight {
   ground::FlyOptions options;
   ground::FlightInputs given;
 
   ground::LaunchConfiguration plan() const {
-    if (given.vehicle && options.dispersion == ground::kUncertainty) refuse_uncertainty_of_model();
+    if (given.vehicle && options.dispersion == simulation::kUncertainty) refuse_uncertainty_of_model();
     if (given.any() && !options.record.empty())
-      throw ground::InputError(
+      throw io::InputError(
           "a record holds the files of the flight: name the files of vehicle, control, simulation and "
           "mission");
     return ground::plan_flight(options, given);
@@ -95,14 +95,14 @@ class Cancellation {
 };
 
 // Of a program without a terminal of its own: what would be said there is not kept.
-class NoProgress final : public ground::Progress {
+class NoProgress final : public io::Progress {
  public:
   void update(int, const std::string&) override {}
   void say(const std::string&) override {}
 };
 
 struct Flight {
-  ground::FlightReport report;
+  analysis::FlightReport report;
   std::shared_ptr<record::Flight> flown;
 };
 
@@ -129,7 +129,7 @@ Flight simulate(const PlannedFlight& planned, bool replace, const std::string& r
     flight.flown = std::make_shared<record::Flight>();
     const auto is_cancelled = [&cancelled] { return cancelled(); };
     if (record.empty()) {
-      ground::ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
+      simulation::ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
       flight.report = fly_in_process(loop, plan, plan.seed, *flight.flown, nullptr, is_cancelled);
       flight.report.record_dir.clear();
     } else {
@@ -176,7 +176,7 @@ py::dict simulate_batch(const PlannedFlight& planned, std::size_t runs, std::siz
   {
     const py::gil_scoped_release without_gil;
     const ground::LaunchConfiguration plan = planned.plan();
-    for (const ground::ParameterDistribution& one : plan.dispersion.distributions)
+    for (const simulation::ParameterDistribution& one : plan.dispersion.distributions)
       parameters.push_back(one.what().name);
     const std::size_t threads = jobs > 0 ? jobs : std::max(1U, std::thread::hardware_concurrency());
     std::atomic<bool> ends{false};
@@ -193,9 +193,9 @@ py::dict simulate_batch(const PlannedFlight& planned, std::size_t runs, std::siz
 }
 
 // The table of a file with these columns.
-runtime::CsvTable table_of(const std::string& name, std::vector<std::string> columns,
-                           const std::vector<std::vector<double>>& rows) {
-  runtime::CsvTable table(name, std::move(columns));
+io::CsvTable table_of(const std::string& name, std::vector<std::string> columns,
+                      const std::vector<std::vector<double>>& rows) {
+  io::CsvTable table(name, std::move(columns));
   int number = 0;
   for (const std::vector<double>& row : rows) table.add_row(++number, row, {});
   return table;
@@ -223,13 +223,13 @@ py::dict open_loop(const plant::Vehicle& vehicle, const Array<double>& time_s, c
     pulses.push_back({time_s.at(i)});
     for (int rotor = 0; rotor < rotors; ++rotor) pulses.back().push_back(pulse_us.at(i, rotor));
   }
-  std::vector<ground::MotionRow> rows;
+  std::vector<simulation::MotionRow> rows;
   {
     const py::gil_scoped_release without_gil;
-    rows = ground::simulate_open_loop(
+    rows = simulation::simulate_open_loop(
         vehicle, supply_voltage_v,
-        ground::read_state(table_of("initial", ground::state_columns(rotors), {state}), rotors),
-        ground::read_pulses(table_of("pulse_us", ground::pulse_columns(rotors), pulses), vehicle));
+        simulation::read_state(table_of("initial", simulation::state_columns(rotors), {state}), rotors),
+        simulation::read_pulses(table_of("pulse_us", simulation::pulse_columns(rotors), pulses), vehicle));
   }
   const auto count = static_cast<py::ssize_t>(rows.size());
   py::array_t<double> time(count);
@@ -237,7 +237,7 @@ py::dict open_loop(const plant::Vehicle& vehicle, const Array<double>& time_s, c
       velocity(std::vector<py::ssize_t>{count, 3}), attitude(std::vector<py::ssize_t>{count, 4}),
       rates(std::vector<py::ssize_t>{count, 3}), speeds(std::vector<py::ssize_t>{count, rotors});
   for (py::ssize_t i = 0; i < count; ++i) {
-    const ground::MotionRow& row = rows[static_cast<std::size_t>(i)];
+    const simulation::MotionRow& row = rows[static_cast<std::size_t>(i)];
     const Eigen::Quaterniond& q = row.state.q_ned_from_frd;
     time.mutable_at(i) = 1e-9 * static_cast<double>(row.time_ns);
     for (int axis = 0; axis < 3; ++axis) {
@@ -272,9 +272,9 @@ py::dict estimate_of(const control::Estimate& estimate) {
 }
 
 struct Simulation {
-  explicit Simulation(std::unique_ptr<ground::ClosedLoop> made) : loop(std::move(made)) {}
+  explicit Simulation(std::unique_ptr<simulation::ClosedLoop> made) : loop(std::move(made)) {}
 
-  std::unique_ptr<ground::ClosedLoop> loop;
+  std::unique_ptr<simulation::ClosedLoop> loop;
   std::uint64_t setpoints = 0;
   mutable std::mutex in_use;  // another thread may call it while a step has released the GIL
 };
@@ -291,7 +291,7 @@ void step(Simulation& simulation, double duration_s) {
   if (!(duration_s >= 0.0 && duration_s <= kLongest_s))
     refuse("duration_s is " + std::to_string(duration_s) + ", must be at least 0 and at most 1e6");
   const InUse use(simulation.in_use);
-  ground::ClosedLoop& loop = *simulation.loop;
+  simulation::ClosedLoop& loop = *simulation.loop;
   Cancellation cancelled;
   {
     const py::gil_scoped_release without_gil;
@@ -305,7 +305,7 @@ void step(Simulation& simulation, double duration_s) {
 
 void request(Simulation& simulation, const control::Request& request) {
   const control::Outcome outcome =
-      read(simulation, [&](ground::ClosedLoop& loop) { return loop.controller.request(request); });
+      read(simulation, [&](simulation::ClosedLoop& loop) { return loop.controller.request(request); });
   if (!outcome.accepted) raise("RequestError", outcome.reason, "refused");
 }
 
@@ -316,7 +316,7 @@ void request(Simulation& simulation, control::RequestKind kind) {
 }
 
 void set(Simulation& simulation, const control::Setpoint& setpoint) {
-  const control::Outcome outcome = read(simulation, [&](ground::ClosedLoop& loop) {
+  const control::Outcome outcome = read(simulation, [&](simulation::ClosedLoop& loop) {
     control::Setpoint stamped = setpoint;
     stamped.stamp_ns = loop.plant.stamp_ns();
     stamped.sequence = ++simulation.setpoints;
@@ -327,11 +327,11 @@ void set(Simulation& simulation, const control::Setpoint& setpoint) {
 
 std::unique_ptr<Simulation> make(const VehicleArgument& vehicle, const ControlArgument& control,
                                  const SimulationArgument& simulation, std::uint64_t seed) {
-  const ground::World world{vehicle_of(vehicle), simulation_of(simulation)};
-  for (const plant::Violation& violation : ground::validate(world))
+  const simulation::World world{vehicle_of(vehicle), simulation_of(simulation)};
+  for (const plant::Violation& violation : simulation::validate(world))
     refuse(violation.key + ": " + violation.message);
   return std::make_unique<Simulation>(
-      std::make_unique<ground::ClosedLoop>(world.vehicle, world.simulation, control_of(control), seed));
+      std::make_unique<simulation::ClosedLoop>(world.vehicle, world.simulation, control_of(control), seed));
 }
 
 void add_stepped_requests(py::class_<Simulation>& type) {
@@ -389,7 +389,7 @@ void add_stepped_requests(py::class_<Simulation>& type) {
 }
 
 void add_stepped(py::module_& module) {
-  using ground::ClosedLoop;
+  using simulation::ClosedLoop;
   py::class_<Simulation> type(
       module, "Simulation",
       "A vehicle and its flight controller that advance when told: requests and setpoints in, states "

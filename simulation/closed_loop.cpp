@@ -4,7 +4,7 @@
 
 #include "swiftlet/plant/simulation/streams.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::simulation {
 
 ClosedLoop::ClosedLoop(const plant::Vehicle& vehicle, const plant::SimulationSettings& simulation,
                        const control::ControlSettings& settings, std::uint64_t seed)
@@ -106,4 +106,4 @@ Eigen::Vector3d ClosedLoop::tracking_error() const {
   return plant.state().position_ned - controller.reference().position_ned;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::simulation

@@ -22,7 +22,7 @@
 #include "swiftlet/plant/simulation/settings.hpp"
 #include "swiftlet/record/flight.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::simulation {
 
 class ClosedLoop {
  public:
@@ -77,4 +77,4 @@ class ClosedLoop {
       pose_;  // the newest since the last IMU sample that the controller processed
 };
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::simulation

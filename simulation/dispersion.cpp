@@ -7,7 +7,7 @@
 #include "swiftlet/math/random.hpp"
 #include "swiftlet/plant/simulation/streams.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::simulation {
 namespace {
 
 using Values = std::vector<double*>;
@@ -15,7 +15,7 @@ using Values = std::vector<double*>;
 constexpr int kMostRejected = 100;
 constexpr const char* kArmatureResistance = "vehicle.motor.armature_resistance";
 
-double drawn(const ParameterDistribution& distribution, plant::RandomStream& random) {
+double drawn(const ParameterDistribution& distribution, math::RandomStream& random) {
   switch (distribution.distribution) {
     case Distribution::kUniform:
       return random.uniform(distribution.min, distribution.max);
@@ -28,7 +28,7 @@ double drawn(const ParameterDistribution& distribution, plant::RandomStream& ran
   return 0.0;
 }
 
-std::vector<double> drawn(const Dispersion& dispersion, std::vector<plant::RandomStream>& streams) {
+std::vector<double> drawn(const Dispersion& dispersion, std::vector<math::RandomStream>& streams) {
   std::vector<double> values(streams.size());
   if (dispersion.correlation_root.size() == 0) {
     for (std::size_t i = 0; i < streams.size(); ++i)
@@ -167,7 +167,7 @@ double apply(World& world, const ParameterDistribution& distribution, double val
 Dispersion dispersion_of(const plant::VehicleUncertainty& uncertainty, const plant::Vehicle& vehicle,
                          const std::string& file) {
   if (uncertainty.parameters.empty()) {
-    throw runtime::ConfigError(
+    throw io::ConfigError(
         file, 0, "uncertainty",
         "is missing, must list the standard errors of the parameters; `swiftlet identify` writes it");
   }
@@ -180,7 +180,7 @@ Dispersion dispersion_of(const plant::VehicleUncertainty& uncertainty, const pla
       return parameter.name == "vehicle." + uncertain.parameter;
     });
     if (found == all.end())
-      throw runtime::ConfigError(file, 0, "uncertainty", uncertain.parameter + " cannot be varied");
+      throw io::ConfigError(file, 0, "uncertainty", uncertain.parameter + " cannot be varied");
     ParameterDistribution distribution;
     distribution.parameter = static_cast<std::size_t>(found - all.begin());
     distribution.distribution = Distribution::kNormal;
@@ -215,7 +215,7 @@ Dispersion dispersion_of(const plant::VehicleUncertainty& uncertainty, const pla
 }
 
 DispersionSample draw(const Dispersion& dispersion, const World& nominal, std::uint64_t seed) {
-  std::vector<plant::RandomStream> streams;
+  std::vector<math::RandomStream> streams;
   for (const ParameterDistribution& distribution : dispersion.distributions)
     streams.emplace_back(seed, plant::streams::of_name(distribution.what().name));
   const bool resistance_follows = !varies_resistance(dispersion);
@@ -233,10 +233,10 @@ DispersionSample draw(const Dispersion& dispersion, const World& nominal, std::u
     violations = validate(draw.world);
     if (violations.empty()) return draw;
   }
-  throw runtime::ConfigError(dispersion.file, 0, "parameters",
-                             "seed " + std::to_string(seed) + ": " + std::to_string(kMostRejected) +
-                                 " samples in a row break a rule, the last: " + violations.front().key + " " +
-                                 violations.front().message);
+  throw io::ConfigError(dispersion.file, 0, "parameters",
+                        "seed " + std::to_string(seed) + ": " + std::to_string(kMostRejected) +
+                            " samples in a row break a rule, the last: " + violations.front().key + " " +
+                            violations.front().message);
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::simulation

@@ -13,7 +13,7 @@
 #include "swiftlet/plant/model/violation.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::simulation {
 
 struct World {
   plant::Vehicle vehicle;
@@ -58,7 +58,7 @@ struct Dispersion {
 };
 
 // Dispersion that follows the uncertainty section of a vehicle file: each parameter is normal about the
-// file's value with its standard error, and the errors are correlated. Throws runtime::ConfigError with
+// file's value with its standard error, and the errors are correlated. Throws io::ConfigError with
 // `file` if the section is missing or names a parameter that cannot be varied.
 Dispersion dispersion_of(const plant::VehicleUncertainty& uncertainty, const plant::Vehicle& vehicle,
                          const std::string& file);
@@ -81,7 +81,7 @@ double apply(World& world, const ParameterDistribution& distribution, double val
 // the order of keys nor the other parameters change its value. An invalid world, such as one whose inertia
 // violates the triangle inequality, is rejected and all parameters are drawn again. Unless the armature
 // resistance is varied itself, it follows K2, K3 and k_Q such that the ratio of K1, Eq. (21), to K2 remains
-// the nominal one. Throws runtime::ConfigError if 100 samples in a row are invalid.
+// the nominal one. Throws io::ConfigError if 100 samples in a row are invalid.
 DispersionSample draw(const Dispersion& dispersion, const World& nominal, std::uint64_t seed);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::simulation

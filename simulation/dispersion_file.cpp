@@ -6,10 +6,10 @@
 #include "swiftlet/io/config.hpp"
 #include "swiftlet/io/nearest_name.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::simulation {
 namespace {
 
-using runtime::ConfigNode;
+using io::ConfigNode;
 
 std::size_t parameter_index(const std::string& name, const ConfigNode& node) {
   const std::vector<Parameter>& known = parameters();
@@ -22,7 +22,7 @@ std::size_t parameter_index(const std::string& name, const ConfigNode& node) {
     names.push_back(parameter.name);
     list += (list.empty() ? "" : ", ") + parameter.name;
   }
-  node.fail("is unknown, must be one of " + list + runtime::or_nearest(names, name));
+  node.fail("is unknown, must be one of " + list + io::or_nearest(names, name));
 }
 
 bool read_unit(const ConfigNode& node, const Parameter& parameter) {
@@ -34,12 +34,12 @@ bool read_unit(const ConfigNode& node, const Parameter& parameter) {
 void read_limits(const ConfigNode& node, ParameterDistribution& distribution) {
   const bool positive =
       distribution.distribution == Distribution::kLogUniform || distribution.what().rule.empty();
-  distribution.min = node.at("min").number(positive ? runtime::above(0.0) : runtime::any_number());
-  distribution.max = node.at("max").number(runtime::above(distribution.min));
+  distribution.min = node.at("min").number(positive ? io::above(0.0) : io::any_number());
+  distribution.max = node.at("max").number(io::above(distribution.min));
 }
 
 void read_normal(const ConfigNode& node, ParameterDistribution& distribution) {
-  distribution.mean = node.at("mean").number(runtime::between(distribution.min, distribution.max));
+  distribution.mean = node.at("mean").number(io::between(distribution.min, distribution.max));
   distribution.sigma = node.at("sigma").number({0.0, distribution.max - distribution.min, true, false});
 }
 
@@ -98,12 +98,12 @@ Dispersion read_dispersion(const ConfigNode& root, const World& nominal) {
 }  // namespace
 
 Dispersion load_dispersion_file(const std::string& path, const World& nominal) {
-  return read_dispersion(runtime::load_config(path), nominal);
+  return read_dispersion(io::load_config(path), nominal);
 }
 
 Dispersion parse_dispersion_file(const std::string& text, const std::string& file_name,
                                  const World& nominal) {
-  return read_dispersion(runtime::parse_config(text, file_name), nominal);
+  return read_dispersion(io::parse_config(text, file_name), nominal);
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::simulation

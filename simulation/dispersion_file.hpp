@@ -24,11 +24,11 @@
 
 #include "swiftlet/simulation/dispersion.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::simulation {
 
-// Both functions throw runtime::ConfigError with file, line, key, value and limit if the file is malformed or
+// Both functions throw io::ConfigError with file, line, key, value and limit if the file is malformed or
 // if min or max of a parameter violates a rule of the vehicle or the simulation by itself.
 Dispersion load_dispersion_file(const std::string& path, const World& nominal);
 Dispersion parse_dispersion_file(const std::string& text, const std::string& file_name, const World& nominal);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::simulation

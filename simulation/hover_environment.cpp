@@ -11,7 +11,7 @@
 #include "swiftlet/plant/model/propulsion.hpp"
 #include "swiftlet/plant/simulation/streams.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::simulation {
 namespace {
 
 using plant::ControlLevel;
@@ -116,7 +116,7 @@ HoverEnvironment::HoverEnvironment(const World& nominal, const HoverTask& task, 
       mass_kg_(nominal.vehicle.mass_kg) {}
 
 void HoverEnvironment::reset(std::uint64_t seed) {
-  episodes_ = plant::RandomStream(seed, plant::streams::of_name("environment.episodes"));
+  episodes_ = math::RandomStream(seed, plant::streams::of_name("environment.episodes"));
   reset();
 }
 
@@ -137,7 +137,7 @@ void HoverEnvironment::reset() {
 }
 
 plant::VehicleState HoverEnvironment::initial_state(std::uint64_t seed, const plant::Vehicle& vehicle) const {
-  plant::RandomStream random(seed, plant::streams::of_name("environment.start"));
+  math::RandomStream random(seed, plant::streams::of_name("environment.start"));
   plant::VehicleState state;
   state.position_ned = task_.target_ned + task_.start_distance_m * random.in_unit_ball();
   state.velocity_ned = task_.start_speed_m_s * random.in_unit_ball();
@@ -165,7 +165,7 @@ plant::VehicleCommand HoverEnvironment::command_of(const double* action) {
     }
     case ControlLevel::kAttitude: {
       plant::AttitudeSetpoint command;
-      command.q_ned_from_frd = control::quaternion_from_euler(vector());
+      command.q_ned_from_frd = math::quaternion_from_euler(vector());
       command.thrust_n = mass_kg_ * value(3);
       return command;
     }
@@ -173,7 +173,7 @@ plant::VehicleCommand HoverEnvironment::command_of(const double* action) {
       plant::TrajectorySetpoint command;
       command.velocity_ned = vector();
       command.yaw_rate = value(3);
-      yaw_rad_ = control::wrap_angle(yaw_rad_ + task_.action_period_s * command.yaw_rate);
+      yaw_rad_ = math::wrap_angle(yaw_rad_ + task_.action_period_s * command.yaw_rate);
       command.yaw_rad = yaw_rad_;
       return command;
     }
@@ -241,4 +241,4 @@ void HoverEnvironment::observe(double* observation) const {
     observation[kRigidBody + i] = state.rotor_speeds[i] / hover_speed_;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::simulation

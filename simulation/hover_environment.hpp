@@ -20,7 +20,7 @@
 #include "swiftlet/plant/simulation/plant_simulation.hpp"
 #include "swiftlet/simulation/dispersion.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::simulation {
 
 struct HoverTask {
   // At which the actions command the vehicle:
@@ -118,11 +118,11 @@ class HoverEnvironment {
   int actions_per_episode_;
   double hover_speed_;  // rad/s, of the nominal vehicle
 
-  plant::RandomStream episodes_;
+  math::RandomStream episodes_;
   std::optional<Flight> flight_;
   double mass_kg_ = 0.0;  // of the nominal vehicle, by which the firmware knows it
   double yaw_rad_ = 0.0;  // commanded, at level trajectory
   int actions_ = 0;       // of this episode
 };
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::simulation

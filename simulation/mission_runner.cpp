@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace swiftlet::ground {
+namespace swiftlet::simulation {
 namespace {
 
 void arm(MissionTransport& vehicle) {
@@ -46,4 +46,4 @@ void fly_mission(MissionTransport& vehicle, double planned_duration_s) {
   follow(vehicle, planned_duration_s);
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::simulation

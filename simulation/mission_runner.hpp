@@ -8,7 +8,7 @@
 
 #include "swiftlet/control/types/mode.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::simulation {
 
 // Why a flight did not come to its end. what() is a sentence.
 class FlightFailure : public std::runtime_error {
@@ -63,4 +63,4 @@ class MissionTransport {
 // FlightFailure. planned_duration_s bounds the time that the mission may take.
 void fly_mission(MissionTransport& vehicle, double planned_duration_s);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::simulation

@@ -9,7 +9,7 @@
 #include "swiftlet/plant/model/esc.hpp"
 #include "swiftlet/plant/simulation/dynamics.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::simulation {
 namespace {
 
 constexpr std::int64_t kRowPeriodNs = 1'000'000;
@@ -35,9 +35,9 @@ void advance(const plant::Dynamics& dynamics, MotionRow& now, const plant::Motor
   const double dt = static_cast<double>(until_ns - now.time_ns) * 1e-9;
   const double rate = now.state.body_rates_frd.norm();
   if (!(rate < kFastestTurn) || !finite(now.state)) {
-    throw std::runtime_error("the body rate is " + runtime::exact(rate) + " rad/s at t = " +
-                             runtime::exact(static_cast<double>(now.time_ns) / math::kNsPerS) +
-                             " s, must be below " + runtime::exact(kFastestTurn) + " rad/s");
+    throw std::runtime_error("the body rate is " + io::exact(rate) +
+                             " rad/s at t = " + io::exact(static_cast<double>(now.time_ns) / math::kNsPerS) +
+                             " s, must be below " + io::exact(kFastestTurn) + " rad/s");
   }
   const int count = static_cast<int>(std::ceil(dt * std::max(1.0 / kMaxStepS, rate / kMaxTurnRad)));
   for (int i = 0; i < count; ++i) dynamics.advance(now.state, drive, Eigen::Vector3d::Zero(), dt / count);
@@ -70,22 +70,22 @@ std::vector<std::string> state_columns(int rotor_count) {
   return columns;
 }
 
-std::vector<PulseWidths> read_pulses(const runtime::CsvTable& table, const plant::Vehicle& vehicle) {
-  const runtime::Bounds range =
-      runtime::between(vehicle.esc.pulse_min_us, vehicle.esc.pulse_min_us + vehicle.esc.pulse_range_us);
+std::vector<PulseWidths> read_pulses(const io::CsvTable& table, const plant::Vehicle& vehicle) {
+  const io::Bounds range =
+      io::between(vehicle.esc.pulse_min_us, vehicle.esc.pulse_min_us + vehicle.esc.pulse_range_us);
   std::vector<PulseWidths> pulses(table.row_count());
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     pulses[row].time_ns =
-        math::nanoseconds(table.number(row, 0, runtime::between(-kLatestTimeS, kLatestTimeS), "s"));
+        math::nanoseconds(table.number(row, 0, io::between(-kLatestTimeS, kLatestTimeS), "s"));
     if (row > 0 && pulses[row].time_ns <= pulses[row - 1].time_ns) {
       table.fail(row, "t",
-                 "is " + runtime::exact(table.number(row, 0)) + ", must be above the row before, " +
-                     runtime::exact(table.number(row - 1, 0)));
+                 "is " + io::exact(table.number(row, 0)) + ", must be above the row before, " +
+                     io::exact(table.number(row - 1, 0)));
     }
     if (table.number(row, 0) - table.number(0, 0) > kLongestRunS) {
       table.fail(row, "t",
-                 "is " + runtime::exact(table.number(row, 0) - table.number(0, 0)) +
-                     " s after the first row, must be at most " + runtime::exact(kLongestRunS) + " s");
+                 "is " + io::exact(table.number(row, 0) - table.number(0, 0)) +
+                     " s after the first row, must be at most " + io::exact(kLongestRunS) + " s");
     }
     for (std::size_t i = 0; i + 1 < table.column_count(); ++i) {
       pulses[row].throttle[i] =
@@ -95,10 +95,10 @@ std::vector<PulseWidths> read_pulses(const runtime::CsvTable& table, const plant
   return pulses;
 }
 
-plant::VehicleState read_state(const runtime::CsvTable& table, int rotor_count) {
+plant::VehicleState read_state(const io::CsvTable& table, int rotor_count) {
   if (table.row_count() != 1) table.fail(1, "", "is a second row, the limit is one row");
   const auto value = [&](std::size_t column) {
-    return table.number(0, column, runtime::between(-kLargest, kLargest));
+    return table.number(0, column, io::between(-kLargest, kLargest));
   };
   plant::VehicleState state;
   state.position_ned = {value(0), value(1), value(2)};
@@ -107,16 +107,16 @@ plant::VehicleState read_state(const runtime::CsvTable& table, int rotor_count) 
   const double norm = state.q_ned_from_frd.norm();
   if (std::abs(norm - 1.0) > kUnitTolerance) {
     table.fail(0, "qw,qx,qy,qz",
-               "has length " + runtime::exact(norm) + ", must be 1 within " + runtime::exact(kUnitTolerance));
+               "has length " + io::exact(norm) + ", must be 1 within " + io::exact(kUnitTolerance));
   }
   state.q_ned_from_frd.normalize();
   const auto rate = [&](std::size_t column) {
-    return table.number(0, column, runtime::between(-kFastestStart, kFastestStart), "rad/s");
+    return table.number(0, column, io::between(-kFastestStart, kFastestStart), "rad/s");
   };
   state.body_rates_frd = {rate(10), rate(11), rate(12)};
   for (int i = 0; i < rotor_count; ++i) {
     const auto n = static_cast<std::size_t>(i);
-    state.rotor_speeds[n] = table.number(0, 13 + n, runtime::between(0.0, kLargest), "rad/s");
+    state.rotor_speeds[n] = table.number(0, 13 + n, io::between(0.0, kLargest), "rad/s");
   }
   return state;
 }
@@ -149,7 +149,7 @@ std::vector<MotionRow> simulate_open_loop(const plant::Vehicle& vehicle, double 
 void write_motion(const std::string& path, const std::vector<MotionRow>& rows, int rotor_count) {
   std::vector<std::string> columns = state_columns(rotor_count);
   columns.insert(columns.begin(), "t");
-  runtime::CsvWriter csv(path, columns);
+  io::CsvWriter csv(path, columns);
   for (const MotionRow& row : rows) {
     csv.exact(static_cast<double>(row.time_ns) / math::kNsPerS);
     for (const double value : values(row.state, rotor_count)) csv.exact(value);
@@ -158,4 +158,4 @@ void write_motion(const std::string& path, const std::vector<MotionRow>& rows, i
   csv.finish();
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::simulation

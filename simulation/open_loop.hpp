@@ -10,7 +10,7 @@
 #include "swiftlet/plant/model/vehicle.hpp"
 #include "swiftlet/plant/simulation/vehicle_state.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::simulation {
 
 // Pulse widths that are held from time_ns to the time of the next row.
 struct PulseWidths {
@@ -25,12 +25,12 @@ std::vector<std::string> pulse_columns(int rotor_count);
 // rotor speeds in rad/s.
 std::vector<std::string> state_columns(int rotor_count);
 
-// Both throw runtime::ConfigError with file, line, column, value and limit for pulse widths outside the range
+// Both throw io::ConfigError with file, line, column, value and limit for pulse widths outside the range
 // of Eq. (8), times that do not increase, a run longer than 600 s, a quaternion whose length differs from 1
 // by more than 1e-3 (otherwise it is normalised), a negative rotor speed, and a number of states other than
 // one.
-std::vector<PulseWidths> read_pulses(const runtime::CsvTable& table, const plant::Vehicle& vehicle);
-plant::VehicleState read_state(const runtime::CsvTable& table, int rotor_count);
+std::vector<PulseWidths> read_pulses(const io::CsvTable& table, const plant::Vehicle& vehicle);
+plant::VehicleState read_state(const io::CsvTable& table, int rotor_count);
 
 struct MotionRow {
   std::int64_t time_ns = 0;
@@ -48,4 +48,4 @@ std::vector<MotionRow> simulate_open_loop(const plant::Vehicle& vehicle, double 
 // file has its name only when it is complete. Throws std::runtime_error if it cannot be written.
 void write_motion(const std::string& path, const std::vector<MotionRow>& rows, int rotor_count);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::simulation

@@ -10,7 +10,7 @@
 #include "swiftlet/plant/model/telemetry_rate.hpp"
 #include "swiftlet/simulation/mission_runner.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::simulation {
 namespace {
 
 std::array<double, 3> array(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
@@ -155,4 +155,4 @@ SimulatedFlight fly(ClosedLoop& loop, const control::Mission& mission, double pl
   return flight;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::simulation

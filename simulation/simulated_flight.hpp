@@ -11,7 +11,7 @@
 #include "swiftlet/record/flight_trace.hpp"
 #include "swiftlet/simulation/closed_loop.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::simulation {
 
 struct SimulatedFlight {
   bool completed = false;
@@ -34,4 +34,4 @@ struct FlightObserver {
 SimulatedFlight fly(ClosedLoop& loop, const control::Mission& mission, double planned_duration_s,
                     const FlightObserver& observer);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::simulation

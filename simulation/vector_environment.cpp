@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-namespace swiftlet::ground {
+namespace swiftlet::simulation {
 
 VectorEnvironment::VectorEnvironment(const World& nominal, const HoverTask& task,
                                      const Dispersion& dispersion, std::size_t count, std::size_t threads)
@@ -107,4 +107,4 @@ void VectorEnvironment::work(std::size_t part) {
   }
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::simulation

@@ -12,7 +12,7 @@
 
 #include "swiftlet/simulation/hover_environment.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::simulation {
 
 // The results do not depend on the number of threads. One thread calls it.
 class VectorEnvironment {
@@ -71,4 +71,4 @@ class VectorEnvironment {
   std::vector<std::thread> threads_;  // of the parts from 1 on; part 0 is done by the caller
 };
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::simulation

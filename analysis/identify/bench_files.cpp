@@ -11,13 +11,13 @@
 #include "swiftlet/io/csv_writer.hpp"
 #include "swiftlet/io/measurements.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 namespace {
 
 namespace fs = std::filesystem;
 using identification::BenchData;
-using runtime::Measurements;
-using runtime::Quantity;
+using io::Measurements;
+using io::Quantity;
 
 std::vector<std::string> experiment_names() {
   std::vector<std::string> names = {identification::kMassName,         identification::kEscName,
@@ -43,15 +43,15 @@ void refuse_unknown_tables(const fs::path& folder) {
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".csv") tables.insert(entry.path());
   }
-  if (fault) throw InputError(folder.string() + ": cannot be read: " + fault.message());
+  if (fault) throw io::InputError(folder.string() + ": cannot be read: " + fault.message());
   for (const fs::path& table : tables) {
     if (table.extension() != ".csv" ||
         std::find(known.begin(), known.end(), table.stem().string()) == known.end())
-      throw InputError(table.string() + ": is not a known experiment, must be one of " + joined(known));
+      throw io::InputError(table.string() + ": is not a known experiment, must be one of " + joined(known));
   }
   if (tables.empty())
-    throw InputError(folder.string() + ": contains no experiment, must contain at least one of " +
-                     joined(known));
+    throw io::InputError(folder.string() + ": contains no experiment, must contain at least one of " +
+                         joined(known));
 }
 
 std::vector<double> column_or_nothing(const Measurements& table, Quantity quantity) {
@@ -61,7 +61,7 @@ std::vector<double> column_or_nothing(const Measurements& table, Quantity quanti
 // Throttle delta of Eq. (8), from the column of throttles or of pulse widths.
 std::vector<double> throttles(const Measurements& table, const plant::Esc& esc) {
   if (table.has(Quantity::kThrottle) && table.has(Quantity::kPulseWidth)) {
-    throw runtime::ConfigError(
+    throw io::ConfigError(
         table.file(), 1, "header",
         "has a throttle and a pulse width, must have one of them: Eq. (8) converts one to the other");
   }
@@ -69,11 +69,11 @@ std::vector<double> throttles(const Measurements& table, const plant::Esc& esc) 
   std::vector<double> out;
   const std::vector<double>& pulses = table.column(Quantity::kPulseWidth);
   for (std::size_t row = 0; row < pulses.size(); ++row) {
-    const runtime::Bounds range = runtime::between(esc.pulse_min_us, esc.pulse_min_us + esc.pulse_range_us);
+    const io::Bounds range = io::between(esc.pulse_min_us, esc.pulse_min_us + esc.pulse_range_us);
     if (!range.contains(pulses[row])) {
-      throw runtime::ConfigError(table.file(), table.line(row), runtime::name_of(Quantity::kPulseWidth),
-                                 "is " + runtime::exact(pulses[row]) + " us, must be " + range.to_string() +
-                                     " us, the range of the base vehicle's ESC; is the unit right?");
+      throw io::ConfigError(table.file(), table.line(row), io::name_of(Quantity::kPulseWidth),
+                            "is " + io::exact(pulses[row]) + " us, must be " + range.to_string() +
+                                " us, the range of the base vehicle's ESC; is the unit right?");
     }
     out.push_back((pulses[row] - esc.pulse_min_us) / esc.pulse_range_us);
   }
@@ -89,7 +89,7 @@ class Loader {
   void read(const char* name, const std::vector<Quantity>& allowed, const Use& use) {
     const fs::path file = folder_ / (std::string(name) + ".csv");
     if (!fs::exists(file)) return;
-    const Measurements table = runtime::load_measurements(file.string(), allowed);
+    const Measurements table = io::load_measurements(file.string(), allowed);
     use(table);
     BenchFile& note = bench.files[name];
     note.file = file.string();
@@ -139,7 +139,7 @@ class Loader {
   static identification::InertiaData inertia(const Measurements& t) {
     const bool strings = t.has(Quantity::kLength) || t.has(Quantity::kSeparation);
     if (strings == t.has(Quantity::kArm)) {
-      throw runtime::ConfigError(
+      throw io::ConfigError(
           t.file(), 1, "header",
           "must have either length and separation (bifilar pendulum) or arm (physical pendulum)");
     }
@@ -154,17 +154,17 @@ class Loader {
   const plant::Esc& esc_;
 };
 
-std::optional<double> spread_of(const runtime::ConfigNode& instruments, const char* key, const char* unit) {
+std::optional<double> spread_of(const io::ConfigNode& instruments, const char* key, const char* unit) {
   const auto node = instruments.find(key);
-  return node ? std::optional<double>(node->quantity(unit).number(runtime::above(0.0))) : std::nullopt;
+  return node ? std::optional<double>(node->quantity(unit).number(io::above(0.0))) : std::nullopt;
 }
 
 void write_table(const fs::path& file,
                  const std::vector<std::pair<Quantity, const std::vector<double>*>>& columns) {
   std::vector<std::string> names;
   names.reserve(columns.size());
-  for (const auto& [quantity, values] : columns) names.push_back(runtime::header_of(quantity));
-  runtime::CsvWriter csv(file, names);
+  for (const auto& [quantity, values] : columns) names.push_back(io::header_of(quantity));
+  io::CsvWriter csv(file, names);
   for (std::size_t row = 0; row < columns.front().second->size(); ++row) {
     for (const auto& [quantity, values] : columns) csv.exact((*values)[row]);
     csv.end_row();
@@ -176,11 +176,11 @@ void write_table(const fs::path& file,
 
 BenchSettings load_bench_settings(const fs::path& folder) {
   if (!fs::is_directory(folder))
-    throw InputError(folder.string() + ": is not a folder, must be a folder of bench data");
+    throw io::InputError(folder.string() + ": is not a folder, must be a folder of bench data");
   BenchSettings out;
   const fs::path file = folder / kBenchSettingsFile;
   if (!fs::exists(file)) return out;
-  const runtime::ConfigNode root = runtime::load_config(file.string());
+  const io::ConfigNode root = io::load_config(file.string());
   if (const auto base = root.find("base_vehicle")) {
     const fs::path inside = folder / base->text();
     out.base_vehicle = fs::is_regular_file(inside) ? inside.string() : base->text();
@@ -188,9 +188,9 @@ BenchSettings load_bench_settings(const fs::path& folder) {
   }
   if (const auto name = root.find("name")) out.name = name->text();
   if (const auto propeller = root.find("propeller")) {
-    out.propeller = identification::Propeller{
-        propeller->at("radius").quantity("m").number(runtime::above(0.0)),
-        propeller->at("air_density").quantity("kg/m^3").number(runtime::above(0.0))};
+    out.propeller =
+        identification::Propeller{propeller->at("radius").quantity("m").number(io::above(0.0)),
+                                  propeller->at("air_density").quantity("kg/m^3").number(io::above(0.0))};
   }
   if (const auto instruments = root.find("instruments")) {
     out.instruments = {spread_of(*instruments, "supply_voltage", "V"),
@@ -250,7 +250,7 @@ void write_bench(const fs::path& folder, const BenchData& data, const std::strin
                                                             {Quantity::kSeparation, &strings.separation_m},
                                                             {Quantity::kPeriod, &strings.period_s}});
   }
-  runtime::write_atomically(folder / kBenchSettingsFile, settings_yaml);
+  io::write_atomically(folder / kBenchSettingsFile, settings_yaml);
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

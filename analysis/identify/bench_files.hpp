@@ -32,7 +32,7 @@
 #include "swiftlet/identification/bench/bench.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 inline constexpr const char* kBenchSettingsFile = "bench.yaml";
 
@@ -56,7 +56,7 @@ struct Bench {
   std::map<std::string, BenchFile> files;  // by the experiment's name
 };
 
-// Throw runtime::ConfigError or InputError, also for a CSV with an unknown name. Pulse widths are converted
+// Throw io::ConfigError or InputError, also for a CSV with an unknown name. Pulse widths are converted
 // to throttles with esc, Eq. (8).
 BenchSettings load_bench_settings(const std::filesystem::path& folder);
 Bench load_bench(const std::filesystem::path& folder, const BenchSettings& settings, const plant::Esc& esc);
@@ -66,4 +66,4 @@ Bench load_bench(const std::filesystem::path& folder, const BenchSettings& setti
 void write_bench(const std::filesystem::path& folder, const identification::BenchData& data,
                  const std::string& settings_yaml);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

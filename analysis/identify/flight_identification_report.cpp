@@ -8,7 +8,7 @@
 
 #include "swiftlet/analysis/identify/report_page.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 namespace {
 
 using identification::FileComparison;
@@ -289,4 +289,4 @@ pages::Page flight_identification_page(const FlightIdentificationReport& report)
   return page;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -7,7 +7,7 @@
 #include "swiftlet/analysis/pages/page.hpp"
 #include "swiftlet/identification/flight/flight.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 struct FlightIdentificationReport {
   std::vector<std::string> logs;         // file names
@@ -32,4 +32,4 @@ std::string flight_identification_json(const FlightIdentificationReport& report)
 // The same, and figures of predictions and measurements.
 pages::Page flight_identification_page(const FlightIdentificationReport& report);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

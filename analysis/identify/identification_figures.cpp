@@ -12,7 +12,7 @@
 #include "swiftlet/identification/fitting/checks.hpp"
 #include "swiftlet/plant/model/propulsion.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 namespace {
 
 using identification::Experiment;
@@ -239,4 +239,4 @@ Figure residual_figure(const Experiment& fit) {
   return out;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

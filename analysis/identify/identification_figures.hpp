@@ -7,7 +7,7 @@
 #include "swiftlet/analysis/plot/figure.hpp"
 #include "swiftlet/identification/bench/bench.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 // Figs. 2 and 3: v_a over delta for each supply voltage, and v_a^2 over v_s^2 delta.
 std::vector<plot::Figure> esc_figures(const identification::EscData& data,
@@ -30,4 +30,4 @@ plot::Figure throttle_thrust_figure(const identification::ThrottleThrustData& da
 // edge.
 plot::Figure residual_figure(const identification::Experiment& fit);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

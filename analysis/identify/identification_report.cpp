@@ -12,7 +12,7 @@
 #include "swiftlet/analysis/identify/identification_figures.hpp"
 #include "swiftlet/analysis/identify/report_page.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 namespace {
 
 using identification::BenchIdentification;
@@ -221,4 +221,4 @@ std::string identification_json(const IdentificationReport& report) {
   return out.dump();
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -7,7 +7,7 @@
 #include "swiftlet/analysis/pages/page.hpp"
 #include "swiftlet/identification/bench/bench.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 struct IdentificationReport {
   std::string bench_folder;
@@ -29,4 +29,4 @@ std::string identification_table(const IdentificationReport& report);
 // vehicle, base_vehicle. One line without a newline.
 std::string identification_json(const IdentificationReport& report);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

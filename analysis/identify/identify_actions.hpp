@@ -6,7 +6,7 @@
 
 #include "swiftlet/analysis/identify/identify_options.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 constexpr std::chrono::milliseconds kProgressAfter{500};  // shorter runs show no progress
 
@@ -14,4 +14,4 @@ int identify_bench(const IdentifyBenchOptions& options);
 int identify_flight(IdentifyFlightOptions options);
 int identify_simulate(const IdentifySimulateOptions& options);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -19,7 +19,7 @@
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/io/settings/vehicle_writer.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 namespace {
 
 namespace fs = std::filesystem;
@@ -31,12 +31,11 @@ struct Base {
 
 // The base vehicle: --base, else that of the record around the log, else kaylion.
 Base base_of(const IdentifyFlightOptions& options) {
-  if (!options.base.empty())
-    return {runtime::configuration_file(runtime::kinds::kVehicle, options.base), false};
+  if (!options.base.empty()) return {io::configuration_file(io::kinds::kVehicle, options.base), false};
   const fs::path log = options.logs.front();
   const fs::path record_vehicle = (fs::is_directory(log) ? log : log.parent_path()) / "vehicle.yaml";
   if (fs::is_regular_file(record_vehicle)) return {record_vehicle, false};
-  return {runtime::configuration_file(runtime::kinds::kVehicle, "kaylion"), true};
+  return {io::configuration_file(io::kinds::kVehicle, "kaylion"), true};
 }
 
 }  // namespace
@@ -44,14 +43,14 @@ Base base_of(const IdentifyFlightOptions& options) {
 int identify_flight(IdentifyFlightOptions options) {
   std::vector<fs::path> inputs;
   for (const std::string& log : options.logs) {
-    for (const fs::path& file : files_of(log)) inputs.push_back(file);
+    for (const fs::path& file : io::files_of(log)) inputs.push_back(file);
   }
   const auto [base_path, is_assumed] = base_of(options);
   if (is_ulog(options.logs.front()))
-    return identify_ulog(options, runtime::load_vehicle(base_path.string()), base_path.stem().string());
+    return identify_ulog(options, io::load_vehicle(base_path.string()), base_path.stem().string());
   inputs.push_back(base_path);
-  refuse_overwriting({{"--out", options.out}, {"--report", options.report}}, inputs);
-  const plant::Vehicle base = runtime::load_vehicle(base_path.string());
+  io::refuse_overwriting({{"--out", options.out}, {"--report", options.report}}, inputs);
+  const plant::Vehicle base = io::load_vehicle(base_path.string());
   FlightIdentificationReport report;
   report.logs = options.logs;
   report.base_vehicle = options.base.empty() ? base_path.string() : options.base;
@@ -59,7 +58,7 @@ int identify_flight(IdentifyFlightOptions options) {
     report.assumptions.push_back("the base vehicle is " + base.name +
                                  ": --base is not given, and the log is not part of a record");
 
-  ProgressLine progress;
+  io::ProgressLine progress;
   const auto started = std::chrono::steady_clock::now();
   int iterations = 0;
   options.fit.progress = [&](const std::string& what) {
@@ -77,7 +76,7 @@ int identify_flight(IdentifyFlightOptions options) {
   try {
     report.found = identification::identify_flight(logs, base, options.fit);
   } catch (const identification::BadData& fault) {
-    throw InputError(fault.what());
+    throw io::InputError(fault.what());
   }
   progress.close();
   plant::Vehicle& vehicle = report.found.vehicle;
@@ -90,7 +89,7 @@ int identify_flight(IdentifyFlightOptions options) {
     std::printf("%s", flight_identification_table(report).c_str());
   }
   if (!options.report.empty())
-    runtime::write_atomically(options.report, flight_identification_page(report).html());
+    io::write_atomically(options.report, flight_identification_page(report).html());
   if (!report.found.converged)
     throw std::runtime_error(options.out.empty() ? "the fit did not converge within its bounds"
                                                  : "the fit did not converge within its bounds: " +
@@ -99,26 +98,26 @@ int identify_flight(IdentifyFlightOptions options) {
     if (report.found.uncertainty.parameters.empty())
       throw std::runtime_error("no parameter is identifiable, see above: " + options.out + " is not written");
     for (const plant::Violation& broken : plant::validate(vehicle)) {
-      throw InputError("the identified vehicle cannot fly: " + broken.key + ": " + broken.message +
-                       "; parameters that are not identified are those of " + report.base_vehicle);
+      throw io::InputError("the identified vehicle cannot fly: " + broken.key + ": " + broken.message +
+                           "; parameters that are not identified are those of " + report.base_vehicle);
     }
-    runtime::VehicleSources sources = runtime::load_vehicle_sources(base_path.string());
+    io::VehicleSources sources = io::load_vehicle_sources(base_path.string());
     for (const auto& [key, source] : report.found.sources) sources[key] = source;
-    const std::string text = runtime::vehicle_text(
+    const std::string text = io::vehicle_text(
         vehicle, sources, report.found.uncertainty,
         "Identified by `swiftlet identify flight`; parameters that were not identified are those of " +
             base.name + ". Frame: Forward-Right-Down, origin at the centre of mass.");
-    runtime::parse_vehicle(text, options.out);
-    runtime::write_atomically(options.out, text);
+    io::parse_vehicle(text, options.out);
+    io::write_atomically(options.out, text);
   }
   std::string wrote;
   for (const std::string& file : {options.out, options.report}) {
     if (!file.empty()) wrote += (wrote.empty() ? "; wrote " : " and ") + file;
   }
   std::fprintf(stderr, "swiftlet: %s identified from %s%s\n",
-               counted(report.found.uncertainty.parameters.size(), "parameter").c_str(),
-               counted(logs.size(), "flight").c_str(), wrote.c_str());
-  return kDone;
+               io::counted(report.found.uncertainty.parameters.size(), "parameter").c_str(),
+               io::counted(logs.size(), "flight").c_str(), wrote.c_str());
+  return io::kDone;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -5,7 +5,7 @@
 
 int main(int argc, char** argv) {
   using namespace swiftlet;
-  return ground::run_commands(argc, argv, runtime::version_text(), [](runtime::CommandLine root) {
-    return std::vector<ground::Command>{ground::add_identify_command(root)};
+  return io::run_commands(argc, argv, runtime::version_text(), [](runtime::CommandLine root) {
+    return std::vector<io::Command>{analysis::add_identify_command(root)};
   });
 }

@@ -6,10 +6,10 @@
 #include "swiftlet/io/command_line/programs.hpp"
 #include "swiftlet/io/configuration.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 namespace {
 
-Command add_flight_command(runtime::CommandLine identify) {
+io::Command add_flight_command(runtime::CommandLine identify) {
   const auto options = std::make_shared<IdentifyFlightOptions>();
   const runtime::CommandLine app =
       identify.add_subcommand("flight", "Identify a vehicle from logs of its flights");
@@ -22,7 +22,7 @@ Command add_flight_command(runtime::CommandLine identify) {
   app.add_option("--base", options->base,
                  "base vehicle for parameters that are not identified: a vehicle file, or the name of one in "
                  "the configuration; default: the record's vehicle, else kaylion")
-      .type_name(runtime::kinds::kVehicle.value);
+      .type_name(io::kinds::kVehicle.value);
   app.add_choice("--known", options->fit.known,
                  {{"mass", identification::Known::kMass}, {"thrust", identification::Known::kThrust}},
                  "value of the base vehicle that is correct; a flight determines only thrust over mass")
@@ -53,12 +53,12 @@ Command add_flight_command(runtime::CommandLine identify) {
   return {app, [options] { return identify_flight(*options); }};
 }
 
-Command add_simulate_command(runtime::CommandLine identify) {
+io::Command add_simulate_command(runtime::CommandLine identify) {
   const auto options = std::make_shared<IdentifySimulateOptions>();
   const runtime::CommandLine app = identify.add_subcommand(
       "simulate", "Simulate bench data of a known vehicle, to test the identification");
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in the configuration")
-      .type_name(runtime::kinds::kVehicle.value)
+      .type_name(io::kinds::kVehicle.value)
       .show_default();
   app.add_option("--noise", options->noise.share,
                  "standard deviation of each reading, as a fraction of the largest of its column")
@@ -79,11 +79,11 @@ Command add_simulate_command(runtime::CommandLine identify) {
 
 }  // namespace
 
-Command add_identify_command(runtime::CommandLine root) {
-  const runtime::CommandLine app = root.add_subcommand("identify", purpose_of("identify"));
+io::Command add_identify_command(runtime::CommandLine root) {
+  const runtime::CommandLine app = root.add_subcommand("identify", io::purpose_of("identify"));
   const auto options = std::make_shared<IdentifyBenchOptions>();
-  const Command simulate = add_simulate_command(app);
-  const Command flight = add_flight_command(app);
+  const io::Command simulate = add_simulate_command(app);
+  const io::Command flight = add_flight_command(app);
   app.require_subcommand(0, 1);
   app.add_option("bench", options->bench, "folder of bench data").type_name("BENCH_DIR");
   app.add_option("--out", options->out, "vehicle file to write").type_name("FILE");
@@ -92,7 +92,7 @@ Command add_identify_command(runtime::CommandLine root) {
   app.add_option("--base", options->base,
                  "base vehicle for parameters that are not measured: a vehicle file, or the name of one in "
                  "the configuration; default: base_vehicle of bench.yaml, else kaylion")
-      .type_name(runtime::kinds::kVehicle.value);
+      .type_name(io::kinds::kVehicle.value);
   app.add_option("--name", options->name, "name of the identified vehicle; default: stem of --out");
   app.add_flag("--json", options->json, "print one JSON object instead of the table");
   app.footer(
@@ -111,10 +111,10 @@ Command add_identify_command(runtime::CommandLine root) {
   return {app, [options, simulate, flight] {
             if (simulate.app.parsed()) return simulate.run();
             if (flight.app.parsed()) return flight.run();
-            if (options->bench.empty()) throw InputError("identify: BENCH_DIR is required");
-            if (options->out.empty()) throw InputError("identify: --out is required");
+            if (options->bench.empty()) throw io::InputError("identify: BENCH_DIR is required");
+            if (options->out.empty()) throw io::InputError("identify: --out is required");
             return identify_bench(*options);
           }};
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -10,7 +10,7 @@
 #include "swiftlet/identification/flight/flight.hpp"
 #include "swiftlet/io/command_line/command.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 // Options of `swiftlet identify BENCH_DIR`.
 struct IdentifyBenchOptions {
@@ -44,6 +44,6 @@ struct IdentifySimulateOptions {
 };
 
 // `swiftlet identify` with its options.
-Command add_identify_command(runtime::CommandLine root);
+io::Command add_identify_command(runtime::CommandLine root);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

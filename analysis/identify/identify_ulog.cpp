@@ -13,7 +13,7 @@
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/io/ulog/ulog.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 namespace {
 
 using identification::ThrottleRecord;
@@ -136,19 +136,19 @@ int identify_ulog(const IdentifyFlightOptions& options, const plant::Vehicle& ba
   for (const auto& [option, value] :
        {std::pair("--out", options.out), std::pair("--report", options.report)}) {
     if (!value.empty())
-      throw InputError(std::string(option) +
-                       ": a log of PX4 gives the thrust scale alone, no parameters of a vehicle file");
+      throw io::InputError(std::string(option) +
+                           ": a log of PX4 gives the thrust scale alone, no parameters of a vehicle file");
   }
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const std::string& file : options.logs) {
-    if (!is_ulog(file)) throw InputError(file + ": is no log of PX4, as " + options.logs.front() + " is");
-    const std::string bytes = runtime::read_text_file(file);
+    if (!is_ulog(file)) throw io::InputError(file + ": is no log of PX4, as " + options.logs.front() + " is");
+    const std::string bytes = io::read_text_file(file);
     const ulog::Log log(bytes, file);
     Result result{file, {}, missing_of(log), log.ends_early()};
     try {
       result.scale = identification::fit_thrust_scale(record_of(log, options), base);
     } catch (const identification::BadData& fault) {
-      throw InputError(file + ": " + fault.what());
+      throw io::InputError(file + ": " + fault.what());
     }
     if (options.json) {
       all.push_back(json_of(result));
@@ -157,7 +157,7 @@ int identify_ulog(const IdentifyFlightOptions& options, const plant::Vehicle& ba
     }
   }
   if (options.json) std::printf("%s\n", nlohmann::ordered_json{{"thrust_scales", all}}.dump().c_str());
-  return kDone;
+  return io::kDone;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -6,7 +6,7 @@
 #include "swiftlet/analysis/identify/identify_options.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 // True for the name of a ULog file.
 bool is_ulog(const std::string& file);
@@ -15,4 +15,4 @@ bool is_ulog(const std::string& file);
 int identify_ulog(const IdentifyFlightOptions& options, const plant::Vehicle& base,
                   const std::string& base_name);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 std::string written_unit(const std::string& unit) {
   using boost::algorithm::replace_all_copy;
@@ -34,4 +34,4 @@ void add_estimates(pages::Page& page, const std::vector<identification::Paramete
   page.table({"parameter", "", "estimate, 95 % interval", "unit", "interval"}, rows);
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -9,7 +9,7 @@
 #include "swiftlet/analysis/pages/page.hpp"
 #include "swiftlet/identification/fitting/estimate.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 // A unit, "V*s^2/rad^2", with superscript 2 and centred dots, UTF-8.
 std::string written_unit(const std::string& unit);
@@ -23,4 +23,4 @@ nlohmann::ordered_json json_of(const identification::ParameterEstimate& estimate
 // Adds a table with a row for each estimate.
 void add_estimates(pages::Page& page, const std::vector<identification::ParameterEstimate>& estimates);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -3,9 +3,9 @@
 
 #include <string>
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
-// Returns the text of a file, decompressed if it is a gzip file. Throws runtime::ConfigError.
+// Returns the text of a file, decompressed if it is a gzip file. Throws io::ConfigError.
 std::string read_unpacked(const std::string& path);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -10,7 +10,7 @@
 #include "swiftlet/math/time.hpp"
 #include "swiftlet/record/evaluation.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 namespace {
 
 // Returns the row with this stamp and advances `at` to it; null if there is none.
@@ -71,7 +71,7 @@ std::vector<std::string> columns_of(std::size_t rotors) {
 void write_flight_csv(const std::filesystem::path& file, const record::Flight& flight) {
   const auto rotors = static_cast<std::size_t>(flight.truth.empty() ? 0 : flight.truth.back().rotor_count);
   const record::Window window = record::evaluate(flight).window.value_or(record::Window{});
-  runtime::CsvWriter csv(file, columns_of(rotors));
+  io::CsvWriter csv(file, columns_of(rotors));
   auto after = flight.truth.begin();
   std::size_t estimate_row = 0, command_row = 0;
   for (const record::ReferenceRow& reference : flight.reference) {
@@ -106,4 +106,4 @@ void write_flight_csv(const std::filesystem::path& file, const record::Flight& f
   csv.finish();
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -16,15 +16,15 @@
 #include "swiftlet/plant/model/esc.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 namespace {
 
 namespace fs = std::filesystem;
 using identification::FlightLog;
 using identification::FlightPose;
-using runtime::ConfigError;
-using runtime::Measurements;
-using runtime::Quantity;
+using io::ConfigError;
+using io::Measurements;
+using io::Quantity;
 
 constexpr double kLongestTimeGap = 3600.0;  // s
 constexpr double kNearGravity =
@@ -258,7 +258,7 @@ void read_poses(const Measurements& table, FlightLog& log) {
 
 // Refuses the table of `swiftlet log csv`, which has neither specific forces nor all samples.
 void refuse_telemetry(const std::string& text, const std::string& file) {
-  if (runtime::is_flight_csv(runtime::first_csv_line(text, file))) {
+  if (io::is_flight_csv(io::first_csv_line(text, file))) {
     throw ConfigError(
         file, 1, "header",
         "is that of the telemetry of a flight; an identification needs the flight.mcap of its record");
@@ -316,7 +316,7 @@ ReadFlightLog read_flight_log(const fs::path& path, const plant::Vehicle& base, 
   if (record::is_mcap(file)) return {recorded_log(file, axes, vehicle.empty() ? from.vehicle : vehicle), {}};
   const std::string text = read_unpacked(file.string());
   refuse_telemetry(text, file.string());
-  const Measurements table = runtime::parse_measurements(text, file.string(), flight_quantities());
+  const Measurements table = io::parse_measurements(text, file.string(), flight_quantities());
   ReadFlightLog out;
   FlightLog& log = out.log;
   log.name = file.string();
@@ -342,4 +342,4 @@ ReadFlightLog read_flight_log(const fs::path& path, const plant::Vehicle& base, 
   return out;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -9,7 +9,7 @@
 #include "swiftlet/plant/model/vehicle.hpp"
 #include "swiftlet/record/flight.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 // Converts a flight to one row per IMU sample. The rows start with the first IMU sample at which every
 // recorded stream has a sample. Supply voltages are interpolated linearly, commands and rotor speeds are
@@ -33,8 +33,8 @@ struct ReadFlightLog {
 // converts pulse widths to throttles. Optional: supply voltage, rotor speeds, running, and pose_time with
 // position and orientation.
 // Or reads an MCAP file of recorded messages, whose axes are forward, right, down; vehicle: of those in the file, may be
-// empty if it has only one. A folder stands for the flight.mcap in it. Throws runtime::ConfigError.
+// empty if it has only one. A folder stands for the flight.mcap in it. Throws io::ConfigError.
 ReadFlightLog read_flight_log(const std::filesystem::path& file, const plant::Vehicle& base, BodyAxes axes,
                               const std::string& vehicle = {});
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -13,7 +13,7 @@
 #include "swiftlet/record/mcap/topic_decoder.hpp"
 #include "swiftlet/services/messages/topics.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 namespace {
 
 using mcap::Series;
@@ -48,12 +48,12 @@ std::set<std::string> compared_topics(const mcap::Reader& a, const mcap::Reader&
 
 // When the vehicle of a topic starts its first mission, by its own clock.
 std::optional<std::int64_t> mission_start_ns(const mcap::Reader& file, const std::string& topic) {
-  const std::string status = topic.substr(0, topic.rfind('/') + 1) + comms::topics::kMissionStatus.name;
+  const std::string status = topic.substr(0, topic.rfind('/') + 1) + messages::topics::kMissionStatus.name;
   const std::optional<Series> series = series_of(file, status);
   if (!series || !series->has_numbers("state")) return std::nullopt;
   const std::vector<double>& state = series->numbers("state");
   const auto running =
-      std::find(state.begin(), state.end(), double{comms::msg::MissionStatus_Constants::RUNNING});
+      std::find(state.begin(), state.end(), double{messages::msg::MissionStatus_Constants::RUNNING});
   if (running == state.end()) return std::nullopt;
   return series->stamp_ns()[static_cast<std::size_t>(running - state.begin())];
 }
@@ -248,7 +248,7 @@ std::vector<TopicDifference> difference(const mcap::Reader& a, const mcap::Reade
   for (const std::string& topic : topics.empty() ? compared_topics(a, b) : topics) {
     const std::optional<Series> in_a = series_of(a, topic);
     const std::optional<Series> in_b = series_of(b, topic);
-    if (!in_a && !in_b) throw runtime::ConfigError(a.name(), 0, topic, "is in neither of the files");
+    if (!in_a && !in_b) throw io::ConfigError(a.name(), 0, topic, "is in neither of the files");
     TopicDifference now;
     now.topic = topic;
     if (in_a && in_b) {
@@ -276,4 +276,4 @@ TopicDifference difference(const Series& a, const Series& b, std::int64_t start_
   return now;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

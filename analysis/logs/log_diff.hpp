@@ -10,7 +10,7 @@
 #include "swiftlet/record/mcap/reader.hpp"
 #include "swiftlet/record/mcap/series.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 // How far a signal of B lies from that of A: the length of the difference of a vector, the angle between two attitudes
 // (rad). At the times of A; B is interpolated linearly between messages at most 1 s apart, a whole number is held.
@@ -42,4 +42,4 @@ std::vector<TopicDifference> difference(const mcap::Reader& a, const mcap::Reade
 TopicDifference difference(const mcap::Series& a, const mcap::Series& b, std::int64_t start_a_ns,
                            std::int64_t start_b_ns);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

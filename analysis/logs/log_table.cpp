@@ -1,6 +1,6 @@
 #include "swiftlet/analysis/logs/log_table.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 void for_each_row(const mcap::Reader& file, const mcap::Selection& selection, const std::string& topic,
                   const UseRow& use) {
@@ -19,4 +19,4 @@ std::vector<mcap::Column> columns_of(const mcap::Reader& file, const std::string
   return mcap::TopicDecoder(file, topic).columns();
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

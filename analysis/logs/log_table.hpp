@@ -9,7 +9,7 @@
 #include "swiftlet/record/mcap/series.hpp"
 #include "swiftlet/record/mcap/topic_decoder.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 using mcap::decodable_topics;
 using mcap::number_of;
@@ -23,4 +23,4 @@ void for_each_row(const mcap::Reader& file, const mcap::Selection& selection, co
 // The columns of a topic. Throws ConfigError as above.
 std::vector<mcap::Column> columns_of(const mcap::Reader& file, const std::string& topic);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -9,7 +9,7 @@
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/record/mcap/record_writer.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 namespace {
 
 // ZIP, as in the application note of PKWARE: signatures, and the version that a reader needs.
@@ -110,7 +110,7 @@ void NpzWriter::write(const std::filesystem::path& file) const {
   put(whole, central_size, 4);
   put(whole, archive_.size(), 4);
   put(whole, 0, 2);  // comment
-  runtime::write_atomically(file, whole);
+  io::write_atomically(file, whole);
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

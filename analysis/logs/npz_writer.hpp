@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 class NpzWriter {
  public:
@@ -36,4 +36,4 @@ class NpzWriter {
   std::vector<Entry> entries_;
 };
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

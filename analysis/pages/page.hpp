@@ -4,7 +4,7 @@
 //   page.paragraph("from the bench data", "quiet");
 //   page.table({"parameter", "value"}, {{"mass", "0.9 kg"}});
 //   page.figures({mass_figure});
-//   runtime::write_atomically("report.html", page.html());
+//   io::write_atomically("report.html", page.html());
 #pragma once
 
 #include <string>

@@ -224,18 +224,18 @@ bool is_whole(const std::string& picture) {
 
 // Runs the script in a temporary folder. Returns the file 0 that it writes there. Throws std::runtime_error.
 std::string run_gnuplot(const std::string& script) {
-  const fs::path gnuplot = ground::find_program("gnuplot");
+  const fs::path gnuplot = io::find_program("gnuplot");
   if (gnuplot.empty()) throw std::runtime_error(kNotInstalled);
-  const auto temporary = runtime::TemporaryFolder::of_the_system("swiftlet-plot");
+  const auto temporary = io::TemporaryFolder::of_the_system("swiftlet-plot");
   const fs::path& folder = temporary.path();
-  runtime::write_atomically(folder / "script", script);
-  ground::ChildProcess process({"gnuplot", gnuplot, {"script"}, folder / "log", folder});
+  io::write_atomically(folder / "script", script);
+  io::ChildProcess process({"gnuplot", gnuplot, {"script"}, folder / "log", folder});
   const auto end = process.wait(kLongest);
   const std::string no_picture = "no picture was drawn: gnuplot ";
   if (!end) throw std::runtime_error(no_picture + fmt::format("took longer than {} s", kLongest.count()));
   if (end->by_signal || end->code != 0)
     throw std::runtime_error(no_picture + end->to_string() + ": " + process.last_log_line());
-  std::string picture = runtime::read_text_file(folder / "0");
+  std::string picture = io::read_text_file(folder / "0");
   if (!is_whole(picture))
     throw std::runtime_error(no_picture + "wrote a truncated file; is " + fs::temp_directory_path().string() +
                              " full?");
@@ -257,9 +257,9 @@ std::string draw_png(const Figure& figure, const fs::path& png, bool with_script
   const fs::path script = fs::path(png).replace_extension(".gp");
   try {
     if (with_script)
-      runtime::write_atomically(
+      io::write_atomically(
           script, "# Run gnuplot on this file, in its folder.\n" + gnuplot_script(figure, png.filename()));
-    runtime::write_atomically(png, run_gnuplot(gnuplot_script(figure, "0")));
+    io::write_atomically(png, run_gnuplot(gnuplot_script(figure, "0")));
     return {};
   } catch (const std::exception& fault) {
     const bool hint = with_script && fault.what() == std::string_view(kNotInstalled);
@@ -269,7 +269,7 @@ std::string draw_png(const Figure& figure, const fs::path& png, bool with_script
 
 std::string draw_png_if_installed(const Figure& figure, const fs::path& png) {
   std::string fault = draw_png(figure, png, true);
-  if (!fault.empty() && !ground::find_program("gnuplot").empty()) throw std::runtime_error(fault);
+  if (!fault.empty() && !io::find_program("gnuplot").empty()) throw std::runtime_error(fault);
   return fault;
 }
 

@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 namespace {
 
 using Row = std::vector<std::string>;  // label, then one cell per flight
@@ -129,4 +129,4 @@ nlohmann::ordered_json comparison_json(const std::vector<RecordedFlight>& flight
   return json;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

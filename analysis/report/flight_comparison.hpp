@@ -8,7 +8,7 @@
 
 #include "swiftlet/analysis/report/recorded_flights.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 // Returns a table for a terminal with one column per flight. For one flight: its results and all its control
 // settings. For several: their results, and the settings in which they differ; "-" marks a missing value.
@@ -17,4 +17,4 @@ std::string comparison_table(const std::vector<RecordedFlight>& flights);
 // {"flights": [{"folder", "report", "settings": {...}}], "differ": [keys]}
 nlohmann::ordered_json comparison_json(const std::vector<RecordedFlight>& flights);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

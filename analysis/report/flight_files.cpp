@@ -15,7 +15,7 @@
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/math/time.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 namespace {
 
 using record::ReferenceRow;
@@ -76,7 +76,7 @@ plot::Figure flight_figure(const record::Flight& flight, const FlightReport& rep
 }  // namespace
 
 void write_report_json(const std::filesystem::path& file, const FlightReport& report) {
-  runtime::write_atomically(file, to_json(report).dump(2) + "\n");
+  io::write_atomically(file, to_json(report).dump(2) + "\n");
 }
 
 std::string draw_flight(const std::filesystem::path& folder, const record::Flight& flight,
@@ -84,4 +84,4 @@ std::string draw_flight(const std::filesystem::path& folder, const record::Fligh
   return plot::draw_png_if_installed(flight_figure(flight, report, window), folder / "flight.png");
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

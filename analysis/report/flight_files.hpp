@@ -7,7 +7,7 @@
 #include "swiftlet/analysis/report/flight_report.hpp"
 #include "swiftlet/record/evaluation.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 void write_report_json(const std::filesystem::path& file, const FlightReport& report);
 
@@ -17,4 +17,4 @@ void write_report_json(const std::filesystem::path& file, const FlightReport& re
 std::string draw_flight(const std::filesystem::path& folder, const record::Flight& flight,
                         const FlightReport& report, record::Window window);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -7,7 +7,7 @@
 
 #include "swiftlet/services/runtime/clock.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 namespace {
 
 const std::string kRealtime = runtime::to_string(runtime::Clock::kRealtime);
@@ -92,4 +92,4 @@ std::string to_text(const FlightReport& report) {
   return text;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -9,7 +9,7 @@
 
 #include "swiftlet/record/evaluation.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 // Sense-to-actuate latency: from the vehicle's write of an IMU sample to its receipt of the command.
 struct LatencyFigures {
@@ -56,4 +56,4 @@ nlohmann::ordered_json to_json(const FlightReport& report);
 // Several lines for a terminal, errors in mm.
 std::string to_text(const FlightReport& report);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

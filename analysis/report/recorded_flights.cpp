@@ -14,7 +14,7 @@
 #include "swiftlet/record/file/flight_reader.hpp"
 #include "swiftlet/record/mcap/attached_file.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 namespace {
 
 namespace fs = std::filesystem;
@@ -27,7 +27,7 @@ std::string element_of(const std::map<std::string, std::string>& metadata, const
                        const std::string& vehicle) {
   const auto split = [&](const char* key) {
     const auto found = metadata.find(key);
-    return found == metadata.end() ? std::vector<std::string>() : runtime::split_text(found->second, ',');
+    return found == metadata.end() ? std::vector<std::string>() : io::split_text(found->second, ',');
   };
   const std::vector<std::string> vehicles = split("vehicles");
   const std::vector<std::string> elements = split(list_key);
@@ -69,9 +69,8 @@ nlohmann::ordered_json report_of(const mcap::Reader& file, const std::string& ve
 void add_written(const fs::path& report, nlohmann::ordered_json& json) {
   std::error_code none;
   if (!fs::exists(report, none)) return;
-  const auto written =
-      nlohmann::ordered_json::parse(runtime::read_text_file(report.string()), nullptr, false);
-  if (!written.is_object()) throw runtime::ConfigError(report.string(), 0, "", "is not valid JSON");
+  const auto written = nlohmann::ordered_json::parse(io::read_text_file(report.string()), nullptr, false);
+  if (!written.is_object()) throw io::ConfigError(report.string(), 0, "", "is not valid JSON");
   json.erase("reason");
   json.update(written);
 }
@@ -83,7 +82,7 @@ std::vector<std::pair<std::string, std::string>> settings_of(const mcap::Reader&
     const std::string name = kind + ".yaml";
     const auto text = mcap::attached_file(file, vehicle, name);
     if (!text) continue;
-    for (auto& [key, value] : runtime::flatten_yaml(*text, file.name() + "/" + name))
+    for (auto& [key, value] : io::flatten_yaml(*text, file.name() + "/" + name))
       all.emplace_back(kind + "." + key, std::move(value));
   }
   return all;
@@ -129,8 +128,9 @@ fs::path newest_record(const fs::path& below) {
     newest = entry.path();
     newest_time = time;
   }
-  if (!newest) throw InputError(below.string() + ": contains no flight record; pass the folder of a record");
+  if (!newest)
+    throw io::InputError(below.string() + ": contains no flight record; pass the folder of a record");
   return *newest;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -10,7 +10,7 @@
 
 #include "swiftlet/record/flight.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 struct RecordedFlight {  // NOLINT(bugprone-exception-escape): ordered_json is moved without one
   std::filesystem::path record;
@@ -24,11 +24,11 @@ struct RecordedFlight {  // NOLINT(bugprone-exception-escape): ordered_json is m
   record::Flight flown;
 };
 
-// The flights of a record, one for each vehicle; of the folder of a vehicle that one. Throws runtime::ConfigError
+// The flights of a record, one for each vehicle; of the folder of a vehicle that one. Throws io::ConfigError
 // for a folder without one, a damaged file, or one without messages of a vehicle.
 std::vector<RecordedFlight> load_record(const std::filesystem::path& record);
 
 // Returns the newest record in a folder. Throws InputError if there is none.
 std::filesystem::path newest_record(const std::filesystem::path& below);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -5,7 +5,7 @@
 #include "swiftlet/control/design/control_gains.hpp"
 #include "swiftlet/control/design/flown_delay.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 namespace {
 
 constexpr double kFactorAccuracy = 1e-3;
@@ -102,4 +102,4 @@ std::vector<std::pair<std::string, std::string>> slowed_values(const control::Co
   return out;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -12,7 +12,7 @@
 #include "swiftlet/plant/model/control_level.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 struct DelayDesign {
   double factor = 1.0;  // on the bandwidth of every loop
@@ -44,4 +44,4 @@ DelayDesign design_for_delay(const plant::Vehicle& vehicle, const control::Contr
 // The values that slowed() changes, and the name, with their keys in the control settings file.
 std::vector<std::pair<std::string, std::string>> slowed_values(const control::ControlSettings& to);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

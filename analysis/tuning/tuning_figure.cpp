@@ -9,7 +9,7 @@
 #include "swiftlet/analysis/plot/gnuplot.hpp"
 #include "swiftlet/analysis/tuning/tuning_table.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 namespace {
 
 using plot::Colour;
@@ -130,4 +130,4 @@ std::string draw_tuning(const std::filesystem::path& png, const TuningStudy& stu
   return plot::draw_png(tuning_figure(study), png);
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

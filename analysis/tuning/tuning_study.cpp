@@ -5,7 +5,7 @@
 #include <complex>
 #include <limits>
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -108,4 +108,4 @@ TuningStudy study_tuning(const plant::Vehicle& vehicle, const std::vector<contro
   return study;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -10,7 +10,7 @@
 #include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 // The delay from a sample to the rotors, s.
 struct LoopDelay {
@@ -56,4 +56,4 @@ struct TuningStudy {
 TuningStudy study_tuning(const plant::Vehicle& vehicle, const std::vector<control::ControlSettings>& settings,
                          const LoopDelay& delay);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -5,7 +5,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -86,4 +86,4 @@ std::string tuning_json(const TuningStudy& study) {
   return out.dump(2);
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -5,7 +5,7 @@
 
 #include "swiftlet/analysis/tuning/tuning_study.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 // "rotor lag 82.1 ms, delay 1.5 ms (1.0 ms of sampling, 0.5 ms measured in flights/A)"
 std::string delay_text(const TuningStudy& study);
@@ -21,4 +21,4 @@ std::string tuning_table(const TuningStudy& study);
 // null: there is no such figure, or no such change makes the loop unstable.
 std::string tuning_json(const TuningStudy& study);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

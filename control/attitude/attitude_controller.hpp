@@ -14,7 +14,7 @@ namespace swiftlet::control {
 
 struct AttitudeReference {
   Eigen::Vector3d body_z_ned = Eigen::Vector3d::UnitZ();  // desired direction of body z, unit length
-  Heading heading;
+  math::Heading heading;
   // Feed-forward in the reference's own body axes. Leave at zero if not known.
   Eigen::Vector3d body_rates = Eigen::Vector3d::Zero();          // rad/s
   Eigen::Vector3d body_accelerations = Eigen::Vector3d::Zero();  // rad/s^2

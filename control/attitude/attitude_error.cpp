@@ -21,7 +21,7 @@ double chord(double cosine, double sine) {
 
 }  // namespace
 
-Matrix3d attitude_along(const Vector3d& body_z_ned, const Heading& heading) {
+Matrix3d attitude_along(const Vector3d& body_z_ned, const math::Heading& heading) {
   // Body x lies in the vertical plane of the heading, Eq. (3): it is at right angles to (-s psi, c psi, 0).
   const Vector3d across(-heading.sine, heading.cosine, 0.0);
   Matrix3d axes;
@@ -32,7 +32,7 @@ Matrix3d attitude_along(const Vector3d& body_z_ned, const Heading& heading) {
 }
 
 Vector3d euler_error(const Eigen::Quaterniond& q_ned_from_frd, const Vector3d& body_z_ned, double yaw_rad) {
-  const EulerAngles euler = euler_angles(q_ned_from_frd);
+  const math::EulerAngles euler = math::euler_angles(q_ned_from_frd);
   const double cosine = euler.heading.cosine;
   const double sine = euler.heading.sine;
   const Vector3d b(cosine * body_z_ned.x() + sine * body_z_ned.y(),
@@ -40,12 +40,12 @@ Vector3d euler_error(const Eigen::Quaterniond& q_ned_from_frd, const Vector3d& b
   const Vector3d wanted(-std::atan2(b.y(), std::sqrt(b.x() * b.x() + b.z() * b.z())),
                         std::atan2(b.x(), b.z()), yaw_rad);
   Vector3d error = wanted - euler.vector();
-  for (double& angle : error) angle = wrap_angle(angle);
+  for (double& angle : error) angle = math::wrap_angle(angle);
   return error;
 }
 
 RotationError rotation_error(const Eigen::Quaterniond& q_ned_from_frd, const Vector3d& body_z_ned,
-                             const Heading& heading) {
+                             const math::Heading& heading) {
   RotationError error;
   const Matrix3d r_frd_from_ned = q_ned_from_frd.toRotationMatrix().transpose();
   error.r_frd_from_reference.noalias() = r_frd_from_ned * attitude_along(body_z_ned, heading);

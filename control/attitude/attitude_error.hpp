@@ -25,7 +25,7 @@ inline Eigen::Vector3d body_z(const Eigen::Quaterniond& q_ned_from_frd) {
 
 // The body axes, as columns in NED, of the attitude whose z axis is body_z_ned (unit length, less than 90
 // degrees from straight down) and whose Euler yaw, Eq. (3), is the heading.
-Eigen::Matrix3d attitude_along(const Eigen::Vector3d& body_z_ned, const Heading& heading);
+Eigen::Matrix3d attitude_along(const Eigen::Vector3d& body_z_ned, const math::Heading& heading);
 
 // Differences of the Euler angles (phi, theta, psi), each in -pi .. pi. The desired phi and theta point body
 // z along body_z_ned at the present yaw, so the thrust direction is right while yaw still turns:
@@ -45,6 +45,6 @@ struct RotationError {
 // control", ETH 2013). Each is 2 sin(angle / 2) about its axis: equal to the angle if small, at most 2, and
 // never without a direction: upside down it turns about the body x axis.
 RotationError rotation_error(const Eigen::Quaterniond& q_ned_from_frd, const Eigen::Vector3d& body_z_ned,
-                             const Heading& heading);
+                             const math::Heading& heading);
 
 }  // namespace swiftlet::control

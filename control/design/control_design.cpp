@@ -146,7 +146,7 @@ AttitudeAxisDesign design_attitude_axis(AttitudeModel model, const LqrWeights& w
   const StateSpace axis = attitude_axis_model(model, rotor_lag_s);
   const Eigen::Index n = axis.a.rows();
   const Eigen::MatrixXd q = weights.q.head(n).asDiagonal();
-  const Eigen::RowVectorXd k = lqr(axis.a, axis.b, q, Eigen::MatrixXd::Constant(1, 1, weights.r));
+  const Eigen::RowVectorXd k = math::lqr(axis.a, axis.b, q, Eigen::MatrixXd::Constant(1, 1, weights.r));
   AttitudeAxisDesign axis_design;
   axis_design.model = model;
   axis_design.weights = weights;

@@ -40,8 +40,8 @@ std::vector<double> crossovers(const Loop& loop) {
     const double omega = lambda.imag();
     if (!(omega > 0.0) || std::abs(lambda.real()) > 1e-3 * omega) continue;
     if (std::abs(log_gain(loop, omega)) < kGainTolerance) {
-      found.push_back(
-          std::exp(refine_zero([&](double x) { return log_gain(loop, std::exp(x)); }, std::log(omega))));
+      found.push_back(std::exp(
+          math::refine_zero([&](double x) { return log_gain(loop, std::exp(x)); }, std::log(omega))));
     }
   }
   std::sort(found.begin(), found.end());

@@ -35,7 +35,7 @@ double refine_phase_crossover(const Loop& loop, double omega) {
     const std::complex<double> response = frequency_response(loop, std::exp(log_omega));
     return std::atan(response.imag() / response.real());
   };
-  return std::exp(refine_zero(phase, std::log(omega)));
+  return std::exp(math::refine_zero(phase, std::log(omega)));
 }
 
 }  // namespace

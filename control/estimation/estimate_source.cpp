@@ -21,7 +21,7 @@ Quaterniond about_down(double angle_rad) {
 
 // The turn about down by which the heading of `to` differs from that of `from`, rad, within -pi .. pi.
 double heading_between(const Quaterniond& from, const Quaterniond& to) {
-  const double yaw = euler_angles(to).heading.yaw_rad - euler_angles(from).heading.yaw_rad;
+  const double yaw = math::euler_angles(to).heading.yaw_rad - math::euler_angles(from).heading.yaw_rad;
   return std::remainder(yaw, 2.0 * M_PI);
 }
 
@@ -129,7 +129,7 @@ void EstimateSource::go_on(const Motion& source, const Vector3d& specific_force_
     return;
   }
   now_.position_ned += dt_s * now_.velocity_ned;
-  const Quaterniond expected = now_.q_ned_from_frd * plant::rotation(dt_s * now_.body_rates_frd);
+  const Quaterniond expected = now_.q_ned_from_frd * math::rotation(dt_s * now_.body_rates_frd);
   heading_rad_ = heading_between(source.q_ned_from_frd, expected);
   const Vector3d acceleration_ned = expected * specific_force_frd + Vector3d(0.0, 0.0, plant::kGravity);
   velocity_rest_ned_ =

@@ -96,13 +96,13 @@ bool Estimator::predict(const plant::ImuSample& sample, const MeanMotion& mean) 
   // Sola's Eq. (260a)-(260c), v <- v + (R a + g) dt, q <- q rotation(w dt), with the means between the two samples
   const Vector3d mean_rates = mean.body_rates_frd - now_.gyro_bias;
   const Vector3d mean_force = mean.specific_force_frd - now_.accelerometer_bias;
-  const Quaterniond half_turn = plant::rotation(0.5 * dt * mean_rates);
+  const Quaterniond half_turn = math::rotation(0.5 * dt * mean_rates);
   const Quaterniond q_mid = path_.q_ned_from_frd * half_turn;
   const Vector3d acceleration = q_mid * mean_force + Vector3d(0.0, 0.0, plant::kGravity);
   path_.stamp_ns = sample.stamp_ns;
   path_.position_ned += dt * path_.velocity_ned + (0.5 * dt * dt) * acceleration;
   path_.velocity_ned += dt * acceleration;
-  path_.q_ned_from_frd = plant::renormalised(q_mid * half_turn);
+  path_.q_ned_from_frd = math::renormalised(q_mid * half_turn);
   if (!initialised_ && path_.velocity_ned.norm() > kMaxFallSpeed) {  // restart: the start is arbitrary
     path_.position_ned.setZero();
     path_.velocity_ned.setZero();
@@ -175,10 +175,10 @@ PoseInnovation Estimator::compare(const plant::PoseSample& pose) {
 
   // A pose ahead of the IMU is compared with the extrapolated estimate.
   const double ahead_s = math::seconds(pose.stamp_ns - snapshot.stamp_ns);
-  const Quaterniond q_ned_from_frd = snapshot.q_ned_from_frd * plant::rotation(ahead_s * now_.body_rates_frd);
+  const Quaterniond q_ned_from_frd = snapshot.q_ned_from_frd * math::rotation(ahead_s * now_.body_rates_frd);
   PoseInnovation innovation;
   innovation.position = pose.position_ned - (snapshot.position_ned + ahead_s * snapshot.velocity_ned);
-  innovation.rotation = plant::rotation_vector(pose.q_ned_from_frd.normalized() * q_ned_from_frd.conjugate());
+  innovation.rotation = math::rotation_vector(pose.q_ned_from_frd.normalized() * q_ned_from_frd.conjugate());
   return innovation;
 }
 
@@ -288,7 +288,7 @@ void Estimator::Correction::apply_to(StateSnapshot& snapshot) const {
                            (t * t / 2) * acceleration;
   snapshot.velocity_ned +=
       velocity - since.velocity_change.cross(rotation - (t / 2) * rate) - t * acceleration;
-  snapshot.q_ned_from_frd = (plant::rotation(rotation - t * rate) * snapshot.q_ned_from_frd).normalized();
+  snapshot.q_ned_from_frd = (math::rotation(rotation - t * rate) * snapshot.q_ned_from_frd).normalized();
   ++snapshot.corrections;
 }
 

@@ -30,7 +30,7 @@ MeanMotion OdometryMotion::step(const plant::OdometrySample& sample, double spec
       has_last_ ? Vector3d(0.5 * (last_.body_rates_frd + sample.body_rates_frd)) : sample.body_rates_frd;
   if (has_last_ && !jumped && !too_close && dt_s > 0.0)
     motion.body_rates_frd =
-        plant::rotation_vector(last_.q_ned_from_frd.conjugate() * sample.q_ned_from_frd) / dt_s;
+        math::rotation_vector(last_.q_ned_from_frd.conjugate() * sample.q_ned_from_frd) / dt_s;
   if (has_last_ && dt_s > 0.0)
     interval_s_ = interval_s_ == 0.0 ? dt_s : interval_s_ + kIntervalGain * (dt_s - interval_s_);
   last_force_frd_ = motion.specific_force_frd;

@@ -14,7 +14,7 @@ PoseImuConsistencyTest::Result PoseImuConsistencyTest::update(const plant::PoseS
                         settings.detectors.pose_imu_consistency.interval_s)
     return Result::kNone;
   points_[count_++] = {pose.stamp_ns, pose.position_ned, pose.position_ned - innovation.position,
-                       plant::rotation(innovation.rotation)};
+                       math::rotation(innovation.rotation)};
   if (count_ < points_.size()) return Result::kNone;
   const Result result = agree(settings) ? Result::kAgree : Result::kDisagree;
   points_[0] = points_[1];
@@ -32,7 +32,7 @@ bool PoseImuConsistencyTest::agree(const EstimatorSettings& settings) const {
   const double turn_limit =
       limits.turn_rad + limits.sigmas * std::sqrt(2.0) * settings.mocap_orientation_sigma;
   for (const Point& point : points_) {
-    if (plant::rotation_vector(point.turn_ned * turn.conjugate()).norm() > turn_limit) return false;
+    if (math::rotation_vector(point.turn_ned * turn.conjugate()).norm() > turn_limit) return false;
   }
   const auto residual = [&](const Point& point) -> Eigen::Vector3d {
     const double t = math::seconds(point.stamp_ns - points_[0].stamp_ns);

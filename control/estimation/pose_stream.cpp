@@ -37,7 +37,7 @@ void PoseContinuity::update(const plant::PoseSample& pose) {
     const Eigen::Quaterniond turned_frd = last.q_ned_from_frd.conjugate() * pose.q_ned_from_frd;
     const double reach_m = max_speed_ * interval_s_ + settings_.noise_m;
     const double reach_rad = max_body_rate_ * interval_s_ + settings_.noise_rad;
-    stepped = moved_ned.norm() > reach_m || plant::rotation_vector(turned_frd).norm() > reach_rad;
+    stepped = moved_ned.norm() > reach_m || math::rotation_vector(turned_frd).norm() > reach_rad;
     if (stepped && rejected_) {
       rejected_ = false;
       in_reach_ = true;
@@ -48,7 +48,7 @@ void PoseContinuity::update(const plant::PoseSample& pose) {
       turned_frd_ = (turned_frd_ * turned_frd).normalized();
       // The allowance is twice the reach: once for the step away, once for the step back.
       in_reach_ =
-          stepped_ned_.norm() < 2.0 * reach_m && plant::rotation_vector(turned_frd_).norm() < 2.0 * reach_rad;
+          stepped_ned_.norm() < 2.0 * reach_m && math::rotation_vector(turned_frd_).norm() < 2.0 * reach_rad;
     }
     if (interval_s_ > settings_.longest_gap_s) unbroken_ = false;
   }

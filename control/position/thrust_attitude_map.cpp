@@ -43,7 +43,7 @@ ThrustAttitude thrust_attitude(double mass_kg, const Vector3d& acceleration_ned,
   return out;
 }
 
-ReferenceMotion reference_motion(double mass_kg, const Reference& reference, const Heading& heading) {
+ReferenceMotion reference_motion(double mass_kg, const Reference& reference, const math::Heading& heading) {
   const double cosine = heading.cosine;
   const double sine = heading.sine;
   const double psi_1 = reference.yaw_rate;

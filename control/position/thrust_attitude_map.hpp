@@ -36,6 +36,6 @@ struct ReferenceMotion {
 // yaw. Its attitude is attitude_along() the body z axis of thrust_attitude() for the reference's
 // acceleration, at the reference's yaw. If the reference falls so fast that b_z < kMinimumLift g, b_z is set
 // to that and all derivatives are zero. heading: of the reference's yaw.
-ReferenceMotion reference_motion(double mass_kg, const Reference& reference, const Heading& heading);
+ReferenceMotion reference_motion(double mass_kg, const Reference& reference, const math::Heading& heading);
 
 }  // namespace swiftlet::control

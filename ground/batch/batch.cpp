@@ -25,7 +25,7 @@ double elapsed_s(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-double supply_voltage_v(const World& world) {
+double supply_voltage_v(const simulation::World& world) {
   return plant::open_circuit_voltage(world.vehicle.battery, world.simulation.supply.initial_state_of_charge);
 }
 
@@ -129,10 +129,10 @@ Batch BatchRunner::fly(std::size_t jobs, const std::function<bool()>& cancelled,
   const auto fly_one = [&](std::size_t index) -> std::optional<BatchRun> {
     if (cancelled()) return std::nullopt;
     const std::uint64_t seed = plan_.seed + index;
-    DispersionSample drawn = draw(plan_, seed);
-    ClosedLoop loop = closed_loop(plan_, drawn.world, seed);
+    simulation::DispersionSample drawn = draw(plan_, seed);
+    simulation::ClosedLoop loop = closed_loop(plan_, drawn.world, seed);
     record::Flight flight;
-    const FlightReport report = fly_in_process(loop, plan_, seed, flight, nullptr, cancelled);
+    const analysis::FlightReport report = fly_in_process(loop, plan_, seed, flight, nullptr, cancelled);
     if (!report.completed && cancelled()) return std::nullopt;
     return BatchRun{seed,
                     report.completed,

@@ -44,7 +44,7 @@ struct BatchProgress {
 };
 
 // Run i, from 0, uses the seed plan.seed + i for the parameter samples and for all random numbers of its
-// simulation. The constructor samples all runs: it throws runtime::ConfigError if no valid sample is found,
+// simulation. The constructor samples all runs: it throws io::ConfigError if no valid sample is found,
 // and std::invalid_argument for control settings that cannot be flown.
 class BatchRunner {
  public:

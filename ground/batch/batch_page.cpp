@@ -15,7 +15,7 @@ constexpr std::size_t kScattersOfPage = 6;
 constexpr std::size_t kMostFailed = 100;
 constexpr double kMmPerM = 1e3;
 
-pages::Row row_of(const std::string& name, const Spread& spread, double factor) {
+pages::Row row_of(const std::string& name, const math::Spread& spread, double factor) {
   pages::Row row = {name};
   for (const double value : {spread.min, spread.p5, spread.median, spread.p95, spread.max})
     row.push_back(fmt::format("{:.3g}", factor * value));
@@ -48,7 +48,7 @@ std::string batch_page(const BatchReport& report) {
   pages::Page page("Batch of " + report.mission);
   page.paragraph(
       fmt::format("{}, {} failed, of {} requested; vehicle {}, control {}, dispersion {}; seeds from {}",
-                  counted(report.batch.runs.size(), "run"), report.batch.failed(), report.batch.requested,
+                  io::counted(report.batch.runs.size(), "run"), report.batch.failed(), report.batch.requested,
                   report.vehicle, report.control, report.dispersion, report.first_seed),
       report.completed() ? "quiet" : "warning");
   add_spreads(page, report);

@@ -21,7 +21,7 @@ constexpr double kLongTail = 4.0;  // maximum over median, above which the error
 std::string headline(const BatchReport& report) {
   const std::size_t failed = report.batch.failed();
   return report.mission + " - " + report.vehicle + ", " + report.control + ", dispersion " +
-         report.dispersion + ": " + counted(report.batch.runs.size(), "run") +
+         report.dispersion + ": " + io::counted(report.batch.runs.size(), "run") +
          fmt::format(", {} failed", failed) + (failed > 0 ? " (red)" : "");
 }
 
@@ -75,9 +75,9 @@ plot::Panel margin_panel(const Batch& batch) {
 }
 
 std::string axis_label(const std::string& name) {
-  const auto& known = parameters();
-  const auto found =
-      std::find_if(known.begin(), known.end(), [&](const Parameter& p) { return p.name == name; });
+  const auto& known = simulation::parameters();
+  const auto found = std::find_if(known.begin(), known.end(),
+                                  [&](const simulation::Parameter& p) { return p.name == name; });
   if (found == known.end() || found->unit == "1") return name;
   return name + " (" + (found->unit.empty() ? "times nominal" : found->unit) + ")";
 }

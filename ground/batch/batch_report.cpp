@@ -31,7 +31,7 @@ std::string shell_word(const std::string& text) {
 std::string numbers(const std::vector<Eigen::Vector3d>& vectors) {
   std::string text;
   for (const Eigen::Vector3d& vector : vectors) {
-    for (const double number : vector) text += (text.empty() ? "" : ",") + runtime::exact(number);
+    for (const double number : vector) text += (text.empty() ? "" : ",") + io::exact(number);
   }
   return text;
 }
@@ -40,20 +40,20 @@ std::string repeat_of(const FlyOptions& options) {
   const FlyOptions usual;
   std::string command = "swiftlet sim fly " + shell_word(options.mission);
   const ReadingOptions& reading = options.reading;
-  if (reading.frame) command += std::string(" --frame ") + frame_name(*reading.frame);
-  if (reading.tolerance_m) command += " --tolerance " + runtime::exact(*reading.tolerance_m);
+  if (reading.frame) command += std::string(" --frame ") + io::frame_name(*reading.frame);
+  if (reading.tolerance_m) command += " --tolerance " + io::exact(*reading.tolerance_m);
   if (!reading.columns.empty()) command += " --columns " + shell_word(reading.columns);
-  if (reading.from_s) command += " --from " + runtime::exact(*reading.from_s);
-  if (reading.until_s) command += " --until " + runtime::exact(*reading.until_s);
-  const Placement& placement = reading.placement;
-  if (placement.scale != 1.0) command += " --scale " + runtime::exact(placement.scale);
-  if (placement.rotate_deg != 0.0) command += " --rotate " + runtime::exact(placement.rotate_deg);
+  if (reading.from_s) command += " --from " + io::exact(*reading.from_s);
+  if (reading.until_s) command += " --until " + io::exact(*reading.until_s);
+  const io::Placement& placement = reading.placement;
+  if (placement.scale != 1.0) command += " --scale " + io::exact(placement.scale);
+  if (placement.rotate_deg != 0.0) command += " --rotate " + io::exact(placement.rotate_deg);
   if (!placement.offset_ned.isZero(0.0)) command += " --offset " + numbers({placement.offset_ned});
   if (reading.fence) command += " --fence " + numbers({reading.fence->min_ned, reading.fence->max_ned});
   if (reading.time_scale != usual.reading.time_scale)
-    command += " --time-scale " + runtime::exact(reading.time_scale);
+    command += " --time-scale " + io::exact(reading.time_scale);
   if (reading.as_fast_as_possible)
-    command += " --as-fast-as-possible --reserve " + runtime::exact(reading.reserve);
+    command += " --as-fast-as-possible --reserve " + io::exact(reading.reserve);
   const auto add = [&](const char* option, const std::string& value, const std::string& usual_value) {
     if (value != usual_value) command += std::string(" ") + option + " " + shell_word(value);
   };
@@ -78,10 +78,10 @@ std::vector<ParameterEffect> effects_of(const BatchReport& report) {
   std::vector<ParameterEffect> effects;
   for (std::size_t i = 0; i < report.parameters.size(); ++i) {
     std::vector<double> values = column(report.batch, [i](const BatchRun& run) { return run.values[i]; });
-    const double of_value = rank_correlation(values, rms);
-    const double median = spread(values).median;
+    const double of_value = math::rank_correlation(values, rms);
+    const double median = math::spread(values).median;
     for (double& value : values) value = std::abs(value - median);
-    effects.push_back({report.parameters[i], of_value, rank_correlation(values, rms)});
+    effects.push_back({report.parameters[i], of_value, math::rank_correlation(values, rms)});
   }
   std::stable_sort(effects.begin(), effects.end(), [](const ParameterEffect& a, const ParameterEffect& b) {
     return a.strength() > b.strength();
@@ -91,13 +91,13 @@ std::vector<ParameterEffect> effects_of(const BatchReport& report) {
 
 Json json_of(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
 
-Json json_of(const Spread& spread) {
+Json json_of(const math::Spread& spread) {
   return {{"n", spread.count},          {"min", json_of(spread.min)},
           {"p5", json_of(spread.p5)},   {"median", json_of(spread.median)},
           {"p95", json_of(spread.p95)}, {"max", json_of(spread.max)}};
 }
 
-std::string row_of(const char* name, const char* unit, const Spread& spread, double scale) {
+std::string row_of(const char* name, const char* unit, const math::Spread& spread, double scale) {
   return fmt::format("  {:<22} {:>3} {:6}", name, unit, spread.count) +
          fmt::format(" {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:8.2f}", spread.min * scale, spread.p5 * scale,
                      spread.median * scale, spread.p95 * scale, spread.max * scale);
@@ -107,11 +107,12 @@ std::string headline_of(const BatchReport& report) {
   const Batch& batch = report.batch;
   const std::uint64_t first = report.first_seed;
   const std::string shard = report.shard.empty() ? "" : ", shard " + report.shard;
-  std::string text = report.mission + ", " + report.vehicle + " with " + report.control + ", dispersion " +
-                     report.dispersion +
-                     fmt::format("{}: {}, seeds {} to {}\n", shard, counted(batch.requested, "run").c_str(),
-                                 static_cast<unsigned long long>(first),
-                                 static_cast<unsigned long long>(first + batch.requested - 1));
+  std::string text =
+      report.mission + ", " + report.vehicle + " with " + report.control + ", dispersion " +
+      report.dispersion +
+      fmt::format("{}: {}, seeds {} to {}\n", shard, io::counted(batch.requested, "run").c_str(),
+                  static_cast<unsigned long long>(first),
+                  static_cast<unsigned long long>(first + batch.requested - 1));
   text += fmt::format("  {} completed, {} failed", batch.runs.size() - batch.failed(), batch.failed());
   if (report.interrupted())
     text += fmt::format(", {} NOT flown: batch cancelled", batch.requested - batch.runs.size());
@@ -125,7 +126,7 @@ std::string effect_cell(double correlation) {
 std::string effects_text(const BatchReport& report) {
   std::string text =
       fmt::format("\nrank correlation with the RMS error (independent: within +-{:.2f} in 95 % of cases)\n",
-                  chance_correlation(report.rms_3d_m.count)) +
+                  math::chance_correlation(report.rms_3d_m.count)) +
       fmt::format(" {:>9} {:>9}  distance: |value - median|\n", "value", "distance");
   for (const ParameterEffect& effect : report.effects)
     text += effect_cell(effect.of_value) + effect_cell(effect.of_distance) + "  " + effect.name + "\n";
@@ -164,7 +165,7 @@ BatchReport report_of(const LaunchConfiguration& plan, const FlyOptions& options
   report.tolerance_m = plan.mission.tolerance_m;
   report.first_seed = plan.seed;
   report.batch = std::move(batch);
-  for (const ParameterDistribution& distribution : plan.dispersion.distributions)
+  for (const simulation::ParameterDistribution& distribution : plan.dispersion.distributions)
     report.parameters.push_back(distribution.what().name);
   report.repeat = repeat_of(options);
   summarize(report);
@@ -172,11 +173,11 @@ BatchReport report_of(const LaunchConfiguration& plan, const FlyOptions& options
 }
 
 void summarize(BatchReport& report) {
-  report.rms_3d_m = spread(column(report.batch, [](const BatchRun& run) { return run.rms_3d_m; }));
-  report.peak_3d_m = spread(column(report.batch, [](const BatchRun& run) { return run.peak_3d_m; }));
+  report.rms_3d_m = math::spread(column(report.batch, [](const BatchRun& run) { return run.rms_3d_m; }));
+  report.peak_3d_m = math::spread(column(report.batch, [](const BatchRun& run) { return run.peak_3d_m; }));
   for (std::size_t i = 0; i < kMarginNames.size(); ++i) {
     report.margins_deg[i] =
-        spread(column(report.batch, [i](const BatchRun& run) { return as_array(run.margins_deg)[i]; }));
+        math::spread(column(report.batch, [i](const BatchRun& run) { return as_array(run.margins_deg)[i]; }));
   }
   report.effects = effects_of(report);
 }
@@ -223,7 +224,7 @@ std::string to_text(const BatchReport& report) {
   constexpr double kMm = 1e3;
   std::string text = headline_of(report);
   if (report.batch.rejected > 0)
-    text += "  sampled again: " + counted(report.batch.rejected, "sample") + " that broke a rule\n";
+    text += "  sampled again: " + io::counted(report.batch.rejected, "sample") + " that broke a rule\n";
   text += fmt::format("\n  {:<22} {:>3} {:>6} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9}\n", "", "", "runs", "min",
                       "p5", "median", "p95", "max", "nominal");
   text += row_of("tracking error, RMS", "mm", report.rms_3d_m, kMm) + "\n";
@@ -243,7 +244,7 @@ void write_batch_csv(const std::filesystem::path& file, const BatchReport& repor
   std::vector<std::string> columns = {"seed", "completed", "reason", "rms_3d_m", "peak_3d_m", "duration_s"};
   for (const char* name : kMarginNames) columns.push_back(std::string("margin_") + name + "_deg");
   columns.insert(columns.end(), report.parameters.begin(), report.parameters.end());
-  runtime::CsvWriter csv(file, columns);
+  io::CsvWriter csv(file, columns);
   const auto write_if_finite = [&csv](double value) {
     std::isfinite(value) ? csv.exact(value) : csv.empty();
   };

@@ -36,8 +36,8 @@ struct BatchReport {
   Batch batch;
   std::vector<std::string> parameters;  // names of BatchRun::values
 
-  Spread rms_3d_m, peak_3d_m;  // over all runs that started the mission
-  std::array<Spread, 6> margins_deg;
+  math::Spread rms_3d_m, peak_3d_m;  // over all runs that started the mission
+  std::array<math::Spread, 6> margins_deg;
   std::vector<ParameterEffect> effects;  // strongest first
   std::string repeat;                    // command that repeats a run, without the value of --seed
 

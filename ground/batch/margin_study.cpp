@@ -45,7 +45,7 @@ LoopMargins kept_by(const std::vector<LoopMargins>& all, double share) {
 }  // namespace
 
 MarginStudy study_margins(const control::ControlDesign& design, const plant::Vehicle& vehicle,
-                          const Dispersion& dispersion, std::size_t samples, std::uint64_t seed) {
+                          const simulation::Dispersion& dispersion, std::size_t samples, std::uint64_t seed) {
   MarginStudy out;
   const auto designed = margins_of(design, vehicle, vehicle);
   std::array<std::vector<LoopMargins>, kLoopNames.size()> drawn;

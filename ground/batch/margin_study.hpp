@@ -30,6 +30,6 @@ struct MarginStudy {
 // the seed `seed` + i. The model is linear about hover, without estimator, sampling and latency. Throws as
 // draw() does.
 MarginStudy study_margins(const control::ControlDesign& design, const plant::Vehicle& vehicle,
-                          const Dispersion& dispersion, std::size_t samples, std::uint64_t seed);
+                          const simulation::Dispersion& dispersion, std::size_t samples, std::uint64_t seed);
 
 }  // namespace swiftlet::ground

@@ -49,7 +49,7 @@ std::vector<double> numbers_of(const Json& json, std::size_t count, const char* 
   std::vector<double> numbers;
   for (const Json& entry : json.at(key)) numbers.push_back(number_of(entry));
   if (numbers.size() != count)
-    throw InputError(fmt::format("{}: has {} numbers, must have {}", key, numbers.size(), count));
+    throw io::InputError(fmt::format("{}: has {} numbers, must have {}", key, numbers.size(), count));
   return numbers;
 }
 
@@ -101,7 +101,7 @@ BatchReport report_of(const Json& json) {
 
 ShardResult result_of(const Json& json) {
   if (const int format = json.at("format"); format != kFormat)
-    throw InputError(fmt::format("format: is {}, must be {}", format, kFormat));
+    throw io::InputError(fmt::format("format: is {}, must be {}", format, kFormat));
   ShardResult result;
   result.shard = parse_shard(json.at("shard"));
   result.batch_runs = json.at("batch_runs");
@@ -114,12 +114,12 @@ ShardResult result_of(const Json& json) {
   const std::vector<BatchRun>& runs = result.report.batch.runs;
   const std::size_t expected = result.shard.run_count(result.batch_runs);
   if (runs.size() != expected)
-    throw InputError(fmt::format("runs: has {} of {} runs", runs.size(), expected));
+    throw io::InputError(fmt::format("runs: has {} of {} runs", runs.size(), expected));
   result.report.first_seed = result.batch_seed + result.shard.first_run(result.batch_runs);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (runs[i].seed != result.report.first_seed + i)
-      throw InputError(fmt::format("runs: number {} has seed {}, must have {}", i + 1, runs[i].seed,
-                                   result.report.first_seed + i));
+      throw io::InputError(fmt::format("runs: number {} has seed {}, must have {}", i + 1, runs[i].seed,
+                                       result.report.first_seed + i));
   }
   return result;
 }
@@ -146,7 +146,9 @@ std::string difference(const ShardResult& a, const ShardResult& b) {
 }  // namespace
 
 Shard parse_shard(const std::string& text) {
-  const auto refuse = [&text](const std::string& what) { throw InputError("shard '" + text + "': " + what); };
+  const auto refuse = [&text](const std::string& what) {
+    throw io::InputError("shard '" + text + "': " + what);
+  };
   const std::size_t slash = text.find('/');
   const auto is_count = [](const std::string& word) {
     return !word.empty() && word.size() <= 6 && word.find_first_not_of("0123456789") == std::string::npos;
@@ -168,7 +170,7 @@ std::map<std::string, std::string> read_inputs(const LaunchConfiguration& plan) 
                                            {"simulation", plan.simulation_file}};
   if (!plan.dispersion_file.empty()) files["dispersion"] = plan.dispersion_file;
   std::map<std::string, std::string> inputs;
-  for (const auto& [role, file] : files) inputs[role] = runtime::read_text_file(file);
+  for (const auto& [role, file] : files) inputs[role] = io::read_text_file(file);
   return inputs;
 }
 
@@ -193,38 +195,37 @@ void write_shard(const fs::path& folder, const ShardResult& result) {
   Json& runs = json["runs"] = Json::array();
   for (const BatchRun& run : report.batch.runs) runs.push_back(exact_json(run));
   json["inputs"] = result.inputs;
-  runtime::write_atomically(folder / kShardFile,
-                            json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  io::write_atomically(folder / kShardFile, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 ShardResult read_shard(const fs::path& folder) {
   const fs::path file = folder / kShardFile;
-  const std::string text = runtime::read_text_file(file.string());
+  const std::string text = io::read_text_file(file.string());
   try {
     return result_of(Json::parse(text));
   } catch (const std::exception& error) {
-    throw InputError(file.string() + ": is no result of a shard: " + runtime::printable(error.what()));
+    throw io::InputError(file.string() + ": is no result of a shard: " + io::printable(error.what()));
   }
 }
 
 BatchReport merge(std::vector<ShardResult> shards, const std::vector<fs::path>& folders) {
-  if (shards.empty()) throw InputError("no shard is given");
+  if (shards.empty()) throw io::InputError("no shard is given");
   const ShardResult& first = shards.front();
   std::map<std::size_t, std::size_t> order;  // place in `shards`, by index of the shard
   for (std::size_t i = 0; i < shards.size(); ++i) {
     if (const std::string what = difference(first, shards[i]); !what.empty())
-      throw InputError(
+      throw io::InputError(
           fmt::format("{} and {} are not of one batch: {}", folders[0].string(), folders[i].string(), what));
     const auto [known, is_new] = order.emplace(shards[i].shard.index, i);
     if (!is_new)
-      throw InputError(fmt::format("shard {} is given twice: {} and {}", shards[i].shard.text(),
-                                   folders[known->second].string(), folders[i].string()));
+      throw io::InputError(fmt::format("shard {} is given twice: {} and {}", shards[i].shard.text(),
+                                       folders[known->second].string(), folders[i].string()));
   }
   const std::size_t count = first.shard.count;
   for (std::size_t index = 1; index <= count; ++index) {
     if (order.count(index) == 0)
-      throw InputError(fmt::format("shard {} is missing: {} of {} are given", Shard{index, count}.text(),
-                                   shards.size(), count));
+      throw io::InputError(fmt::format("shard {} is missing: {} of {} are given", Shard{index, count}.text(),
+                                       shards.size(), count));
   }
 
   BatchReport whole = first.report;

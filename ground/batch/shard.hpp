@@ -42,13 +42,13 @@ struct ShardResult {
   BatchReport report;  // of the runs of this shard
 };
 
-// The contents of the files that the flights of a plan follow from. Throws runtime::ConfigError.
+// The contents of the files that the flights of a plan follow from. Throws io::ConfigError.
 std::map<std::string, std::string> read_inputs(const LaunchConfiguration& plan);
 
 // Writes folder/shard.json. Numbers read back exactly. Throws std::runtime_error.
 void write_shard(const std::filesystem::path& folder, const ShardResult& result);
 
-// Reads folder/shard.json. Throws InputError, or runtime::ConfigError if there is none.
+// Reads folder/shard.json. Throws InputError, or io::ConfigError if there is none.
 ShardResult read_shard(const std::filesystem::path& folder);
 
 // The report of the whole batch, equal to that of a batch without shards but for its wall_s, which is the sum over the

@@ -111,7 +111,7 @@ class Wait {
   std::chrono::milliseconds step_;  // of each action
   std::optional<double> limit_s_;
   Clock::time_point begin_ = Clock::now();
-  ProgressLine line_;
+  io::ProgressLine line_;
   FleetProgress progress_;
 };
 

@@ -32,27 +32,26 @@ std::string first_sentence(const std::string& text) {
 }
 
 int list(const ListOptions& options) {
-  for (const runtime::ConfigurationKind& kind : runtime::configuration_kinds()) {
+  for (const io::ConfigurationKind& kind : io::configuration_kinds()) {
     if (!options.kind.empty() && options.kind != kind.folder) continue;
     if (!options.names) std::printf("%s\n", kind.folder);
-    for (const runtime::ConfigurationFile& file : runtime::configuration_files(kind)) {
+    for (const io::ConfigurationFile& file : io::configuration_files(kind)) {
       if (options.names) {
         std::printf("%s\n", file.name.c_str());
       } else {
-        std::printf("  %-16s %s\n", file.name.c_str(),
-                    first_sentence(runtime::description_of(file.path)).c_str());
+        std::printf("  %-16s %s\n", file.name.c_str(), first_sentence(io::description_of(file.path)).c_str());
       }
     }
   }
-  return kDone;
+  return io::kDone;
 }
 
 // Prints all files of this name: a vehicle and a dispersion may have the same.
 int show(const ShowOptions& options) {
   std::vector<std::string> names;
   bool found = false;
-  for (const runtime::ConfigurationKind& kind : runtime::configuration_kinds()) {
-    for (const runtime::ConfigurationFile& file : runtime::configuration_files(kind)) {
+  for (const io::ConfigurationKind& kind : io::configuration_kinds()) {
+    for (const io::ConfigurationFile& file : io::configuration_files(kind)) {
       const std::string full_name = std::string(kind.folder) + "/" + file.name;
       names.insert(names.end(), {file.name, full_name});
       if (options.name != file.name && options.name != full_name) continue;
@@ -60,33 +59,32 @@ int show(const ShowOptions& options) {
       if (options.path) {
         std::printf("%s\n", file.path.c_str());
       } else {
-        std::printf("# %s\n%s", file.path.c_str(), runtime::read_text_file(file.path).c_str());
+        std::printf("# %s\n%s", file.path.c_str(), io::read_text_file(file.path).c_str());
       }
     }
   }
-  if (found) return kDone;
-  throw InputError("No configuration file '" + options.name + "'." +
-                   runtime::did_you_mean(names, options.name) + " `swiftlet config ls` lists all");
+  if (found) return io::kDone;
+  throw io::InputError("No configuration file '" + options.name + "'." +
+                       io::did_you_mean(names, options.name) + " `swiftlet config ls` lists all");
 }
 
-Command add_list(runtime::CommandLine config) {
+io::Command add_list(runtime::CommandLine config) {
   const auto options = std::make_shared<ListOptions>();
   const runtime::CommandLine app =
       config.add_subcommand("ls", "List the configuration files that have a name");
   std::vector<std::string> kinds;
-  for (const runtime::ConfigurationKind& kind : runtime::configuration_kinds())
-    kinds.emplace_back(kind.folder);
+  for (const io::ConfigurationKind& kind : io::configuration_kinds()) kinds.emplace_back(kind.folder);
   app.add_option("kind", options->kind, "only this kind").one_of(kinds);
   app.add_flag("--names", options->names, "print only the names, one a line");
   app.footer("example: swiftlet config ls missions");
   return {app, [options] { return list(*options); }};
 }
 
-Command add_show(runtime::CommandLine config) {
+io::Command add_show(runtime::CommandLine config) {
   const auto options = std::make_shared<ShowOptions>();
   const runtime::CommandLine app =
       config.add_subcommand("show", "Print a configuration file, after a comment that says where it lies");
-  app.add_option("name", options->name, "name, or KIND/NAME").type_name(runtime::kinds::kAnyValue).required();
+  app.add_option("name", options->name, "name, or KIND/NAME").type_name(io::kinds::kAnyValue).required();
   app.add_flag("--path", options->path, "print only where it lies");
   app.footer("example: cp $(swiftlet config show motor_lag --path) mine.yaml");
   return {app, [options] { return show(*options); }};
@@ -94,13 +92,13 @@ Command add_show(runtime::CommandLine config) {
 
 }  // namespace
 
-Command add_config_command(runtime::CommandLine root) {
+io::Command add_config_command(runtime::CommandLine root) {
   const runtime::CommandLine config =
       root.add_subcommand("config", "List and print vehicles, control settings, simulations and missions");
   config.require_subcommand(1, 1);
   config.footer("example: swiftlet config ls");
-  const std::vector<Command> commands = {add_list(config), add_show(config)};
-  return {config, [commands] { return run_given(commands); }};
+  const std::vector<io::Command> commands = {add_list(config), add_show(config)};
+  return {config, [commands] { return io::run_given(commands); }};
 }
 
 }  // namespace swiftlet::ground

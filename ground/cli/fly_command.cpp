@@ -21,10 +21,10 @@ constexpr std::size_t kMostVehicles = 50;   // flown and tested
 
 void check(const FlyOptions& options, std::size_t vehicles) {
   const bool lockstep = options.clock == runtime::Clock::kLockstep;
-  if (!lockstep && options.trace) throw InputError("--trace: requires --clock lockstep");
+  if (!lockstep && options.trace) throw io::InputError("--trace: requires --clock lockstep");
   if (vehicles > kMostVehicles) {
-    throw InputError("--vehicle-name: names " + std::to_string(vehicles) + " vehicles, limit " +
-                     std::to_string(kMostVehicles) + " per command");
+    throw io::InputError("--vehicle-name: names " + std::to_string(vehicles) + " vehicles, limit " +
+                         std::to_string(kMostVehicles) + " per command");
   }
 }
 
@@ -33,19 +33,19 @@ void require_one_for_each(std::size_t missions, std::vector<std::string> vehicle
   if (missions == 1 || missions == vehicles.size()) return;
   const std::string counts = fmt::format("{} missions but {} {}; ", missions, vehicles.size(),
                                          vehicles.size() == 1 ? "vehicle" : "vehicles");
-  if (missions < vehicles.size()) throw InputError(counts + "give one for all, or one for each");
+  if (missions < vehicles.size()) throw io::InputError(counts + "give one for all, or one for each");
   for (int number = 1; vehicles.size() < missions; ++number) {
     const std::string name = fmt::format("kl{}", number);
     if (std::find(vehicles.begin(), vehicles.end(), name) == vehicles.end()) vehicles.push_back(name);
   }
-  throw InputError(fmt::format("{}add --vehicle-name {}", counts, fmt::join(vehicles, ",")));
+  throw io::InputError(fmt::format("{}add --vehicle-name {}", counts, fmt::join(vehicles, ",")));
 }
 
 // The vehicles start beside each other.
 void require_room(double spacing_m, const plant::Vehicle& vehicle) {
   const double width_m = plant::width(vehicle);
   if (std::abs(spacing_m) >= width_m) return;
-  throw InputError(
+  throw io::InputError(
       fmt::format("--spacing: {:g} m puts the vehicles inside each other: a {} is up to {:.2f} m wide",
                   spacing_m, vehicle.name, width_m));
 }
@@ -54,7 +54,7 @@ void require_room(double spacing_m, const plant::Vehicle& vehicle) {
 // mission belongs to the i-th vehicle.
 std::vector<LaunchConfiguration> plan_flights(const FlyOptions& options,
                                               const std::vector<std::string>& vehicles) {
-  const std::vector<std::string> missions = runtime::split_text(options.mission, ',');
+  const std::vector<std::string> missions = io::split_text(options.mission, ',');
   require_one_for_each(missions.size(), vehicles);
   std::vector<LaunchConfiguration> plans;
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
@@ -70,8 +70,8 @@ std::vector<LaunchConfiguration> plan_flights(const FlyOptions& options,
 }
 
 std::vector<std::string> vehicles_of(const FlyOptions& options) {
-  return comms::vehicles_of_list(options.vehicles > 1 ? "kl1..kl" + std::to_string(options.vehicles)
-                                                      : options.network.vehicle);
+  return messages::vehicles_of_list(options.vehicles > 1 ? "kl1..kl" + std::to_string(options.vehicles)
+                                                         : options.network.vehicle);
 }
 
 // `--vehicle px4` is PX4's first instance, with the default vehicle file. PX4 runs in the domain of its agent, 0 unless told,
@@ -81,7 +81,7 @@ FlyOptions with_px4(FlyOptions options) {
     const bool simulates = options.clock == runtime::Clock::kLockstep || options.speed ||
                            options.imu_rate_hz > 0 || options.odometry != plant::OdometrySource::kNone;
     if (simulates)
-      throw InputError(
+      throw io::InputError(
           "--vehicle px4: PX4 is no simulation of swiftlet-plant, as --clock lockstep, --speed, "
           "--imu-rate and --odometry need");
     options.vehicle = FlyOptions().vehicle;
@@ -102,7 +102,7 @@ int fly(const FlyOptions& given) {
 
 }  // namespace
 
-Command add_fly_command(runtime::CommandLine root, const std::string& version) {
+io::Command add_fly_command(runtime::CommandLine root, const std::string& version) {
   const auto options = std::make_shared<FlyOptions>();
   options->program = version;
   const runtime::CommandLine app =

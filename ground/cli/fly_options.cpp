@@ -13,20 +13,20 @@ void add_mission_options(runtime::CommandLine app, FlyOptions& options) {
          "mission", options.mission,
          "mission file, or the name of one in config/missions; also a trajectory or waypoints as CSV, or a "
          "QGroundControl .plan file")
-      .type_name(runtime::kinds::kMission.value)
+      .type_name(io::kinds::kMission.value)
       .show_default();
   add_file_options(app, options.reading);
   app.add_option("--vehicle", options.vehicle, "vehicle file, or the name of one in config/vehicles")
-      .type_name(runtime::kinds::kVehicle.value)
+      .type_name(io::kinds::kVehicle.value)
       .show_default();
   app.add_option("--control", options.control,
                  "control settings file, or the name of one in config/control: motor_lag, or paper for the "
                  "control laws of the paper")
-      .type_name(runtime::kinds::kControl.value)
+      .type_name(io::kinds::kControl.value)
       .show_default();
   app.add_option("--simulation", options.simulation,
                  "simulation settings file, or the name of one in config/simulation")
-      .type_name(runtime::kinds::kSimulation.value)
+      .type_name(io::kinds::kSimulation.value)
       .show_default();
   app.add_option("--seed", options.seed, "random seed of the simulation: sensor errors, dropouts and gusts")
       .range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max())
@@ -71,10 +71,10 @@ void add_radio_options(runtime::CommandLine app, FlyOptions& options) {
       .range(0.0, 0.9);
 }
 
-void add_frame_option(runtime::CommandLine app, std::optional<MissionFrame>& frame) {
-  app.add_choice<std::optional<MissionFrame>>(
+void add_frame_option(runtime::CommandLine app, std::optional<io::MissionFrame>& frame) {
+  app.add_choice<std::optional<io::MissionFrame>>(
       "--frame", frame,
-      {{"ned", MissionFrame::kNed}, {"enu", MissionFrame::kEnu}, {"nwu", MissionFrame::kNwu}},
+      {{"ned", io::MissionFrame::kNed}, {"enu", io::MissionFrame::kEnu}, {"nwu", io::MissionFrame::kNwu}},
       "frame of a file that names none: ned (north, east, down), enu (east, north, up) or nwu (north, west, "
       "up)");
 }
@@ -114,7 +114,7 @@ void add_file_options(runtime::CommandLine app, ReadingOptions& options) {
   app.add_numbers(
          "--fence", 6,
          [&options](const std::vector<double>& m) {
-           options.fence = Fence{{m[0], m[1], m[2]}, {m[3], m[4], m[5]}};
+           options.fence = io::Fence{{m[0], m[1], m[2]}, {m[3], m[4], m[5]}};
          },
          "fence of the flight: north, east and down of two opposite corners, m, inside the fence of the "
          "control "
@@ -198,7 +198,7 @@ runtime::Option add_dispersion_option(runtime::CommandLine app, FlyOptions& opti
           "parameters "
           "of the flown vehicle and of the simulation are sampled; the controller is designed on --vehicle. "
           "`uncertainty` samples from the parameter uncertainty in the vehicle file")
-      .type_name(runtime::kinds::kDispersion.value);
+      .type_name(io::kinds::kDispersion.value);
 }
 
 }  // namespace swiftlet::ground

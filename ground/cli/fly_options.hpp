@@ -26,7 +26,7 @@ void add_level_option(runtime::CommandLine app, plant::ControlLevel& level);
 // Adds --frame, --tolerance, --columns, --scale ... --as-fast-as-possible: how a file is read, where and how fast it is flown.
 void add_file_options(runtime::CommandLine app, ReadingOptions& options);
 // Adds --frame: the frame of a file that does not name its own.
-void add_frame_option(runtime::CommandLine app, std::optional<MissionFrame>& frame);
+void add_frame_option(runtime::CommandLine app, std::optional<io::MissionFrame>& frame);
 // Adds --dispersion.
 runtime::Option add_dispersion_option(runtime::CommandLine app, FlyOptions& options);
 

@@ -58,7 +58,7 @@ void for_each_at_once(std::size_t flights, const Work& work) {
 // Flies all vehicles at the same time, ends the processes and writes the records.
 void fly_together(std::deque<ProcessFlight>& flights, ProcessGroup& processes, MessageRecord& messages,
                   const std::filesystem::path& folder, const StartWatch& start_watch,
-                  const Interrupts& interrupts, ProgressLine& progress) {
+                  const Interrupts& interrupts, io::ProgressLine& progress) {
   std::vector<std::string> names;
   names.reserve(flights.size());
   for (const ProcessFlight& flight : flights) names.push_back(flight.vehicle_name());
@@ -95,8 +95,8 @@ void fly_together(std::deque<ProcessFlight>& flights, ProcessGroup& processes, M
 
 // Completes the plans with what the running vehicles report. Throws unless they are on the ground and can fly their missions
 // from where they stand. What is not known of one is said.
-void plan_for_running(const comms::NodeSettings& network, const std::vector<std::string>& vehicles,
-                      std::vector<LaunchConfiguration>& plans, const FileOptions& reading) {
+void plan_for_running(const dds::NodeSettings& network, const std::vector<std::string>& vehicles,
+                      std::vector<LaunchConfiguration>& plans, const io::FileOptions& reading) {
   const std::vector<StandingVehicle> standing = require_on_ground(network, vehicles);
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     plans[i].start_ned = standing[i].start_ned.value_or(plans[i].start_ned);
@@ -119,22 +119,22 @@ int fly_vehicles(const FlyOptions& options, const std::vector<std::string>& vehi
   std::vector<LaunchConfiguration>& plans = fleet.plans;
 
   const bool attached = options.launch_mode == LaunchMode::kAttached;
-  std::optional<comms::DomainLock> domain_lock;
+  std::optional<dds::DomainLock> domain_lock;
   if (options.domain < 0 && !attached) domain_lock.emplace();
-  comms::NodeSettings network = options.network;
+  dds::NodeSettings network = options.network;
   network.domain = domain_lock ? domain_lock->domain() : std::max(options.domain, 0);
   const bool is_alone = !attached && !options.px4_instance;  // all processes are started here
   network.localhost_only = network.localhost_only || is_alone;
   if (attached) plan_for_running(network, vehicles, plans, options.reading);
   if (attached && !options.skip_check) require_sound_vehicles(network, vehicles);
   // In a domain that others may use, the vehicles must not live already.
-  std::optional<comms::FlightReservation> reservation;
+  std::optional<dds::FlightReservation> reservation;
   if (!domain_lock && !attached) reservation.emplace(network, vehicles);
   const std::unique_ptr<RecordFolder> record = make_record(options, vehicles, plans);
 
   fleet.folder = record->path();
 
-  ProgressLine progress;
+  io::ProgressLine progress;
   const Interrupts interrupts;
   MessageRecord messages(network, fleet);  // receives from the first message on
   std::optional<LiveView> view;
@@ -143,7 +143,7 @@ int fly_vehicles(const FlyOptions& options, const std::vector<std::string>& vehi
     progress.say("live page: " + view->url());
   }
   ProcessGroup processes(ground::processes(fleet, network));
-  const comms::Participant participant(network, vehicles);
+  const dds::Participant participant(network, vehicles);
   std::deque<ProcessFlight> flights;
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     const LaunchConfiguration& plan = plans[i];
@@ -164,7 +164,7 @@ int fly_vehicles(const FlyOptions& options, const std::vector<std::string>& vehi
     fly_together(flights, processes, messages, fleet.folder, start_watch, interrupts, progress);
   }
   if (flights.size() == 1) return print_report(flights.front().report(), options.json, progress);
-  std::vector<FlightReport> reports;
+  std::vector<analysis::FlightReport> reports;
   reports.reserve(flights.size());
   for (const ProcessFlight& flight : flights) reports.push_back(flight.report());
   return print_report(reports, options.json, progress);

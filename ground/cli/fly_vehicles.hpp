@@ -15,7 +15,7 @@ namespace swiftlet::ground {
 // A vehicle of a flight of several. Client and progress live as long as the flight.
 struct WatchedVehicle {
   Client* client = nullptr;
-  Progress* progress = nullptr;
+  io::Progress* progress = nullptr;
 };
 
 // Begins to watch a flight of several vehicles, in the order of the command; what it returns ends the watch when it is destroyed.

@@ -20,7 +20,7 @@ namespace swiftlet::ground {
 namespace {
 
 struct VehicleListOptions {
-  comms::NodeSettings network;
+  dds::NodeSettings network;
   double look_s = 2.0;
   bool json = false;
   bool names = false;
@@ -49,7 +49,7 @@ std::vector<Found> discover(const VehicleListOptions& options) {
   std::this_thread::sleep_for(to_milliseconds(0.5 * options.look_s));
   std::map<std::string, std::unique_ptr<Client>> clients;
   for (const std::string& name : context.discovered_vehicles()) {
-    comms::NodeSettings network = options.network;
+    dds::NodeSettings network = options.network;
     network.vehicle = name;
     clients[name] = std::make_unique<Client>(context.participant(), network);
     clients[name]->hear_controllers();
@@ -121,18 +121,18 @@ int list_vehicles(const VehicleListOptions& options) {
   } else if (!vehicles.empty()) {
     print(vehicles);
   }
-  if (!vehicles.empty()) return kDone;
+  if (!vehicles.empty()) return io::kDone;
   std::fprintf(
       stderr,
       "swiftlet: list: no vehicle found in domain %d within %.1f s%s; check that it runs and that the domain "
       "is right (--domain, ROS_DOMAIN_ID)\n",
-      options.network.domain, options.look_s, comms::search_text(options.network).c_str());
-  return kFailed;
+      options.network.domain, options.look_s, dds::search_text(options.network).c_str());
+  return io::kFailed;
 }
 
 }  // namespace
 
-Command add_list_command(runtime::CommandLine root) {
+io::Command add_list_command(runtime::CommandLine root) {
   const auto options = std::make_shared<VehicleListOptions>();
   const runtime::CommandLine app = root.add_subcommand(
       "list", "List the vehicles of the domain: who is silent first, then mode, battery and controllers");

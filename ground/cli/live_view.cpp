@@ -19,11 +19,11 @@ constexpr auto kStartTimeout = 20s;
 constexpr auto kStopTimeout = 2s;
 constexpr auto kPoll = 20ms;
 
-ProcessSettings settings_of(const comms::NodeSettings& network, const std::vector<std::string>& vehicles,
-                            const std::filesystem::path& folder) {
-  ProcessSettings settings;
+io::ProcessSettings settings_of(const dds::NodeSettings& network, const std::vector<std::string>& vehicles,
+                                const std::filesystem::path& folder) {
+  io::ProcessSettings settings;
   settings.name = "swiftlet-view";
-  settings.program = program_beside(settings.name);
+  settings.program = io::program_beside(settings.name);
   settings.arguments = network_arguments(network);
   settings.arguments.insert(settings.arguments.begin(), "view");
   settings.arguments.insert(settings.arguments.end(),
@@ -43,7 +43,7 @@ std::string url_in(const std::filesystem::path& log) {
 
 }  // namespace
 
-LiveView::LiveView(const comms::NodeSettings& network, const std::vector<std::string>& vehicles,
+LiveView::LiveView(const dds::NodeSettings& network, const std::vector<std::string>& vehicles,
                    const std::filesystem::path& folder)
     : process_(settings_of(network, vehicles, folder)) {
   const auto end = std::chrono::steady_clock::now() + kStartTimeout;

@@ -14,7 +14,7 @@ class LiveView {
  public:
   // Starts swiftlet-view, and waits until it serves. folder: for its log. Another port than the usual one if that is in use. Throws
   // std::runtime_error with the last line of its log if it cannot serve.
-  LiveView(const comms::NodeSettings& network, const std::vector<std::string>& vehicles,
+  LiveView(const dds::NodeSettings& network, const std::vector<std::string>& vehicles,
            const std::filesystem::path& folder);
   ~LiveView();
   LiveView(const LiveView&) = delete;
@@ -23,7 +23,7 @@ class LiveView {
   const std::string& url() const { return url_; }
 
  private:
-  ChildProcess process_;
+  io::ChildProcess process_;
   std::string url_;
 };
 

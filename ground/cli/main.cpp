@@ -7,10 +7,10 @@
 
 int main(int argc, char** argv) {
   using namespace swiftlet;
-  if (const ground::ProgramCommand* const command = ground::program_command_of(argc, argv))
-    return ground::execute_program(*command, argv);
-  return ground::run_commands(argc, argv, runtime::version_text(), [](runtime::CommandLine root) {
-    std::vector<ground::Command> commands = {
+  if (const io::ProgramCommand* const command = io::program_command_of(argc, argv))
+    return io::execute_program(*command, argv);
+  return io::run_commands(argc, argv, runtime::version_text(), [](runtime::CommandLine root) {
+    std::vector<io::Command> commands = {
         ground::add_fly_command(root, runtime::version_text()),
         ground::add_arm_command(root),
         ground::add_disarm_command(root),
@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
         ground::add_completion_command(root),
         ground::add_manual_command(root),
     };
-    ground::add_program_commands(root);
+    io::add_program_commands(root);
     return commands;
   });
 }

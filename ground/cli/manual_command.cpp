@@ -14,38 +14,38 @@ struct ManualOptions {
   std::string folder;
 };
 
-void write_all(const CommandText& command, const std::filesystem::path& folder) {
-  runtime::write_atomically(folder / (manual_page_name(command) + ".1"), manual_page(command));
-  for (const CommandText& sub : command.commands) write_all(sub, folder);
+void write_all(const io::CommandText& command, const std::filesystem::path& folder) {
+  io::write_atomically(folder / (io::manual_page_name(command) + ".1"), io::manual_page(command));
+  for (const io::CommandText& sub : command.commands) write_all(sub, folder);
 }
 
-const CommandText& find(const CommandText& program, const std::vector<std::string>& words) {
-  const CommandText* found = &program;
+const io::CommandText& find(const io::CommandText& program, const std::vector<std::string>& words) {
+  const io::CommandText* found = &program;
   for (const std::string& word : words) {
     const auto sub =
         std::find_if(found->commands.begin(), found->commands.end(),
-                     [&](const CommandText& candidate) { return candidate.words.back() == word; });
+                     [&](const io::CommandText& candidate) { return candidate.words.back() == word; });
     if (sub == found->commands.end())
-      throw InputError("man: " + word + " is not a command of " + manual_page_name(*found));
+      throw io::InputError("man: " + word + " is not a command of " + io::manual_page_name(*found));
     found = &*sub;
   }
   return *found;
 }
 
 int write_manual(runtime::CommandLine root, const ManualOptions& options) {
-  const CommandText program = text_of_all_programs(root);
+  const io::CommandText program = io::text_of_all_programs(root);
   if (options.folder.empty()) {
-    std::fputs(manual_page(find(program, options.command)).c_str(), stdout);
-    return kDone;
+    std::fputs(io::manual_page(find(program, options.command)).c_str(), stdout);
+    return io::kDone;
   }
   std::filesystem::create_directories(options.folder);
   write_all(program, options.folder);
-  return kDone;
+  return io::kDone;
 }
 
 }  // namespace
 
-Command add_manual_command(runtime::CommandLine root) {
+io::Command add_manual_command(runtime::CommandLine root) {
   const auto options = std::make_shared<ManualOptions>();
   const runtime::CommandLine app =
       root.add_subcommand("man", "Print the manual page of this program or of a command");

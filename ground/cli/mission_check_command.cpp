@@ -25,11 +25,11 @@ struct MissionCheckOptions {
 
 int check_missions(const MissionCheckOptions& options) {
   const plant::Vehicle vehicle =
-      runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
+      io::load_vehicle(io::configuration_file(io::kinds::kVehicle, options.vehicle));
   const auto settings =
-      runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control));
-  const std::string path = runtime::configuration_file(runtime::kinds::kMission, options.file);
-  const MissionFile file = load_mission(path, options.reading, vehicle, settings);
+      io::load_control_settings(io::configuration_file(io::kinds::kControl, options.control));
+  const std::string path = io::configuration_file(io::kinds::kMission, options.file);
+  const io::MissionFile file = load_mission(path, options.reading, vehicle, settings);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
   const CheckConditions conditions{{options.start[0], options.start[1]}, options.supply_voltage_v, 0.0};
@@ -42,12 +42,12 @@ int check_missions(const MissionCheckOptions& options) {
     std::printf("%s", check_table(check, file, vehicle.name).c_str());
     if (!help.empty()) std::printf("it could be flown %s\n", help.c_str());
   }
-  return check.feasible() ? kDone : kFailed;
+  return check.feasible() ? io::kDone : io::kFailed;
 }
 
 }  // namespace
 
-Command add_mission_check_command(runtime::CommandLine mission) {
+io::Command add_mission_check_command(runtime::CommandLine mission) {
   const auto options = std::make_shared<MissionCheckOptions>();
   const runtime::CommandLine app = mission.add_subcommand(
       "check", "Check a mission file, and whether the vehicle can fly every part of its path");
@@ -56,15 +56,15 @@ Command add_mission_check_command(runtime::CommandLine mission) {
       "cannot, 2 the file is invalid.");
   app.add_option("file", options->file,
                  "mission file, or the name of one in config/missions; also CSV or QGroundControl .plan")
-      .type_name(runtime::kinds::kMission.value)
+      .type_name(io::kinds::kMission.value)
       .required();
   add_file_options(app, options->reading);
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
-      .type_name(runtime::kinds::kVehicle.value)
+      .type_name(io::kinds::kVehicle.value)
       .show_default();
   app.add_option("--control", options->control,
                  "control settings file, or the name of one in config/control: its limits and fence apply")
-      .type_name(runtime::kinds::kControl.value)
+      .type_name(io::kinds::kControl.value)
       .show_default();
   app.add_option("--start", options->start, "start position of the vehicle: north and east, m")
       .finite()

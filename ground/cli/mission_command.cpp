@@ -14,10 +14,10 @@ struct MissionOptions : RequestOptions {
 
 using Ask = ActionHandle (Vehicle::*)(std::uint64_t, std::chrono::milliseconds);
 
-Command add_mission_request(runtime::CommandLine mission, const std::string& name,
-                            const std::string& description, Ask ask,
-                            OnInterrupt on_interrupt = OnInterrupt::kPauseMission,
-                            bool done_when_accepted = false) {
+io::Command add_mission_request(runtime::CommandLine mission, const std::string& name,
+                                const std::string& description, Ask ask,
+                                OnInterrupt on_interrupt = OnInterrupt::kPauseMission,
+                                bool done_when_accepted = false) {
   const auto options = std::make_shared<MissionOptions>();
   const runtime::CommandLine app =
       add_request_subcommand(mission, name, description, "swiftlet mission " + name, options);
@@ -34,43 +34,43 @@ Command add_mission_request(runtime::CommandLine mission, const std::string& nam
 
 }  // namespace
 
-Command add_mission_start_command(runtime::CommandLine mission) {
+io::Command add_mission_start_command(runtime::CommandLine mission) {
   return add_mission_request(mission, "start",
                              "Start the uploaded mission at its first item; Ctrl-C pauses it",
                              &Vehicle::start_mission);
 }
 
-Command add_mission_pause_command(runtime::CommandLine mission) {
+io::Command add_mission_pause_command(runtime::CommandLine mission) {
   return add_mission_request(mission, "pause", "Come to rest on the path and hold; `resume` continues",
                              &Vehicle::pause_mission, OnInterrupt::kNothing);
 }
 
-Command add_mission_resume_command(runtime::CommandLine mission) {
+io::Command add_mission_resume_command(runtime::CommandLine mission) {
   return add_mission_request(mission, "resume", "Return to where the mission was paused, and continue",
                              &Vehicle::resume_mission);
 }
 
-Command add_mission_skip_command(runtime::CommandLine mission) {
+io::Command add_mission_skip_command(runtime::CommandLine mission) {
   return add_mission_request(mission, "skip", "Skip the current item, flown or paused, and fly the next one",
                              &Vehicle::skip_mission_item);
 }
 
-Command add_mission_clear_command(runtime::CommandLine mission) {
+io::Command add_mission_clear_command(runtime::CommandLine mission) {
   return add_mission_request(mission, "clear", "Delete the uploaded mission; refused while it is flown",
                              &Vehicle::clear_mission, OnInterrupt::kNothing, true);
 }
 
-Command add_mission_command(runtime::CommandLine root) {
+io::Command add_mission_command(runtime::CommandLine root) {
   const runtime::CommandLine mission = root.add_subcommand("mission", kMissionPurpose);
   mission.require_subcommand(1, 1);
   mission.footer("example: swiftlet mission check square && swiftlet mission fly square");
-  const std::vector<Command> commands = {
+  const std::vector<io::Command> commands = {
       add_mission_check_command(mission),  add_mission_fly_command(mission),
       add_mission_upload_command(mission), add_mission_start_command(mission),
       add_mission_pause_command(mission),  add_mission_resume_command(mission),
       add_mission_skip_command(mission),   add_mission_clear_command(mission),
   };
-  return {mission, [commands] { return run_given(commands); }};
+  return {mission, [commands] { return io::run_given(commands); }};
 }
 
 }  // namespace swiftlet::ground

@@ -19,7 +19,7 @@ struct MissionFlyOptions : CommandOptions {
 
 int fly_mission(const MissionFlyOptions& options) {
   const SentFile sent(options.sent);
-  const MissionFile mission = sent.mission();
+  const io::MissionFile mission = sent.mission();
   Vehicle vehicle(options.network);
   log_connection(vehicle, "mission " + mission.name);
   sent.require_flyable(vehicle, mission, options.timeout());
@@ -50,12 +50,12 @@ int fly_mission(const MissionFlyOptions& options) {
   }
   if (!end.done())
     std::fprintf(stderr, "swiftlet: mission %s: %s\n", mission.name.c_str(), end.reason.c_str());
-  return end.done() ? kDone : kFailed;
+  return end.done() ? io::kDone : io::kFailed;
 }
 
 }  // namespace
 
-Command add_mission_fly_command(runtime::CommandLine mission) {
+io::Command add_mission_fly_command(runtime::CommandLine mission) {
   const auto options = std::make_shared<MissionFlyOptions>();
   const runtime::CommandLine app = add_vehicle_subcommand(
       mission, "fly", "Upload a mission file, start it and wait until it ends; Ctrl-C pauses it",

@@ -16,7 +16,7 @@ struct MissionUploadOptions : CommandOptions {
 
 int upload(const MissionUploadOptions& options) {
   const SentFile sent(options.sent);
-  const MissionFile file = sent.mission();
+  const io::MissionFile file = sent.mission();
   Vehicle vehicle(options.network);
   sent.require_flyable(vehicle, file, options.timeout());
   const Result answer = vehicle.upload(file.mission, options.timeout()).answer();
@@ -28,16 +28,16 @@ int upload(const MissionUploadOptions& options) {
   } else if (answer.accepted()) {
     std::printf("%s: uploaded to %s as mission %llu, %s\n", file.name.c_str(),
                 options.network.vehicle.c_str(), static_cast<unsigned long long>(vehicle.uploaded_id()),
-                counted(file.mission.items.size(), "item").c_str());
+                io::counted(file.mission.items.size(), "item").c_str());
   }
   if (!answer.accepted())
     std::fprintf(stderr, "swiftlet: mission %s: %s\n", file.name.c_str(), answer.reason.c_str());
-  return answer.accepted() ? kDone : kFailed;
+  return answer.accepted() ? io::kDone : io::kFailed;
 }
 
 }  // namespace
 
-Command add_mission_upload_command(runtime::CommandLine mission) {
+io::Command add_mission_upload_command(runtime::CommandLine mission) {
   const auto options = std::make_shared<MissionUploadOptions>();
   const runtime::CommandLine app = add_vehicle_subcommand(
       mission, "upload", "Upload a mission to the vehicle, to be started with `mission start`",

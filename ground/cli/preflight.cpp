@@ -15,9 +15,9 @@ constexpr std::chrono::milliseconds kTime{1000};
 
 }  // namespace
 
-void require_sound_vehicles(const comms::NodeSettings& network, const std::vector<std::string>& vehicles) {
+void require_sound_vehicles(const dds::NodeSettings& network, const std::vector<std::string>& vehicles) {
   for (const std::string& vehicle : vehicles) {
-    comms::NodeSettings settings = network;
+    dds::NodeSettings settings = network;
     settings.vehicle = vehicle;
     SampleRecorder recorder(settings);
     StandingRequest request;

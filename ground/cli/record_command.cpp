@@ -31,7 +31,7 @@ constexpr auto kShownStep = 50ms;
 constexpr auto kLookPeriod = 250ms;
 
 struct RecordOptions {
-  comms::NodeSettings network;
+  dds::NodeSettings network;
   bool all = false;
   std::string output;
   bool replace = false;
@@ -45,10 +45,10 @@ void require_free(const RecordOptions& options) {
   const std::filesystem::path file = options.output;
   if (!std::filesystem::exists(file)) return;
   if (!std::filesystem::is_regular_file(file))
-    throw InputError("--output " + options.output + ": is not a file");
+    throw io::InputError("--output " + options.output + ": is not a file");
   if (!options.replace)
-    throw InputError("--output " + options.output +
-                     ": exists; choose another name, or add --replace to overwrite it");
+    throw io::InputError("--output " + options.output +
+                         ": exists; choose another name, or add --replace to overwrite it");
 }
 
 // The vehicles that are recorded: those named, or all that appear.
@@ -57,7 +57,7 @@ class RecordedVehicles {
   RecordedVehicles(const RecordOptions& options, const Context& context, record::FlightRecorder& recorder)
       : context_(context), recorder_(recorder), all_(options.all) {
     if (all_) return;
-    for (const std::string& name : comms::vehicles_of_list(options.network.vehicle)) add(name);
+    for (const std::string& name : messages::vehicles_of_list(options.network.vehicle)) add(name);
   }
 
   void look() {
@@ -110,7 +110,7 @@ int record(const RecordOptions& options) {
   settings.queue_bytes = static_cast<std::size_t>(options.queue_mb) << 20U;
   record::FlightRecorder recorder(context.participant(), options.output, settings);
   RecordedVehicles vehicles(options, context, recorder);
-  ProgressLine progress;
+  io::ProgressLine progress;
   progress.say("recording to " + options.output + "; end with Ctrl-C");
   const auto start = Steady::now();
   const auto time_s = [&] { return std::chrono::duration<double>(Steady::now() - start).count(); };
@@ -131,15 +131,15 @@ int record(const RecordOptions& options) {
   fault = recorder.fault();
   if (!fault && totals.received == 0)
     fault = "no message was received in domain " + std::to_string(options.network.domain) +
-            comms::search_text(options.network);
+            dds::search_text(options.network);
   print(options, totals, recorded_s, fault);
   if (fault) std::fprintf(stderr, "swiftlet: record: %s\n", fault->c_str());
-  return fault ? kFailed : kDone;
+  return fault ? io::kFailed : io::kDone;
 }
 
 }  // namespace
 
-Command add_record_command(runtime::CommandLine root, const std::string& version) {
+io::Command add_record_command(runtime::CommandLine root, const std::string& version) {
   const auto options = std::make_shared<RecordOptions>();
   options->recorder.file.library = version;
   const runtime::CommandLine app = root.add_subcommand(

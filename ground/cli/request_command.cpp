@@ -224,7 +224,7 @@ runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std
 int run_request(const RequestOptions& options, const VehicleRequest& request) {
   const Context context(options.network);
   RequestOutcomes outcomes;
-  for (const std::string& name : comms::vehicles_of_list(options.network.vehicle)) {
+  for (const std::string& name : messages::vehicles_of_list(options.network.vehicle)) {
     RequestOutcome outcome;
     outcome.vehicle = std::make_unique<Vehicle>(context, name);
     outcomes.push_back(std::move(outcome));
@@ -243,7 +243,7 @@ int run_request(const RequestOptions& options, const VehicleRequest& request) {
   print_results(outcomes, request.what, options.json);
   const bool failed = std::any_of(outcomes.begin(), outcomes.end(),
                                   [](const RequestOutcome& outcome) { return outcome.failed(); });
-  return failed ? kFailed : kDone;
+  return failed ? io::kFailed : io::kDone;
 }
 
 void log_connection(Vehicle& vehicle, const std::string& command) {
@@ -252,7 +252,7 @@ void log_connection(Vehicle& vehicle, const std::string& command) {
   });
 }
 
-Command add_plain_request_command(runtime::CommandLine root, const PlainRequest& request) {
+io::Command add_plain_request_command(runtime::CommandLine root, const PlainRequest& request) {
   const auto options = std::make_shared<RequestOptions>();
   const std::string name = request.name;
   const runtime::CommandLine app = add_request_subcommand(

@@ -19,7 +19,7 @@ namespace swiftlet::ground {
 
 // Options of every command that talks to running vehicles.
 struct CommandOptions {
-  comms::NodeSettings network;
+  dds::NodeSettings network;
   double timeout_s = 5.0;  // longest wait for the acknowledgement
   bool json = false;
 
@@ -79,6 +79,6 @@ struct PlainRequest {
   bool done_when_accepted = false;
   ActionHandle (Vehicle::*undo)(std::chrono::milliseconds) = nullptr;  // see VehicleRequest
 };
-Command add_plain_request_command(runtime::CommandLine root, const PlainRequest& request);
+io::Command add_plain_request_command(runtime::CommandLine root, const PlainRequest& request);
 
 }  // namespace swiftlet::ground

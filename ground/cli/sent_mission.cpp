@@ -30,46 +30,45 @@ VehicleState state_of(const Vehicle& running, std::chrono::milliseconds timeout)
 
 void add_sent_file_options(runtime::CommandLine app, SentFileOptions& options,
                            const std::string& file_description) {
-  app.add_option("file", options.file, file_description).type_name(runtime::kinds::kMission.value).required();
+  app.add_option("file", options.file, file_description).type_name(io::kinds::kMission.value).required();
   add_file_options(app, options.reading);
   app.add_option("--control", options.control,
                  "control settings with the limits and the fence for the check of the file")
-      .type_name(runtime::kinds::kControl.value)
+      .type_name(io::kinds::kControl.value)
       .show_default();
   const runtime::Option vehicle =
       app.add_option("--vehicle", options.vehicle,
                      "vehicle file, or the name of one in config/vehicles, for the check of what it can fly; "
                      "default: the one with the name that the vehicle reports")
-          .type_name(runtime::kinds::kVehicle.value);
+          .type_name(io::kinds::kVehicle.value);
   app.option("--as-fast-as-possible").needs(vehicle);
 }
 
 SentFile::SentFile(const SentFileOptions& options)
-    : path(runtime::configuration_file(runtime::kinds::kMission, options.file)),
-      settings(runtime::load_control_settings(
-          runtime::configuration_file(runtime::kinds::kControl, options.control))),
+    : path(io::configuration_file(io::kinds::kMission, options.file)),
+      settings(io::load_control_settings(io::configuration_file(io::kinds::kControl, options.control))),
       reading_(options.reading) {
   if (!options.vehicle.empty())
-    vehicle_ = runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
+    vehicle_ = io::load_vehicle(io::configuration_file(io::kinds::kVehicle, options.vehicle));
 }
 
-MissionFile SentFile::mission() const {
-  MissionFile file = vehicle_ ? load_mission(path, reading_, *vehicle_, settings)
-                              : load_mission_file(path, settings.limits, reading_);
+io::MissionFile SentFile::mission() const {
+  io::MissionFile file = vehicle_ ? load_mission(path, reading_, *vehicle_, settings)
+                                  : io::load_mission_file(path, settings.limits, reading_);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
   return file;
 }
 
-TrajectoryFile SentFile::trajectory() const {
-  TrajectoryFile file = vehicle_ ? load_trajectory(path, reading_, *vehicle_, settings)
-                                 : load_trajectory_file(path, settings.limits, reading_);
+io::TrajectoryFile SentFile::trajectory() const {
+  io::TrajectoryFile file = vehicle_ ? load_trajectory(path, reading_, *vehicle_, settings)
+                                     : io::load_trajectory_file(path, settings.limits, reading_);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", std::filesystem::path(path).stem().c_str(), assumption.c_str());
   return file;
 }
 
-void SentFile::require_flyable(const Vehicle& running, const MissionFile& file,
+void SentFile::require_flyable(const Vehicle& running, const io::MissionFile& file,
                                std::chrono::milliseconds timeout) const {
   CheckConditions conditions;
   const VehicleState state = state_of(running, timeout);
@@ -77,13 +76,13 @@ void SentFile::require_flyable(const Vehicle& running, const MissionFile& file,
   require_flyable(running, file, conditions);
 }
 
-void SentFile::require_flyable(const Vehicle& running, const TrajectoryFile& file,
+void SentFile::require_flyable(const Vehicle& running, const io::TrajectoryFile& file,
                                std::chrono::milliseconds timeout) const {
   state_of(running, timeout);
   require_flyable(running, mission_of(std::filesystem::path(path).stem(), file, settings), at_start_of(file));
 }
 
-void SentFile::require_flyable(const Vehicle& running, const MissionFile& file,
+void SentFile::require_flyable(const Vehicle& running, const io::MissionFile& file,
                                const CheckConditions& conditions) const {
   const KnownVehicle known = vehicle_ ? KnownVehicle{vehicle_, ""} : known_vehicle(running.state().model);
   std::string refusal;
@@ -96,7 +95,7 @@ void SentFile::require_flyable(const Vehicle& running, const MissionFile& file,
     const MissionDryRun flown = dry_run(file.mission, settings, conditions.start_ned);
     if (!flown.completed) refusal = "the control service would not complete it: " + flown.reason;
   }
-  if (!refusal.empty()) throw InputError(path + ": " + refusal);
+  if (!refusal.empty()) throw io::InputError(path + ": " + refusal);
 }
 
 }  // namespace swiftlet::ground

@@ -29,21 +29,21 @@ void add_sent_file_options(runtime::CommandLine app, SentFileOptions& options,
 struct SentFile {
   explicit SentFile(const SentFileOptions& options);
 
-  MissionFile mission() const;
-  TrajectoryFile trajectory() const;
+  io::MissionFile mission() const;
+  io::TrajectoryFile trajectory() const;
   // Throws InputError if the vehicle cannot fly it, by its own dry run, from where it stands. If neither
   // --vehicle nor the running vehicle says which model it is, it says so and checks all but the rotors.
-  void require_flyable(const Vehicle& running, const MissionFile& file,
+  void require_flyable(const Vehicle& running, const io::MissionFile& file,
                        std::chrono::milliseconds timeout) const;
   // The same of a trajectory, which the vehicle joins from its motion.
-  void require_flyable(const Vehicle& running, const TrajectoryFile& file,
+  void require_flyable(const Vehicle& running, const io::TrajectoryFile& file,
                        std::chrono::milliseconds timeout) const;
 
   std::string path;
   control::ControlSettings settings;
 
  private:
-  void require_flyable(const Vehicle& running, const MissionFile& file,
+  void require_flyable(const Vehicle& running, const io::MissionFile& file,
                        const CheckConditions& conditions) const;
 
   ReadingOptions reading_;

@@ -17,16 +17,16 @@ struct SetOptions : RequestOptions {
 };
 
 int set_control(const SetOptions& options) {
-  const std::string file = runtime::configuration_file(runtime::kinds::kControl, options.file);
+  const std::string file = io::configuration_file(io::kinds::kControl, options.file);
   const control::SettingsRequest request = control::settings_request(
-      runtime::load_control_settings(file), runtime::load_fixed_settings(file), options.ramp_s);
+      io::load_control_settings(file), io::load_fixed_settings(file), options.ramp_s);
   return run_request(
       options,
       {"set control", [&](Vehicle& vehicle) { return vehicle.change_settings(request, options.timeout()); },
        OnInterrupt::kNothing});
 }
 
-Command add_set_control_command(runtime::CommandLine set) {
+io::Command add_set_control_command(runtime::CommandLine set) {
   const auto options = std::make_shared<SetOptions>();
   const runtime::CommandLine app = add_request_subcommand(
       set, "control", "Change the gains to those of a control settings file, also in flight",
@@ -37,7 +37,7 @@ Command add_set_control_command(runtime::CommandLine set) {
       "the controller was started with (docs/tuning.md).\n\n" +
       app.footer());
   app.add_option("file", options->file, "control settings file, or the name of one in config/control")
-      .type_name(runtime::kinds::kControl.value)
+      .type_name(io::kinds::kControl.value)
       .required();
   app.add_option("--ramp", options->ramp_s, "time over which the gains change, s")
       .range(control::kShortestGainChange_s, control::kLongestGainChange_s)
@@ -47,11 +47,11 @@ Command add_set_control_command(runtime::CommandLine set) {
 
 }  // namespace
 
-Command add_set_command(runtime::CommandLine root) {
+io::Command add_set_command(runtime::CommandLine root) {
   const runtime::CommandLine app = root.add_subcommand("set", "Change settings of a running vehicle");
   app.require_subcommand(1, 1);
   app.footer("example: swiftlet set control mine.yaml");
-  const Command control = add_set_control_command(app);
+  const io::Command control = add_set_control_command(app);
   return {app, control.run};
 }
 

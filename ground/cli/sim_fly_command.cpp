@@ -13,17 +13,17 @@ namespace {
 
 int sim_fly(const FlyOptions& options) {
   const LaunchConfiguration plan = plan_flight(options);
-  ProgressLine progress;
+  io::ProgressLine progress;
   const Interrupts interrupts;
   record::Flight flight;
-  const FlightReport report = fly_and_record(
+  const analysis::FlightReport report = fly_and_record(
       plan, options, flight, [&] { return interrupts.count() > 0; }, progress);
   return print_report(report, options.json, progress);
 }
 
 }  // namespace
 
-Command add_sim_fly_command(runtime::CommandLine sim, const std::string& version) {
+io::Command add_sim_fly_command(runtime::CommandLine sim, const std::string& version) {
   const auto options = std::make_shared<FlyOptions>();
   options->program = version;
   options->launch_mode = LaunchMode::kInProcess;

@@ -150,8 +150,8 @@ nlohmann::ordered_json to_json(const View& view, const TopicRates& rates, const 
   if (view.estimate.seen()) {
     json["position_ned_m"] = view.estimate.message.position_ned();
     json["velocity_ned_m_s"] = view.estimate.message.velocity_ned();
-    const control::EulerAngles attitude =
-        control::euler_angles(comms::wire::quaternion(view.estimate.message.q_ned_from_frd()));
+    const math::EulerAngles attitude =
+        math::euler_angles(messages::wire::quaternion(view.estimate.message.q_ned_from_frd()));
     json["attitude_rad"] = {
         {"roll", attitude.roll_rad}, {"pitch", attitude.pitch_rad}, {"yaw", attitude.heading.yaw_rad}};
     json["poses"] = {{"fault", pose_fault_name(view.estimate.message.pose_fault())},
@@ -374,7 +374,7 @@ int show_status(const StatusOptions& options) {
   if (!client.wait(options.timeout(),
                    [](const View& view) { return view.control.seen() || is_flown_by_autopilot(view); })) {
     std::fprintf(stderr, "swiftlet: status: %s\n", client.no_control().c_str());
-    return kFailed;
+    return io::kFailed;
   }
   // Topics that do not arrive within kTopicTimeout are shown as missing.
   client.wait(kTopicTimeout, [](const View& view) {
@@ -393,12 +393,12 @@ int show_status(const StatusOptions& options) {
   } else {
     print(after, rates, options);
   }
-  return kDone;
+  return io::kDone;
 }
 
 }  // namespace
 
-Command add_status_command(runtime::CommandLine root) {
+io::Command add_status_command(runtime::CommandLine root) {
   const auto options = std::make_shared<StatusOptions>();
   const runtime::CommandLine app = add_vehicle_subcommand(
       root, "status",

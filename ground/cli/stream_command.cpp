@@ -38,7 +38,7 @@ constexpr double kThere_m = 0.02;  // from the reference to the first position o
 struct StreamOptions : CommandOptions {
   std::string file;
   std::optional<double> rate_hz;
-  std::optional<MissionFrame> frame;
+  std::optional<io::MissionFrame> frame;
   bool land = false;
 };
 
@@ -51,22 +51,21 @@ struct StreamResult {
 };
 
 // Reads the whole file, so that nothing is flown of a file with an error further down.
-std::vector<TimedSetpoint> rows_of(SetpointRows& reader, std::istream& in) {
-  std::vector<TimedSetpoint> rows;
+std::vector<io::TimedSetpoint> rows_of(io::SetpointRows& reader, std::istream& in) {
+  std::vector<io::TimedSetpoint> rows;
   for (std::string line; std::getline(in, line);) {
     if (const auto row = reader.read(line)) rows.push_back(*row);
   }
   return rows;
 }
 
-void require_rate(const std::vector<TimedSetpoint>& rows, const std::string& file) {
+void require_rate(const std::vector<io::TimedSetpoint>& rows, const std::string& file) {
   if (rows.size() < 2)
-    throw runtime::ConfigError(file, 0, "",
-                               "has " + std::to_string(rows.size()) + " rows, must have at least 2");
+    throw io::ConfigError(file, 0, "", "has " + std::to_string(rows.size()) + " rows, must have at least 2");
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const double gap_s = rows[i].time_s - rows[i - 1].time_s;
     if (gap_s <= (1.0 + kRateTolerance) / kLeastRate_hz) continue;
-    throw InputError(
+    throw io::InputError(
         file + ": " +
         fmt::format("the row after t = {:.3f} s is {:.3f} s later, limit {:.1f} s; --rate interpolates "
                     "between the rows",
@@ -74,15 +73,15 @@ void require_rate(const std::vector<TimedSetpoint>& rows, const std::string& fil
   }
 }
 
-SetpointSource each_of(std::vector<TimedSetpoint> rows) {
-  return [rows = std::move(rows), next = std::size_t{0}]() mutable -> std::optional<TimedSetpoint> {
+io::SetpointSource each_of(std::vector<io::TimedSetpoint> rows) {
+  return [rows = std::move(rows), next = std::size_t{0}]() mutable -> std::optional<io::TimedSetpoint> {
     if (next == rows.size()) return std::nullopt;
     return rows[next++];
   };
 }
 
-SetpointSource lines_of(std::shared_ptr<SetpointRows> reader, std::istream& in) {
-  return [reader = std::move(reader), &in]() -> std::optional<TimedSetpoint> {
+io::SetpointSource lines_of(std::shared_ptr<io::SetpointRows> reader, std::istream& in) {
+  return [reader = std::move(reader), &in]() -> std::optional<io::TimedSetpoint> {
     for (std::string line; std::getline(in, line);) {
       if (auto row = reader->read(line)) return row;
     }
@@ -96,28 +95,27 @@ void say(const std::string& name, const std::string& assumption) {
   std::fprintf(stderr, "%s: %s\n", name.c_str(), assumption.c_str());
 }
 
-SetpointSource at_rate(SetpointSource source, const std::optional<double>& rate_hz) {
+io::SetpointSource at_rate(io::SetpointSource source, const std::optional<double>& rate_hz) {
   if (!rate_hz) return source;
-  return resampled(std::move(source), *rate_hz);
+  return io::resampled(std::move(source), *rate_hz);
 }
 
-SetpointSource open(const StreamOptions& options) {
+io::SetpointSource open(const StreamOptions& options) {
   const bool piped = options.file == "-";
   const std::string name = piped ? "standard input" : options.file;
-  auto file = std::make_shared<std::istringstream>(piped ? "" : runtime::read_text_file(options.file));
+  auto file = std::make_shared<std::istringstream>(piped ? "" : io::read_text_file(options.file));
   std::istream& in = piped ? std::cin : *file;
   std::string first;
   std::getline(in, first);
-  const std::vector<std::string> header = table_header(first, name);
-  if (header.empty())
-    throw runtime::ConfigError(name, 0, "", "is empty, must hold setpoints such as t,x,y,z");
-  std::vector<TimedSetpoint> rows;
-  if (runtime::is_flight_csv(header)) {
-    const runtime::CsvTable reference = reference_of_flight(first + "\n" + rest_of(in), name);
-    say(name, extent_of(reference));
-    rows = setpoints_of(reference, options.frame);
+  const std::vector<std::string> header = io::table_header(first, name);
+  if (header.empty()) throw io::ConfigError(name, 0, "", "is empty, must hold setpoints such as t,x,y,z");
+  std::vector<io::TimedSetpoint> rows;
+  if (io::is_flight_csv(header)) {
+    const io::CsvTable reference = io::reference_of_flight(first + "\n" + rest_of(in), name);
+    say(name, io::extent_of(reference));
+    rows = io::setpoints_of(reference, options.frame);
   } else {
-    auto reader = std::make_shared<SetpointRows>(header, name, options.frame);
+    auto reader = std::make_shared<io::SetpointRows>(header, name, options.frame);
     if (reader->assumption()) say(name, *reader->assumption());
     if (piped) return at_rate(lines_of(std::move(reader), in), options.rate_hz);
     rows = rows_of(*reader, in);
@@ -151,9 +149,9 @@ class Streamer {
   Streamer(Vehicle& vehicle, const Interrupts& interrupts)
       : vehicle_(vehicle), interrupts_(interrupts), before_(vehicle.state().setpoints) {}
 
-  StreamResult run(const TimedSetpoint& first, const SetpointSource& source) {
+  StreamResult run(const io::TimedSetpoint& first, const io::SetpointSource& source) {
     begin_s_ = vehicle_.clock_s();
-    for (std::optional<TimedSetpoint> next = first; next; next = source()) {
+    for (std::optional<io::TimedSetpoint> next = first; next; next = source()) {
       if (!wait_for(next->time_s - first.time_s)) break;
       if (!vehicle_.send(next->setpoint)) {
         result_.fault = "connection to the control service lost";
@@ -265,14 +263,14 @@ void print(const StreamResult& result, const VehicleState& end, bool json) {
 }
 
 int stream(const StreamOptions& options) {
-  SetpointSource source = open(options);
+  io::SetpointSource source = open(options);
   const Interrupts interrupts;
   Vehicle vehicle(options.network);
   vehicle.cancel_when([&] { return interrupts.count() > 0; });
   const Result there = vehicle.connect(options.timeout());
   if (!there.accepted()) {
     std::fprintf(stderr, "swiftlet: stream: %s\n", there.reason.c_str());
-    return kFailed;
+    return io::kFailed;
   }
   log_connection(vehicle, "stream");
   vehicle.wait_until(
@@ -280,8 +278,8 @@ int stream(const StreamOptions& options) {
         return state.reference_position_ned_m.allFinite() && state.position_ned_m.allFinite();
       },
       options.timeout());
-  const std::optional<TimedSetpoint> first = source();
-  if (!first) throw InputError(options.file + ": has no rows");
+  const std::optional<io::TimedSetpoint> first = source();
+  if (!first) throw io::InputError(options.file + ": has no rows");
   StreamResult result;
   if (const auto fault = go_to_start(vehicle, first->setpoint, options, interrupts)) {
     result.fault = *fault;
@@ -292,12 +290,12 @@ int stream(const StreamOptions& options) {
     if (result.fault.empty() && left) result.fault = *left;
   }
   print(result, vehicle.state(), options.json);
-  return result.fault.empty() ? kDone : kFailed;
+  return result.fault.empty() ? io::kDone : io::kFailed;
 }
 
 }  // namespace
 
-Command add_stream_command(runtime::CommandLine root) {
+io::Command add_stream_command(runtime::CommandLine root) {
   const auto options = std::make_shared<StreamOptions>();
   const runtime::CommandLine app = add_vehicle_subcommand(
       root, "stream", "Stream setpoints from a CSV file, timed by the vehicle's clock",

@@ -13,7 +13,7 @@ struct TrajectoryOptions : RequestOptions {
 
 int send_trajectory(const TrajectoryOptions& options) {
   const SentFile sent(options.sent);
-  const TrajectoryFile file = sent.trajectory();
+  const io::TrajectoryFile file = sent.trajectory();
   const control::Trajectory trajectory{0, file.segments};
   return run_request(options, {"trajectory", [&](Vehicle& vehicle) {
                                  sent.require_flyable(vehicle, file, options.timeout());
@@ -23,7 +23,7 @@ int send_trajectory(const TrajectoryOptions& options) {
 
 }  // namespace
 
-Command add_trajectory_command(runtime::CommandLine root) {
+io::Command add_trajectory_command(runtime::CommandLine root) {
   const auto options = std::make_shared<TrajectoryOptions>();
   const runtime::CommandLine app = add_request_subcommand(
       root, "trajectory", "Fly a trajectory of a CSV file; the vehicle joins it from its motion",

@@ -39,41 +39,41 @@ struct StopOptions : RequestOptions {
 void confirm(const StopOptions& options) {
   if (options.yes) return;
   if (isatty(STDIN_FILENO) == 0 || isatty(STDERR_FILENO) == 0)
-    throw InputError("stop: requires --yes without a terminal: a vehicle in the air falls");
-  const bool one = comms::vehicles_of_list(options.network.vehicle).size() == 1;
+    throw io::InputError("stop: requires --yes without a terminal: a vehicle in the air falls");
+  const bool one = messages::vehicles_of_list(options.network.vehicle).size() == 1;
   std::fprintf(stderr, "The rotors turn off at once, also if %s %s in the air: %s.\nType stop to do it: ",
                options.network.vehicle.c_str(), one ? "is" : "are", one ? "it falls" : "they fall");
   std::string typed;
   std::getline(std::cin, typed);
-  if (typed != "stop") throw InputError("stop: not confirmed, nothing was sent");
+  if (typed != "stop") throw io::InputError("stop: not confirmed, nothing was sent");
 }
 
 // Throws InputError for what every vehicle refuses: a place below the ground, a yaw that may be in degrees. The
 // vehicle itself knows its minimum height and its fence.
 Vehicle::Target target_of(const GotoOptions& options) {
   if (options.z_ned_m.has_value() == options.height_m.has_value())
-    throw InputError("goto: needs either z (down: negative is up) or --height (up, above the ground)");
+    throw io::InputError("goto: needs either z (down: negative is up) or --height (up, above the ground)");
   const double z_ned_m = options.z_ned_m ? *options.z_ned_m : -*options.height_m;
   control::Outcome outcome = control::check_above_ground("goto", z_ned_m);
   if (outcome.accepted && options.yaw_rad) outcome = control::check_yaw("goto", *options.yaw_rad);
-  if (!outcome.accepted) throw InputError(outcome.reason);
+  if (!outcome.accepted) throw io::InputError(outcome.reason);
   return {{options.north_m, options.east_m, z_ned_m}, options.yaw_rad, options.speed};
 }
 
 }  // namespace
 
-Command add_arm_command(runtime::CommandLine root) {
+io::Command add_arm_command(runtime::CommandLine root) {
   return add_plain_request_command(
       root, {"arm", "Start the rotors on the ground, if all arming checks pass; all vehicles or none",
              &Vehicle::arm, OnInterrupt::kHold, true, &Vehicle::disarm});
 }
 
-Command add_disarm_command(runtime::CommandLine root) {
+io::Command add_disarm_command(runtime::CommandLine root) {
   return add_plain_request_command(
       root, {"disarm", "Stop the rotors on the ground", &Vehicle::disarm, OnInterrupt::kNothing, true});
 }
 
-Command add_takeoff_command(runtime::CommandLine root) {
+io::Command add_takeoff_command(runtime::CommandLine root) {
   const auto options = std::make_shared<TakeoffOptions>();
   const runtime::CommandLine app =
       add_request_subcommand(root, "takeoff", "Climb vertically and hold; the vehicle must be armed",
@@ -90,7 +90,7 @@ Command add_takeoff_command(runtime::CommandLine root) {
           }};
 }
 
-Command add_goto_command(runtime::CommandLine root) {
+io::Command add_goto_command(runtime::CommandLine root) {
   const auto options = std::make_shared<GotoOptions>();
   const runtime::CommandLine app = add_request_subcommand(
       root, "goto", "Fly straight to a position (NED, relative to the origin) and hold there",
@@ -115,11 +115,11 @@ Command add_goto_command(runtime::CommandLine root) {
           }};
 }
 
-Command add_hold_command(runtime::CommandLine root) {
+io::Command add_hold_command(runtime::CommandLine root) {
   return add_plain_request_command(root, {"hold", "Come to rest and hold the position", &Vehicle::hold});
 }
 
-Command add_land_command(runtime::CommandLine root) {
+io::Command add_land_command(runtime::CommandLine root) {
   const auto options = std::make_shared<LandOptions>();
   const runtime::CommandLine app = add_request_subcommand(
       root, "land", "Descend vertically, land and stop the rotors", "swiftlet land --speed 0.3", options);
@@ -134,7 +134,7 @@ Command add_land_command(runtime::CommandLine root) {
           }};
 }
 
-Command add_stop_command(runtime::CommandLine root) {
+io::Command add_stop_command(runtime::CommandLine root) {
   const auto options = std::make_shared<StopOptions>();
   const runtime::CommandLine app =
       add_request_subcommand(root, "stop", "Emergency stop: turn the rotors off at once, also in the air",

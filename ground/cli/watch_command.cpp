@@ -21,7 +21,7 @@ constexpr auto kRateTime = 1s;
 constexpr auto kAnswerTimeout = 2s;
 
 struct WatchOptions {
-  comms::NodeSettings network;
+  dds::NodeSettings network;
   bool plain = false;
   std::optional<double> duration_s;
 };
@@ -126,7 +126,7 @@ class Watch {
       const std::optional<int> key = screen.key(kFrame_ms);
       if (key && *key != TerminalScreen::kResized && !keys_.press(*key, facts_.message)) break;
     }
-    return kDone;
+    return io::kDone;
   }
 
   int in_lines() {
@@ -137,7 +137,7 @@ class Watch {
       std::printf("%s\n", watch_line(view, facts_, Clock::now()).c_str());
       std::fflush(stdout);
     }
-    return client_.view().control.seen() ? kDone : kFailed;
+    return client_.view().control.seen() ? io::kDone : io::kFailed;
   }
 
  private:
@@ -177,7 +177,7 @@ int watch(const WatchOptions& options) {
 
 }  // namespace
 
-Command add_watch_command(runtime::CommandLine root) {
+io::Command add_watch_command(runtime::CommandLine root) {
   const auto options = std::make_shared<WatchOptions>();
   const runtime::CommandLine app =
       root.add_subcommand("watch", "Show a vehicle full screen, with keys for hold, land and stop");

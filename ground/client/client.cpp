@@ -34,25 +34,24 @@ Result result_of(const msg::CommandAck& ack) {
 
 }  // namespace
 
-Client::Client(const comms::NodeSettings& settings) : Client(nullptr, settings, Telemetry::kReceived) {}
+Client::Client(const dds::NodeSettings& settings) : Client(nullptr, settings, Telemetry::kReceived) {}
 
-Client::Client(const comms::Participant& participant, const comms::NodeSettings& settings,
-               Telemetry telemetry)
+Client::Client(const dds::Participant& participant, const dds::NodeSettings& settings, Telemetry telemetry)
     : Client(&participant, settings, telemetry) {}
 
-Client::Client(const comms::Participant* shared, const comms::NodeSettings& settings, Telemetry telemetry)
+Client::Client(const dds::Participant* shared, const dds::NodeSettings& settings, Telemetry telemetry)
     : settings_(settings),
       client_id_(random_id()),
       last_id_(random_id() >> 1),
-      node_(shared != nullptr ? comms::Node(*shared, settings.vehicle) : comms::Node(settings)),
-      commands_(node_.publish(comms::topics::kCommand)),
-      missions_(node_.publish(comms::topics::kMission)),
-      trajectories_(node_.publish(comms::topics::kTrajectory)),
-      settings_changes_(node_.publish(comms::topics::kControlSettings)),
-      setpoints_(node_.publish(comms::topics::kSetpoint)) {
+      node_(shared != nullptr ? dds::Node(*shared, settings.vehicle) : dds::Node(settings)),
+      commands_(node_.publish(messages::topics::kCommand)),
+      missions_(node_.publish(messages::topics::kMission)),
+      trajectories_(node_.publish(messages::topics::kTrajectory)),
+      settings_changes_(node_.publish(messages::topics::kControlSettings)),
+      setpoints_(node_.publish(messages::topics::kSetpoint)) {
   subscribe_statuses();
   if (telemetry == Telemetry::kReceived) subscribe_telemetry();
-  node_.on_peer([this](const comms::PeerEvent& peer) {
+  node_.on_peer([this](const dds::PeerEvent& peer) {
     {
       const std::lock_guard lock(mutex_);
       view_.peers[peer.name] += peer.alive ? 1 : -1;
@@ -89,10 +88,10 @@ std::optional<msg::RequestStatus> Client::reported_status(const control::Request
 
 // Statuses, answers and peer events wake waiting threads.
 void Client::subscribe_statuses() {
-  using namespace comms::topics;
+  using namespace messages::topics;
   subscriptions_.push_back(
       node_.subscribe<msg::ControlStatus>(kControlStatus, [this](const msg::ControlStatus& status) {
-        const std::string fault = comms::fault_of_wire_version(status.wire_version(), "control");
+        const std::string fault = messages::fault_of_wire_version(status.wire_version(), "control");
         {
           const std::lock_guard lock(mutex_);
           view_.foreign_control = fault;
@@ -114,7 +113,7 @@ void Client::subscribe_statuses() {
       }));
   subscriptions_.push_back(
       node_.subscribe<msg::VehicleInfo>(kVehicleInfo, [this](const msg::VehicleInfo& info) {
-        if (info.wire_version() != comms::kWireVersion) return;  // control refuses it by a sentence
+        if (info.wire_version() != messages::kWireVersion) return;  // control refuses it by a sentence
         keep(&View::vehicle, info);
         advance_after(info.stamp_ns());
         changed_.notify_all();
@@ -132,7 +131,7 @@ void Client::subscribe_statuses() {
 
 // Does not wake waiting threads: its rate is too high.
 void Client::subscribe_telemetry() {
-  using namespace comms::topics;
+  using namespace messages::topics;
   subscriptions_.push_back(node_.subscribe<msg::Battery>(
       kBattery, [this](const msg::Battery& battery) { keep(&View::battery, battery); }));
   subscriptions_.push_back(node_.subscribe<msg::Estimate>(
@@ -154,7 +153,7 @@ void Client::subscribe_telemetry() {
 
 void Client::hear_controllers() {
   subscriptions_.push_back(node_.subscribe<msg::ControllerState>(
-      comms::topics::kControllerState, [this](const msg::ControllerState& state) {
+      messages::topics::kControllerState, [this](const msg::ControllerState& state) {
         const std::lock_guard lock(mutex_);
         Latest<msg::ControllerState>& latest = view_.controllers[state.controller()];
         latest.message = state;
@@ -239,7 +238,7 @@ struct Sending {
 }  // namespace
 
 template <class T>
-Result Client::ask(comms::Publisher<T>& publisher, const T& request, std::chrono::milliseconds timeout,
+Result Client::ask(dds::Publisher<T>& publisher, const T& request, std::chrono::milliseconds timeout,
                    const Cancelled& cancelled) {
   const auto deadline = Clock::now() + timeout;
   std::optional<Sending> sent;
@@ -286,7 +285,7 @@ Result Client::command(msg::Command command, std::chrono::milliseconds timeout, 
 
 Result Client::upload(const control::Mission& mission, std::chrono::milliseconds timeout,
                       const Cancelled& cancelled) {
-  msg::Mission message = comms::to_message(mission);
+  msg::Mission message = messages::to_message(mission);
   message.client(client_id_);
   message.id(++last_id_);
   mission_id_ = message.id();
@@ -303,7 +302,7 @@ Result Client::mission_command(std::uint8_t kind, std::uint64_t mission_id, std:
 
 Result Client::upload(const control::Trajectory& trajectory, std::chrono::milliseconds timeout,
                       const Cancelled& cancelled) {
-  msg::Trajectory message = comms::to_message(trajectory);
+  msg::Trajectory message = messages::to_message(trajectory);
   message.client(client_id_);
   message.id(++last_id_);
   return ask(trajectories_, message, timeout, cancelled);
@@ -311,7 +310,7 @@ Result Client::upload(const control::Trajectory& trajectory, std::chrono::millis
 
 Result Client::change_settings(const control::SettingsRequest& settings, std::chrono::milliseconds timeout,
                                const Cancelled& cancelled) {
-  msg::ControlSettings message = comms::to_message(settings);
+  msg::ControlSettings message = messages::to_message(settings);
   message.client(client_id_);
   message.id(++last_id_);
   return ask(settings_changes_, message, timeout, cancelled);
@@ -321,7 +320,7 @@ bool Client::send(control::Setpoint setpoint) {
   setpoint.stamp_ns = view().estimate.message.stamp_ns();
   const std::lock_guard sending(sending_);
   setpoint.sequence = ++setpoint_count_;
-  return setpoints_.matched() > 0 && setpoints_.publish(comms::to_message(setpoint));
+  return setpoints_.matched() > 0 && setpoints_.publish(messages::to_message(setpoint));
 }
 
 void Client::await_setpoint_reader(Clock::time_point deadline, const Cancelled& cancelled) const {

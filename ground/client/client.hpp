@@ -25,7 +25,7 @@
 
 namespace swiftlet::ground {
 
-namespace msg = comms::msg;
+namespace msg = messages::msg;
 using Clock = std::chrono::steady_clock;
 
 // The newest sample of a topic.
@@ -60,10 +60,10 @@ struct View {
 class Client {
  public:
   // Throws std::runtime_error if the network cannot be joined.
-  explicit Client(const comms::NodeSettings& settings);
+  explicit Client(const dds::NodeSettings& settings);
   // Shares the participant with other clients. settings.vehicle names the vehicle. Without telemetry, of View only
   // control, mission, vehicle and peers are filled.
-  Client(const comms::Participant& participant, const comms::NodeSettings& settings,
+  Client(const dds::Participant& participant, const dds::NodeSettings& settings,
          Telemetry telemetry = Telemetry::kReceived);
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
@@ -112,7 +112,7 @@ class Client {
   // MissionStatus::mission_id of the mission that this client uploaded last.
   std::uint64_t mission_id() const { return mission_id_; }
   const std::string& vehicle() const { return settings_.vehicle; }
-  comms::Node& node() { return node_; }
+  dds::Node& node() { return node_; }
 
   // The last reported status of one of this client's last 64 requests. Keeps those that control_status no
   // longer lists. nullopt if none was reported.
@@ -125,7 +125,7 @@ class Client {
 
  private:
   void note_requests(const msg::ControlStatus& status);
-  Client(const comms::Participant* shared, const comms::NodeSettings& settings, Telemetry telemetry);
+  Client(const dds::Participant* shared, const dds::NodeSettings& settings, Telemetry telemetry);
   template <class T>
   void keep(Latest<T> View::*slot, const T& message);
   void subscribe_statuses();
@@ -133,10 +133,10 @@ class Client {
   void advance_after(std::int64_t stamp_ns);
   void advance();
   template <class T>
-  Result ask(comms::Publisher<T>& publisher, const T& request, std::chrono::milliseconds timeout,
+  Result ask(dds::Publisher<T>& publisher, const T& request, std::chrono::milliseconds timeout,
              const Cancelled& cancelled);
 
-  comms::NodeSettings settings_;
+  dds::NodeSettings settings_;
   std::uint64_t client_id_;
   std::atomic<std::uint64_t> last_id_;  // random start: mission ids of two tools must differ
   std::atomic<std::uint64_t> mission_id_{0};
@@ -148,12 +148,12 @@ class Client {
   std::uint64_t takeovers_ = 0;                             // seen in control_status
   std::map<std::uint64_t, msg::RequestStatus> reported_;    // of this client's requests, by id
 
-  comms::Node node_;
-  comms::Publisher<msg::Command> commands_;
-  comms::Publisher<msg::Mission> missions_;
-  comms::Publisher<msg::Trajectory> trajectories_;
-  comms::Publisher<msg::ControlSettings> settings_changes_;
-  comms::Publisher<msg::Setpoint> setpoints_;
+  dds::Node node_;
+  dds::Publisher<msg::Command> commands_;
+  dds::Publisher<msg::Mission> missions_;
+  dds::Publisher<msg::Trajectory> trajectories_;
+  dds::Publisher<msg::ControlSettings> settings_changes_;
+  dds::Publisher<msg::Setpoint> setpoints_;
   std::mutex sending_;  // guards all publishers
   std::uint64_t setpoint_count_ = 0;
   // Created, used and destroyed without mutex_ held: the middleware's threads lock mutex_ in callbacks while
@@ -162,7 +162,7 @@ class Client {
   std::atomic<std::int64_t> come_ns_{0};       // the newest stamp that has arrived here
   std::atomic<std::int64_t> recorded_ns_{-1};  // and in the record; < 0: there is none
   std::shared_ptr<GroundHeartbeatPublisher> heartbeat_;
-  std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use all members above
+  std::vector<dds::Subscription> subscriptions_;  // last: their callbacks use all members above
 };
 
 // Names of the messages' constants.

@@ -15,18 +15,18 @@ class Context {
  public:
   // network.name: this program's name in the domain. network.vehicle is ignored. Throws std::runtime_error if
   // the network cannot be joined.
-  explicit Context(const comms::NodeSettings& network = {"ground"})
+  explicit Context(const dds::NodeSettings& network = {"ground"})
       : network_(network), participant_(network) {}
 
   // The names of the vehicles discovered in the domain so far, sorted. Discovery takes up to a second.
   std::vector<std::string> discovered_vehicles() const;
 
-  const comms::NodeSettings& network() const { return network_; }
-  const comms::Participant& participant() const { return participant_; }
+  const dds::NodeSettings& network() const { return network_; }
+  const dds::Participant& participant() const { return participant_; }
 
  private:
-  comms::NodeSettings network_;
-  comms::Participant participant_;
+  dds::NodeSettings network_;
+  dds::Participant participant_;
 };
 
 }  // namespace swiftlet::ground

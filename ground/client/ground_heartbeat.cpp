@@ -14,8 +14,8 @@ constexpr std::chrono::milliseconds kLastHeartbeatPeriod{10};
 
 }  // namespace
 
-GroundHeartbeatPublisher::GroundHeartbeatPublisher(comms::Node& node, std::uint64_t client)
-    : publisher_(node.publish(comms::topics::kGroundLink)) {
+GroundHeartbeatPublisher::GroundHeartbeatPublisher(dds::Node& node, std::uint64_t client)
+    : publisher_(node.publish(messages::topics::kGroundLink)) {
   heartbeat_.client(client);
   publish(true);
 }

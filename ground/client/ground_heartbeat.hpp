@@ -11,7 +11,7 @@ namespace swiftlet::ground {
 // Not thread-safe.
 class GroundHeartbeatPublisher {
  public:
-  GroundHeartbeatPublisher(comms::Node& node, std::uint64_t client);
+  GroundHeartbeatPublisher(dds::Node& node, std::uint64_t client);
   // Ends the failsafe: publishes `depends` = false several times, within 0.1 s.
   ~GroundHeartbeatPublisher();
   GroundHeartbeatPublisher(const GroundHeartbeatPublisher&) = delete;
@@ -24,8 +24,8 @@ class GroundHeartbeatPublisher {
  private:
   void publish(bool depends);
 
-  comms::msg::GroundLink heartbeat_;
-  comms::Publisher<comms::msg::GroundLink> publisher_;
+  messages::msg::GroundLink heartbeat_;
+  dds::Publisher<messages::msg::GroundLink> publisher_;
 };
 
 }  // namespace swiftlet::ground

@@ -6,13 +6,13 @@
 
 namespace swiftlet::ground {
 
-void add_network_options(runtime::CommandLine app, comms::NodeSettings& network, Vehicles vehicles) {
+void add_network_options(runtime::CommandLine app, dds::NodeSettings& network, Vehicles vehicles) {
   network.name = "ground";
-  if (vehicles == Vehicles::kOne) return comms::add_node_options(app, network);
-  comms::add_service_options(app, network);
+  if (vehicles == Vehicles::kOne) return dds::add_node_options(app, network);
+  dds::add_service_options(app, network);
 }
 
-std::vector<std::string> network_arguments(const comms::NodeSettings& network) {
+std::vector<std::string> network_arguments(const dds::NodeSettings& network) {
   std::vector<std::string> arguments = {"--domain", std::to_string(network.domain)};
   const auto append = [&arguments](const char* option, const std::string& value) {
     if (!value.empty()) arguments.insert(arguments.end(), {option, value});

@@ -10,9 +10,9 @@ constexpr std::chrono::milliseconds kRepeatPeriod{200};
 
 }  // namespace
 
-SimulationClockPublisher::SimulationClockPublisher(comms::Node& node, std::int64_t window_ns)
+SimulationClockPublisher::SimulationClockPublisher(dds::Node& node, std::int64_t window_ns)
     : window_ns_(window_ns),
-      publisher_(node.publish(comms::topics::kSimulationClock)),
+      publisher_(node.publish(messages::topics::kSimulationClock)),
       repeater_([this] { repeat(); }) {}
 
 SimulationClockPublisher::~SimulationClockPublisher() {

@@ -17,7 +17,7 @@ namespace swiftlet::ground {
 // none. Thread-safe.
 class SimulationClockPublisher {
  public:
-  SimulationClockPublisher(comms::Node& node, std::int64_t window_ns);
+  SimulationClockPublisher(dds::Node& node, std::int64_t window_ns);
   ~SimulationClockPublisher();
   SimulationClockPublisher(const SimulationClockPublisher&) = delete;
   SimulationClockPublisher& operator=(const SimulationClockPublisher&) = delete;
@@ -40,8 +40,8 @@ class SimulationClockPublisher {
   bool end_ = false;
   std::int64_t goal_ns_ = 0;
   std::int64_t come_ns_ = 0;
-  comms::msg::SimulationClock clock_;
-  comms::Publisher<comms::msg::SimulationClock> publisher_;
+  messages::msg::SimulationClock clock_;
+  dds::Publisher<messages::msg::SimulationClock> publisher_;
   std::thread repeater_;
 };
 

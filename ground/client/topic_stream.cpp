@@ -14,10 +14,11 @@ namespace {
 mcap::MessageDecoder decoder_of(const std::string& name) {
   std::optional<mcap::MessageDecoder> decoder;
   std::string names;
-  comms::for_each_topic([&](const auto& topic) {
+  messages::for_each_topic([&](const auto& topic) {
     names += (names.empty() ? "" : ", ") + std::string(topic.name);
     if (name != topic.name) return;
-    const comms::MessageSchema& schema = comms::schema_of<typename std::decay_t<decltype(topic)>::Message>();
+    const messages::MessageSchema& schema =
+        messages::schema_of<typename std::decay_t<decltype(topic)>::Message>();
     decoder.emplace(mcap::Schema{1, schema.name, "ros2msg", schema.definition});
   });
   if (!decoder) throw std::runtime_error("'" + name + "' is no topic of a vehicle. Topics: " + names);
@@ -26,16 +27,16 @@ mcap::MessageDecoder decoder_of(const std::string& name) {
 
 }  // namespace
 
-TopicStream::TopicStream(const comms::Participant& participant, const std::string& vehicle,
+TopicStream::TopicStream(const dds::Participant& participant, const std::string& vehicle,
                          const std::string& topic, std::size_t capacity)
     : decoder_(decoder_of(topic)), capacity_(capacity), node_(participant, vehicle) {
-  comms::for_each_topic([&](const auto& one) {
+  messages::for_each_topic([&](const auto& one) {
     if (topic == one.name)
-      subscription_ = node_.subscribe_raw(one, [this](const comms::RawSample& sample) { receive(sample); });
+      subscription_ = node_.subscribe_raw(one, [this](const dds::RawSample& sample) { receive(sample); });
   });
 }
 
-void TopicStream::receive(const comms::RawSample& raw) {
+void TopicStream::receive(const dds::RawSample& raw) {
   Sample sample;
   sample.received_ns = runtime::system_ns();
   if (!decoder_.decode({raw.payload, raw.size}, sample.values)) return;

@@ -29,7 +29,7 @@ class TopicStream {
 
   // topic: "estimate". capacity: samples that wait for next(); of more than that the oldest are dropped. Throws
   // std::runtime_error with the names of all topics if there is no such topic.
-  TopicStream(const comms::Participant& participant, const std::string& vehicle, const std::string& topic,
+  TopicStream(const dds::Participant& participant, const std::string& vehicle, const std::string& topic,
               std::size_t capacity = 4096);
 
   const std::vector<mcap::Column>& columns() const { return decoder_.columns(); }
@@ -40,7 +40,7 @@ class TopicStream {
   std::uint64_t dropped() const;
 
  private:
-  void receive(const comms::RawSample& sample);
+  void receive(const dds::RawSample& sample);
 
   const mcap::MessageDecoder decoder_;
   const std::size_t capacity_;
@@ -48,8 +48,8 @@ class TopicStream {
   std::condition_variable arrived_;
   std::deque<Sample> waiting_;
   std::uint64_t dropped_ = 0;
-  comms::Node node_;
-  comms::Subscription subscription_;  // last: its callback uses all members above
+  dds::Node node_;
+  dds::Subscription subscription_;  // last: its callback uses all members above
 };
 
 }  // namespace swiftlet::ground

@@ -12,16 +12,16 @@
 namespace swiftlet::ground {
 namespace {
 
-using comms::wire::quaternion;
-using comms::wire::vector;
 using control::Mode;
 using control::RequestKind;
+using messages::wire::quaternion;
+using messages::wire::vector;
 using std::chrono::milliseconds;
 
 constexpr double kMaxExtrapolation_s = 0.02;
 constexpr milliseconds kConnectionPollPeriod{50};
 
-comms::NodeSettings of_vehicle(comms::NodeSettings network, const std::string& name) {
+dds::NodeSettings of_vehicle(dds::NodeSettings network, const std::string& name) {
   network.vehicle = name;
   return network;
 }
@@ -78,7 +78,7 @@ SetpointTally SetpointTally::since(const SetpointTally& before) const {
   return {grown(before.accepted, accepted), grown(before.refused, refused), refusal};
 }
 
-Vehicle::Vehicle(const comms::NodeSettings& network) : client_(std::make_shared<Client>(network)) {}
+Vehicle::Vehicle(const dds::NodeSettings& network) : client_(std::make_shared<Client>(network)) {}
 
 Vehicle::Vehicle(const Context& context, const std::string& name, Telemetry telemetry)
     : client_(
@@ -97,7 +97,7 @@ void Vehicle::on_connection(std::function<void(const ConnectionEvent&)> callback
                        report = std::move(callback)] {
     if (const auto event = watch->update(client->view(), Clock::now())) report(*event);
   };
-  periodic_task_ = std::make_unique<comms::PeriodicTask>(kConnectionPollPeriod, update);
+  periodic_task_ = std::make_unique<dds::PeriodicTask>(kConnectionPollPeriod, update);
 }
 
 Result Vehicle::connect(milliseconds timeout) const {
@@ -122,7 +122,7 @@ bool Vehicle::wait_until(const std::function<bool(const VehicleState&)>& holds, 
 }
 
 ActionHandle Vehicle::request(const control::Request& request, milliseconds timeout) {
-  return {client_, client_->command(comms::to_message(request), timeout, cancelled_)};
+  return {client_, client_->command(messages::to_message(request), timeout, cancelled_)};
 }
 
 ActionHandle Vehicle::arm(milliseconds timeout) { return request(of_kind(RequestKind::kArm), timeout); }

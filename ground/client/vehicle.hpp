@@ -37,7 +37,7 @@
 #include "swiftlet/ground/client/vehicle_setpoints.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 class PeriodicTask;
 }
 
@@ -100,7 +100,7 @@ class Vehicle {
 
   // network.vehicle and network.domain select the vehicle; network.name is this program's name in the domain.
   // Throws std::runtime_error if the network cannot be joined.
-  explicit Vehicle(const comms::NodeSettings& network = {"ground"});
+  explicit Vehicle(const dds::NodeSettings& network = {"ground"});
   // Shares the context's participant; the Context may be destroyed first. Without telemetry, state() knows only the
   // mode, the mission and the model, and clock_s() is NaN. Throws std::runtime_error if `name` is not a valid vehicle
   // name.
@@ -201,7 +201,7 @@ class Vehicle {
 
   std::shared_ptr<Client> client_;
   std::function<bool()> cancelled_;
-  std::unique_ptr<comms::PeriodicTask> periodic_task_;  // last: it uses client_
+  std::unique_ptr<dds::PeriodicTask> periodic_task_;  // last: it uses client_
 };
 
 }  // namespace swiftlet::ground

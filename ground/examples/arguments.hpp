@@ -12,7 +12,7 @@ namespace swiftlet::examples {
 
 struct Arguments {
   std::vector<std::string> own;  // of the example itself
-  comms::NodeSettings network;
+  dds::NodeSettings network;
 };
 
 // Reads [VEHICLE] [DOMAIN] [--open-network], after the arguments of the example itself, whose names are
@@ -26,7 +26,7 @@ inline Arguments read_arguments(int argc, char** argv, const std::vector<std::st
     std::exit(exit_code);
   };
   std::vector<std::string> places;
-  comms::NodeSettings network;
+  dds::NodeSettings network;
   network.name = "example";
   for (const std::string& word : words) {
     if (word == "--help" || word == "-h") end_with_usage(stdout, 0);

@@ -17,7 +17,7 @@ bool done(const char* what, const ActionHandle& action) {
 int main(int argc, char** argv) try {
   const auto arguments = swiftlet::examples::read_arguments(argc, argv, {"FILE"});
   Vehicle vehicle(arguments.network);
-  const auto mission = load_mission_file(arguments.own.front(), {}).mission;
+  const auto mission = swiftlet::io::load_mission_file(arguments.own.front(), {}).mission;
   vehicle.on_connection([](const ConnectionEvent& event) { std::printf("%s\n", event.text.c_str()); });
   if (!done("arm", vehicle.arm())) return 1;
   bool flown = done("take off", vehicle.take_off(0.8)) && done("mission", vehicle.follow(mission));

@@ -27,19 +27,20 @@ constexpr double kReaction_s = 0.15;  // from an estimate until the vehicle begi
 constexpr double kLeastStop_s = 0.5;  // of control/guidance: shortest change of the time scaling
 
 // Mission files and QGroundControl plans name their frame.
-FileOptions reading_of(const FleetMember& member, MissionFrame frame) {
-  FileOptions reading;
-  const MissionFormat format = read_source(member.mission_file).format;
-  if (format != MissionFormat::kYaml && format != MissionFormat::kQGroundControlPlan) reading.frame = frame;
+io::FileOptions reading_of(const FleetMember& member, io::MissionFrame frame) {
+  io::FileOptions reading;
+  const io::MissionFormat format = io::read_source(member.mission_file).format;
+  if (format != io::MissionFormat::kYaml && format != io::MissionFormat::kQGroundControlPlan)
+    reading.frame = frame;
   return reading;
 }
 
-MissionFile mission_of(const FleetMember& member, const FileOptions& reading, const control::Limits& limits) {
-  MissionFile file = load_mission_file(member.mission_file, limits, reading);
+io::MissionFile mission_of(const FleetMember& member, const io::FileOptions& reading,
+                           const control::Limits& limits) {
+  io::MissionFile file = io::load_mission_file(member.mission_file, limits, reading);
   if (member.mission_at_start) file.mission = shifted(std::move(file.mission), member.start_ned, limits);
   const auto refuse = [&](const std::string& reason) {
-    throw runtime::ConfigError(member.mission_file.string(), 0, "",
-                               "flown by " + member.name + ": " + reason);
+    throw io::ConfigError(member.mission_file.string(), 0, "", "flown by " + member.name + ": " + reason);
   };
   const control::Outcome outcome = control::check(file.mission, limits);
   if (!outcome.accepted) refuse(outcome.reason);
@@ -57,15 +58,15 @@ double stop_s(const FlightPath& path, const control::Limits& limits) {
 
 FleetVehicle vehicle_of(const FleetMember& member, const FleetFile& fleet,
                         const control::ControlSettings& control) {
-  plant::Vehicle vehicle = runtime::load_vehicle(member.vehicle_file);
+  plant::Vehicle vehicle = io::load_vehicle(member.vehicle_file);
   if (const double width_m = plant::width(vehicle); 2.0 * fleet.safety.radius_xy_m < width_m) {
-    throw runtime::ConfigError(
+    throw io::ConfigError(
         fleet.file.string(), 0, "safety.radius_xy_m",
         fmt::format("is {:g} m, must be at least {:.2f} m: {}, a {}, is up to {:.2f} m wide",
                     fleet.safety.radius_xy_m, 0.5 * width_m, member.name, vehicle.name, width_m));
   }
-  const FileOptions reading = reading_of(member, fleet.frame);
-  MissionFile mission = mission_of(member, reading, control.limits);
+  const io::FileOptions reading = reading_of(member, fleet.frame);
+  io::MissionFile mission = mission_of(member, reading, control.limits);
   MissionCheck check = check_mission(mission, vehicle, control, {member.start_ned, {}});
   FlightPath path =
       FlightPath::of(dry_run(mission.mission, control, member.start_ned), member.start_ned, mission.lands());
@@ -105,7 +106,7 @@ std::string FleetCheck::refusal() const {
 FleetCheck check_fleet(const FleetFile& fleet) {
   FleetCheck check;
   check.fleet = fleet;
-  const control::ControlSettings control = runtime::load_control_settings(fleet.control_file);
+  const control::ControlSettings control = io::load_control_settings(fleet.control_file);
   for (const FleetMember& member : fleet.vehicles) {
     check.vehicles.push_back(vehicle_of(member, fleet, control));
     check.duration_s = std::max(check.duration_s, check.vehicles.back().path.duration_s());

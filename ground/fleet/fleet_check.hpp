@@ -19,8 +19,8 @@ namespace swiftlet::ground {
 struct FleetVehicle {
   FleetMember member;
   plant::Vehicle vehicle;
-  FileOptions reading;  // of the mission file
-  MissionFile mission;  // in the frame of the fleet
+  io::FileOptions reading;  // of the mission file
+  io::MissionFile mission;  // in the frame of the fleet
   MissionCheck check;
   FlightPath path;
   MonitoredVehicle monitored;  // by the monitor in flight
@@ -44,7 +44,7 @@ struct FleetCheck {
   std::string refusal() const;
 };
 
-// Reads the files that the fleet names and checks the flight. Throws runtime::ConfigError for invalid files, and for a
+// Reads the files that the fleet names and checks the flight. Throws io::ConfigError for invalid files, and for a
 // mission that does not begin with a take-off or does not end with a landing.
 FleetCheck check_fleet(const FleetFile& fleet);
 

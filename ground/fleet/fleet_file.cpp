@@ -14,29 +14,29 @@ namespace swiftlet::ground {
 namespace {
 
 namespace fs = std::filesystem;
-using runtime::ConfigNode;
+using io::ConfigNode;
 
 constexpr double kFurthest_m = 1000.0;
 constexpr double kLargestRadius_m = 10.0;
 constexpr int kHighestPriority = 100;
 
 // A file beside the fleet file, or one of the configuration.
-fs::path file_of(const ConfigNode& node, const runtime::ConfigurationKind& kind) {
+fs::path file_of(const ConfigNode& node, const io::ConfigurationKind& kind) {
   const std::string name = node.text();
   const fs::path beside = fs::path(node.file()).parent_path() / name;
   std::error_code error;
   if (fs::is_regular_file(beside, error)) return beside.lexically_normal();
   try {
-    return runtime::configuration_file(kind, name);
-  } catch (const runtime::ConfigError& fault) {
+    return io::configuration_file(kind, name);
+  } catch (const io::ConfigError& fault) {
     node.fail(std::string("names no file: ") + fault.what());
   }
 }
 
-fs::path file_or(const ConfigNode& root, const char* key, const runtime::ConfigurationKind& kind,
+fs::path file_or(const ConfigNode& root, const char* key, const io::ConfigurationKind& kind,
                  const char* otherwise) {
   const auto node = root.find(key);
-  return node ? file_of(*node, kind) : runtime::configuration_file(kind, otherwise);
+  return node ? file_of(*node, kind) : io::configuration_file(kind, otherwise);
 }
 
 double radius(const ConfigNode& node) { return node.number({0.0, kLargestRadius_m, true, false}); }
@@ -46,17 +46,17 @@ void read_member(const ConfigNode& node, const fs::path& vehicle_file, FleetFile
   FleetMember member;
   const ConfigNode name = node.at("name");
   member.name = name.text();
-  if (const std::string fault = comms::fault_of_vehicle_name(member.name); !fault.empty()) name.fail(fault);
+  if (const std::string fault = messages::fault_of_vehicle_name(member.name); !fault.empty())
+    name.fail(fault);
   for (const FleetMember& other : fleet.vehicles) {
     if (other.name == member.name)
       name.fail("is '" + member.name + "', which another vehicle has: each needs a name of its own");
   }
-  const std::vector<double> place =
-      node.at("start_m").numbers(2, 2, runtime::between(-kFurthest_m, kFurthest_m));
-  member.start_ned = ned_from(fleet.frame, {place[0], place[1], 0.0}).head<2>();
+  const std::vector<double> place = node.at("start_m").numbers(2, 2, io::between(-kFurthest_m, kFurthest_m));
+  member.start_ned = io::ned_from(fleet.frame, {place[0], place[1], 0.0}).head<2>();
   const auto vehicle = node.find("vehicle");
-  member.vehicle_file = vehicle ? file_of(*vehicle, runtime::kinds::kVehicle) : vehicle_file;
-  member.mission_file = file_of(node.at("mission"), runtime::kinds::kMission);
+  member.vehicle_file = vehicle ? file_of(*vehicle, io::kinds::kVehicle) : vehicle_file;
+  member.mission_file = file_of(node.at("mission"), io::kinds::kMission);
   if (const auto origin = node.find("origin"))
     member.mission_at_start = origin->choice<bool>({{"common", false}, {"start", true}});
   if (const auto priority = node.find("priority"))
@@ -73,11 +73,11 @@ FleetFile read_fleet(const ConfigNode& root) {
   if (name && (fleet.name.size() > 64 || fleet.name.find('/') != std::string::npos))
     name->fail("must be at most 64 characters and hold no /");
   if (const auto description = root.find("description")) fleet.description = description->text();
-  fleet.frame =
-      root.at("frame").choice<MissionFrame>({{"ned", MissionFrame::kNed}, {"enu", MissionFrame::kEnu}});
-  const fs::path vehicle = file_or(root, "vehicle", runtime::kinds::kVehicle, "kaylion");
-  fleet.control_file = file_or(root, "control", runtime::kinds::kControl, "motor_lag");
-  fleet.simulation_file = file_or(root, "simulation", runtime::kinds::kSimulation, "default");
+  fleet.frame = root.at("frame").choice<io::MissionFrame>(
+      {{"ned", io::MissionFrame::kNed}, {"enu", io::MissionFrame::kEnu}});
+  const fs::path vehicle = file_or(root, "vehicle", io::kinds::kVehicle, "kaylion");
+  fleet.control_file = file_or(root, "control", io::kinds::kControl, "motor_lag");
+  fleet.simulation_file = file_or(root, "simulation", io::kinds::kSimulation, "default");
   const ConfigNode safety = root.at("safety");
   safety.allow({"radius_xy_m", "radius_z_m"});
   fleet.safety = {radius(safety.at("radius_xy_m")), radius(safety.at("radius_z_m"))};
@@ -94,11 +94,11 @@ FleetFile read_fleet(const ConfigNode& root) {
 }  // namespace
 
 FleetFile parse_fleet_file(std::string_view text, const std::string& file_name) {
-  return read_fleet(runtime::parse_config(text, file_name));
+  return read_fleet(io::parse_config(text, file_name));
 }
 
 FleetFile load_fleet_file(const std::string& path) {
-  return parse_fleet_file(runtime::read_text_file(path), path);
+  return parse_fleet_file(io::read_text_file(path), path);
 }
 
 }  // namespace swiftlet::ground

@@ -39,7 +39,7 @@ struct FleetMember {
 struct FleetFile {
   std::string name;
   std::string description;
-  MissionFrame frame = MissionFrame::kNed;
+  io::MissionFrame frame = io::MissionFrame::kNed;
   std::filesystem::path file, control_file, simulation_file;
   Ellipsoid safety;
   std::vector<FleetMember> vehicles;
@@ -47,7 +47,7 @@ struct FleetFile {
 
 constexpr std::size_t kMostFleetVehicles = 50;
 
-// Both throw runtime::ConfigError with file, line, key, value and limit.
+// Both throw io::ConfigError with file, line, key, value and limit.
 FleetFile load_fleet_file(const std::string& path);
 FleetFile parse_fleet_file(std::string_view text, const std::string& file_name);
 

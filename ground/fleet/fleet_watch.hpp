@@ -20,8 +20,8 @@ namespace swiftlet::ground {
 class FleetWatch {
  public:
   struct Watched {
-    Client* client = nullptr;      // outlives this object
-    Progress* progress = nullptr;  // likewise
+    Client* client = nullptr;          // outlives this object
+    io::Progress* progress = nullptr;  // likewise
   };
 
   // vehicles: in the order of the monitor's. gives_up: true from when the flight is abandoned, and all are
@@ -36,7 +36,7 @@ class FleetWatch {
   const std::function<bool()> gives_up_;
   std::deque<OrderSender> senders_;
   std::optional<Clock::time_point> start_;
-  comms::PeriodicTask task_;  // last: uses all members above
+  dds::PeriodicTask task_;  // last: uses all members above
 };
 
 }  // namespace swiftlet::ground

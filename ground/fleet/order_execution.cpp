@@ -5,7 +5,7 @@
 namespace swiftlet::ground {
 namespace {
 
-namespace msg = comms::msg;
+namespace msg = messages::msg;
 
 constexpr double kOtherPlace_m = 0.2;  // from that to which the vehicle was sent: it is sent again
 

@@ -21,8 +21,8 @@ struct MissionNews {
 };
 
 // mission_id: of the flight.
-MissionNews mission_news(const comms::msg::ControlStatus& control, const comms::msg::MissionStatus& mission,
-                         std::uint64_t mission_id);
+MissionNews mission_news(const messages::msg::ControlStatus& control,
+                         const messages::msg::MissionStatus& mission, std::uint64_t mission_id);
 
 class OrderExecution {
  public:

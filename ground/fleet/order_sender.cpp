@@ -14,7 +14,7 @@ constexpr double kAsideSpeed = 0.8;  // m/s
 
 }  // namespace
 
-OrderSender::OrderSender(Client& client, Progress& progress, std::function<bool()> gives_up)
+OrderSender::OrderSender(Client& client, io::Progress& progress, std::function<bool()> gives_up)
     : client_(client), progress_(progress), gives_up_(std::move(gives_up)), thread_([this] { run(); }) {}
 
 OrderSender::~OrderSender() {

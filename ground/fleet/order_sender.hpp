@@ -18,7 +18,7 @@ namespace swiftlet::ground {
 class OrderSender {
  public:
   // Client and progress outlive this object. gives_up: true from when nothing is to be sent any more; from any thread.
-  OrderSender(Client& client, Progress& progress, std::function<bool()> gives_up);
+  OrderSender(Client& client, io::Progress& progress, std::function<bool()> gives_up);
   // Ends at once, also while a request is not answered.
   ~OrderSender();
   OrderSender(const OrderSender&) = delete;
@@ -35,7 +35,7 @@ class OrderSender {
   void say(const Order& order, const std::string& because_of);
 
   Client& client_;
-  Progress& progress_;
+  io::Progress& progress_;
   const std::function<bool()> gives_up_;
   OrderExecution execution_;  // of the thread, as those below
   std::optional<std::uint64_t> own_client_;

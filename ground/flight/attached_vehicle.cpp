@@ -39,11 +39,11 @@ bool finds_nothing(const View& view) {
 }
 
 // Where it looks for the processes: "lo (127.0.0.1) only; with ... on ...".
-std::string interfaces_of(const comms::NodeSettings& network) {
-  if (!network.on_loopback()) return runtime::interfaces_text(false) + comms::search_text(network);
-  return runtime::interfaces_text(true) + " only; " +
+std::string interfaces_of(const dds::NodeSettings& network) {
+  if (!network.on_loopback()) return io::interfaces_text(false) + dds::search_text(network);
+  return io::interfaces_text(true) + " only; " +
          (network.localhost_only ? "without --localhost-only" : "with --network-key FILE or --open-network") +
-         " on " + runtime::interfaces_text(false);
+         " on " + io::interfaces_text(false);
 }
 
 std::string flight_of(const View& view) {
@@ -71,7 +71,7 @@ StandingVehicle reported_by(const Client& client) {
 
 bool is_on_ground(Mode mode) { return control::rotors_off(mode) || mode == Mode::kArmed; }
 
-StandingVehicle require_on_ground(const Client& client, const comms::NodeSettings& network) {
+StandingVehicle require_on_ground(const Client& client, const dds::NodeSettings& network) {
   const bool found = client.wait(kDiscoveryTimeout, [](const View& view) { return view.control.seen(); });
   const View view = client.view();
   if (!found && (finds_nothing(view) || finds(view, "control")))
@@ -86,12 +86,12 @@ StandingVehicle require_on_ground(const Client& client, const comms::NodeSetting
 
 }  // namespace
 
-std::vector<StandingVehicle> require_on_ground(const comms::NodeSettings& network,
+std::vector<StandingVehicle> require_on_ground(const dds::NodeSettings& network,
                                                const std::vector<std::string>& vehicles) {
-  const comms::Participant participant(network);
+  const dds::Participant participant(network);
   std::vector<StandingVehicle> standing;
   for (const std::string& vehicle : vehicles) {
-    comms::NodeSettings settings = network;
+    dds::NodeSettings settings = network;
     settings.vehicle = vehicle;
     const Client client(participant, settings);
     standing.push_back(require_on_ground(client, settings));
@@ -101,13 +101,12 @@ std::vector<StandingVehicle> require_on_ground(const comms::NodeSettings& networ
 
 KnownVehicle known_vehicle(const std::optional<ReportedModel>& reported) {
   if (!reported) return {std::nullopt, "it reports no vehicle model"};
-  const std::vector<runtime::ConfigurationFile> files =
-      runtime::configuration_files(runtime::kinds::kVehicle);
-  const auto file = std::find_if(
-      files.begin(), files.end(),
-      [&](const runtime::ConfigurationFile& candidate) { return candidate.name == reported->name; });
+  const std::vector<io::ConfigurationFile> files = io::configuration_files(io::kinds::kVehicle);
+  const auto file = std::find_if(files.begin(), files.end(), [&](const io::ConfigurationFile& candidate) {
+    return candidate.name == reported->name;
+  });
   if (file == files.end()) return {std::nullopt, "no vehicle file is named " + reported->name};
-  plant::Vehicle vehicle = runtime::load_vehicle(file->path);
+  plant::Vehicle vehicle = io::load_vehicle(file->path);
   if (vehicle.rotor_count() != reported->rotor_count ||
       std::abs(vehicle.mass_kg - reported->mass_kg) > kSameMass * vehicle.mass_kg)
     return {std::nullopt,

@@ -20,7 +20,7 @@ struct StandingVehicle {
   std::optional<ReportedModel> model;
   std::optional<Eigen::Vector2d> start_ned;  // m, where it stands
 };
-std::vector<StandingVehicle> require_on_ground(const comms::NodeSettings& network,
+std::vector<StandingVehicle> require_on_ground(const dds::NodeSettings& network,
                                                const std::vector<std::string>& vehicles);
 
 // What a vehicle model is known by.
@@ -30,7 +30,7 @@ struct KnownVehicle {
 };
 
 // The vehicle in the configuration with the name that the running one reports, if mass and number of rotors agree. Throws
-// runtime::ConfigError if its file is invalid.
+// io::ConfigError if its file is invalid.
 KnownVehicle known_vehicle(const std::optional<ReportedModel>& reported);
 
 }  // namespace swiftlet::ground

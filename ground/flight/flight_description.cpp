@@ -68,7 +68,7 @@ std::vector<mcap::Attachment> flight_attachments(const Fleet& fleet) {
   for (const auto& [name, file] : files_of(fleet)) {
     const bool yaml = file.extension() == ".yaml";
     attachments.push_back(
-        {now_ns, now_ns, name, yaml ? "application/yaml" : "text/plain", runtime::read_text_file(file)});
+        {now_ns, now_ns, name, yaml ? "application/yaml" : "text/plain", io::read_text_file(file)});
   }
   return attachments;
 }

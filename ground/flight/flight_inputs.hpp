@@ -16,7 +16,7 @@ struct FlightInputs {
   std::optional<plant::Vehicle> vehicle;
   std::optional<control::ControlSettings> control;
   std::optional<plant::SimulationSettings> simulation;
-  std::optional<MissionFile> mission;
+  std::optional<io::MissionFile> mission;
 
   bool any() const { return vehicle || control || simulation || mission; }
 };

@@ -16,7 +16,7 @@ namespace swiftlet::ground {
 namespace {
 
 // Why a mission that was flown to its end does not count as completed; empty if it counts.
-std::string shortfall(const FlightReport& report, record::Window window) {
+std::string shortfall(const analysis::FlightReport& report, record::Window window) {
   if (report.errors.matched == 0 && !report.record_fault.empty())
     return "nothing was recorded by which it could be judged: " + report.record_fault;
   if (!record::enough_samples(report.errors, window)) {
@@ -34,14 +34,14 @@ std::string shortfall(const FlightReport& report, record::Window window) {
   return {};
 }
 
-void say_record_fault(const FlightReport& report, Progress& progress) {
+void say_record_fault(const analysis::FlightReport& report, io::Progress& progress) {
   if (!report.record_fault.empty())
     progress.say("swiftlet: the record " + report.record_dir + " is incomplete: " + report.record_fault);
 }
 
 }  // namespace
 
-void judge(FlightReport& report, const record::Evaluation& flown) {
+void judge(analysis::FlightReport& report, const record::Evaluation& flown) {
   report.duration_s = flown.duration_s;
   report.errors = flown.errors;
   if (report.reason.empty()) report.reason = shortfall(report, flown.window.value_or(record::Window{}));
@@ -56,8 +56,8 @@ std::optional<record::Flight> flight_in(const std::filesystem::path& folder, con
   }
 }
 
-void write_report(const std::filesystem::path& folder, const record::Flight& flight, FlightReport& report,
-                  record::Window window, Progress& progress) {
+void write_report(const std::filesystem::path& folder, const record::Flight& flight,
+                  analysis::FlightReport& report, record::Window window, io::Progress& progress) {
   const auto attempt = [&](const std::filesystem::path& file, const auto& write) {
     try {
       write(file);
@@ -66,18 +66,18 @@ void write_report(const std::filesystem::path& folder, const record::Flight& fli
     }
   };
   // First the smallest file, with the result. It is written again at the end if another one has failed.
-  attempt(folder / "report.json", [&](const auto& file) { write_report_json(file, report); });
+  attempt(folder / "report.json", [&](const auto& file) { analysis::write_report_json(file, report); });
   if (report.errors.matched > 0) {
     attempt(folder / "flight.png", [&](const auto&) {
-      const std::string no_picture = draw_flight(folder, flight, report, window);
+      const std::string no_picture = analysis::draw_flight(folder, flight, report, window);
       if (!no_picture.empty()) progress.say(no_picture);
     });
   }
   if (!report.record_fault.empty())
-    attempt(folder / "report.json", [&](const auto& file) { write_report_json(file, report); });
+    attempt(folder / "report.json", [&](const auto& file) { analysis::write_report_json(file, report); });
 }
 
-int print_report(const FlightReport& report, bool json, ProgressLine& progress) {
+int print_report(const analysis::FlightReport& report, bool json, io::ProgressLine& progress) {
   progress.close();
   if (json) {
     std::printf("%s\n", to_json(report).dump().c_str());
@@ -86,20 +86,20 @@ int print_report(const FlightReport& report, bool json, ProgressLine& progress) 
     std::fputs(to_text(report).c_str(), report.completed ? stdout : stderr);
   }
   say_record_fault(report, progress);
-  return report.completed && report.record_fault.empty() ? kDone : kFailed;
+  return report.completed && report.record_fault.empty() ? io::kDone : io::kFailed;
 }
 
-int print_report(const std::vector<FlightReport>& reports, bool json, ProgressLine& progress) {
+int print_report(const std::vector<analysis::FlightReport>& reports, bool json, io::ProgressLine& progress) {
   progress.close();
   const auto completed = static_cast<std::size_t>(std::count_if(
-      reports.begin(), reports.end(), [](const FlightReport& report) { return report.completed; }));
+      reports.begin(), reports.end(), [](const analysis::FlightReport& report) { return report.completed; }));
   const bool all = completed == reports.size();
   if (json) {
     nlohmann::ordered_json whole = {{"completed", all}, {"vehicles", nlohmann::ordered_json::array()}};
-    for (const FlightReport& report : reports) whole["vehicles"].push_back(to_json(report));
+    for (const analysis::FlightReport& report : reports) whole["vehicles"].push_back(to_json(report));
     std::printf("%s\n", whole.dump().c_str());
   }
-  for (const FlightReport& report : reports) {
+  for (const analysis::FlightReport& report : reports) {
     if (!json) {
       const std::string text = report.vehicle_name + ", " + to_text(report);
       std::fputs(text.c_str(), report.completed ? stdout : stderr);
@@ -109,9 +109,10 @@ int print_report(const std::vector<FlightReport>& reports, bool json, ProgressLi
     say_record_fault(report, progress);
   }
   if (!json) std::printf("%zu of %zu flights completed\n", completed, reports.size());
-  const bool recorded = std::all_of(reports.begin(), reports.end(),
-                                    [](const FlightReport& report) { return report.record_fault.empty(); });
-  return all && recorded ? kDone : kFailed;
+  const bool recorded = std::all_of(reports.begin(), reports.end(), [](const analysis::FlightReport& report) {
+    return report.record_fault.empty();
+  });
+  return all && recorded ? io::kDone : io::kFailed;
 }
 
 }  // namespace swiftlet::ground

@@ -8,27 +8,28 @@
 
 namespace swiftlet::ground {
 
-ClosedLoop closed_loop(const LaunchConfiguration& plan, const World& world, std::uint64_t seed) {
+simulation::ClosedLoop closed_loop(const LaunchConfiguration& plan, const simulation::World& world,
+                                   std::uint64_t seed) {
   return {world.vehicle, plan.vehicle, world.simulation, plan.control, seed};
 }
 
-FlightReport fly_in_process(ClosedLoop& loop, const LaunchConfiguration& plan, std::uint64_t seed,
-                            record::Flight& flight, record::FlightTrace* trace,
-                            const std::function<bool()>& cancelled, SimulatedRecorder* messages) {
+analysis::FlightReport fly_in_process(simulation::ClosedLoop& loop, const LaunchConfiguration& plan,
+                                      std::uint64_t seed, record::Flight& flight, record::FlightTrace* trace,
+                                      const std::function<bool()>& cancelled, SimulatedRecorder* messages) {
   control::Mission mission = plan.mission.mission;
   mission.id = 1;
-  FlightReport report = report_of(plan);
+  analysis::FlightReport report = report_of(plan);
   report.seed = seed;
 
   const auto start = std::chrono::steady_clock::now();
-  FlightObserver observer{&flight, trace, cancelled, {}, {}};
+  simulation::FlightObserver observer{&flight, trace, cancelled, {}, {}};
   if (messages != nullptr) {
     observer.stepped = [messages] { messages->step(); };
     observer.requested = [messages](const control::Request& request, const control::Outcome& outcome) {
       messages->request(request, outcome);
     };
   }
-  const SimulatedFlight flown = ground::fly(loop, mission, plan.planned_duration_s, observer);
+  const simulation::SimulatedFlight flown = simulation::fly(loop, mission, plan.planned_duration_s, observer);
   report.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
   report.simulated_s = flown.simulated_s;

@@ -16,11 +16,13 @@ class SimulatedRecorder;
 
 // The closed loop of the vehicle in `world` and a controller designed for the plan's vehicle. Throws as
 // ClosedLoop does.
-ClosedLoop closed_loop(const LaunchConfiguration& plan, const World& world, std::uint64_t seed);
+simulation::ClosedLoop closed_loop(const LaunchConfiguration& plan, const simulation::World& world,
+                                   std::uint64_t seed);
 
 // Flies the plan's mission. loop: new, of the same seed. flight: empty; takes what is flown. trace and messages may be null.
-FlightReport fly_in_process(ClosedLoop& loop, const LaunchConfiguration& plan, std::uint64_t seed,
-                            record::Flight& flight, record::FlightTrace* trace,
-                            const std::function<bool()>& cancelled, SimulatedRecorder* messages = nullptr);
+analysis::FlightReport fly_in_process(simulation::ClosedLoop& loop, const LaunchConfiguration& plan,
+                                      std::uint64_t seed, record::Flight& flight, record::FlightTrace* trace,
+                                      const std::function<bool()>& cancelled,
+                                      SimulatedRecorder* messages = nullptr);
 
 }  // namespace swiftlet::ground

@@ -36,18 +36,18 @@ constexpr double kGroundTimeS = 10.0;     // recorded before take-off and after 
 
 std::string absolute_path(const fs::path& path) { return fs::absolute(path).string(); }
 
-void require_takeoff_and_land(const MissionFile& mission, const fs::path& file) {
+void require_takeoff_and_land(const io::MissionFile& mission, const fs::path& file) {
   if (!mission.takes_off())
-    throw InputError(file.string() +
-                     ": items: the first item is not a takeoff: a flight starts on the ground");
+    throw io::InputError(file.string() +
+                         ": items: the first item is not a takeoff: a flight starts on the ground");
   if (!mission.lands())
-    throw InputError(file.string() + ": items: the last item is not a land: a flight ends on the ground");
+    throw io::InputError(file.string() + ": items: the last item is not a land: a flight ends on the ground");
 }
 
 void require_valid(const FlightInputs& given) {
   const auto require = [](const char* what, const std::vector<plant::Violation>& violations) {
     for (const plant::Violation& violation : violations)
-      throw InputError(fmt::format("{}: {}: {}", what, violation.key, violation.message));
+      throw io::InputError(fmt::format("{}: {}: {}", what, violation.key, violation.message));
   };
   if (given.vehicle) require("vehicle", plant::validate(*given.vehicle));
   if (given.control) require("control", control::validate(*given.control));
@@ -59,7 +59,7 @@ double require_flyable_mission(const LaunchConfiguration& plan) {
   CheckConditions conditions;
   conditions.start_ned = plan.start_ned;
   const MissionCheck check = check_mission(plan.mission, plan.vehicle, plan.control, conditions);
-  if (!check.feasible()) throw InputError(plan.mission_file.string() + ": " + check.refusal());
+  if (!check.feasible()) throw io::InputError(plan.mission_file.string() + ": " + check.refusal());
   return check.duration_s;
 }
 
@@ -86,10 +86,10 @@ std::vector<Group> groups_of(const Fleet& fleet) {
 
 class ProcessBuilder {
  public:
-  ProcessBuilder(const Fleet& fleet, const comms::NodeSettings& network)
+  ProcessBuilder(const Fleet& fleet, const dds::NodeSettings& network)
       : fleet_(fleet), first_(fleet.plans.front()), common_(network_arguments(network)) {}
 
-  ProcessSettings plant(const Group& group) const {
+  io::ProcessSettings plant(const Group& group) const {
     if (first_.px4_instance) {
       return process("swiftlet-px4", first_.vehicle_program,
                      {"--vehicle", vehicle_of(group), "--levels", level(), "--instance",
@@ -103,7 +103,7 @@ class ProcessBuilder {
         "--start"};
     for (const std::size_t i : group.members) {
       const Eigen::Vector2d& start_ned = fleet_.plans[i].start_ned;
-      append(arguments, {runtime::exact(start_ned.x()), runtime::exact(start_ned.y())});
+      append(arguments, {io::exact(start_ned.x()), io::exact(start_ned.y())});
     }
     if (first_.imu_rate_option_hz > 0)
       append(arguments, {"--imu-rate", std::to_string(first_.imu_rate_option_hz)});
@@ -114,8 +114,8 @@ class ProcessBuilder {
     }
     const plant::RadioSettings& radio = first_.simulation.radio;
     if (radio.on()) {
-      append(arguments, {"--radio-delay", runtime::exact(radio.delay_s), "--radio-jitter",
-                         runtime::exact(radio.jitter_s), "--radio-loss", runtime::exact(radio.loss)});
+      append(arguments, {"--radio-delay", io::exact(radio.delay_s), "--radio-jitter",
+                         io::exact(radio.jitter_s), "--radio-loss", io::exact(radio.loss)});
     }
     if (first_.clock == runtime::Clock::kLockstep) {
       arguments.emplace_back("--paused");
@@ -124,11 +124,11 @@ class ProcessBuilder {
           several ? fleet_.folder / "{}" / first_.trace_file().filename() : first_.trace_file();
       if (first_.trace) append(arguments, {"--trace", absolute_path(trace)});
     }
-    if (first_.speed) append(arguments, {"--speed", runtime::exact(*first_.speed)});
+    if (first_.speed) append(arguments, {"--speed", io::exact(*first_.speed)});
     return process("swiftlet-plant", first_.vehicle_program, std::move(arguments), group);
   }
 
-  ProcessSettings mocap(const std::vector<Group>& groups) const {
+  io::ProcessSettings mocap(const std::vector<Group>& groups) const {
     Group all;
     for (const Group& group : groups)
       all.members.insert(all.members.end(), group.members.begin(), group.members.end());
@@ -138,7 +138,7 @@ class ProcessBuilder {
                    all);
   }
 
-  ProcessSettings control(const Group& group) const {
+  io::ProcessSettings control(const Group& group) const {
     return process("swiftlet-control", first_.control_program,
                    {"--vehicle", vehicle_of(group), "--control", absolute_path(first_.control_file),
                     "--level", level(), "--clock", runtime::to_string(first_.clock)},
@@ -154,8 +154,8 @@ class ProcessBuilder {
   }
   std::string level() const { return plant::to_string(first_.simulation.control_levels.lowest()); }
 
-  ProcessSettings process(const std::string& program_name, const fs::path& program,
-                          std::vector<std::string> arguments, const Group& group) const {
+  io::ProcessSettings process(const std::string& program_name, const fs::path& program,
+                              std::vector<std::string> arguments, const Group& group) const {
     append(arguments, common_);
     std::vector<std::string> names;
     for (const std::size_t i : group.members) names.push_back(fleet_.vehicles[i]);
@@ -174,18 +174,18 @@ class ProcessBuilder {
 double require_flyable(const LaunchConfiguration& plan) {
   const MissionDryRun flown = dry_run(plan.mission.mission, plan.control, plan.start_ned);
   if (flown.completed) return flown.duration_s;
-  throw InputError(fmt::format("{}: the control service would not complete it: {}", plan.mission_file.c_str(),
-                               flown.reason));
+  throw io::InputError(fmt::format("{}: the control service would not complete it: {}",
+                                   plan.mission_file.c_str(), flown.reason));
 }
 
 double require_flyable(const LaunchConfiguration& plan, const plant::Vehicle& vehicle,
-                       const FileOptions& reading) {
+                       const io::FileOptions& reading) {
   CheckConditions conditions;
   conditions.start_ned = plan.start_ned;
   const MissionCheck check = check_mission(plan.mission, vehicle, plan.control, conditions);
   const std::string refusal = refusal_with_advice(plan.mission, plan.mission_file.string(), reading, vehicle,
                                                   plan.control, check, conditions);
-  if (!refusal.empty()) throw InputError(plan.mission_file.string() + ": " + refusal);
+  if (!refusal.empty()) throw io::InputError(plan.mission_file.string() + ": " + refusal);
   return check.duration_s;
 }
 
@@ -207,27 +207,27 @@ void take_simulation_options(const FlyOptions& options, LaunchConfiguration& pla
   plan.simulation.control_levels = options.level;
   plan.simulation.odometry.source = options.odometry;
   if (options.odometry != plant::OdometrySource::kNone && options.level == plant::ControlLevel::kActuators)
-    throw InputError(
+    throw io::InputError(
         "--odometry: needs --level rates, attitude or trajectory: level actuators needs the IMU");
   plant::RadioSettings& radio = plan.simulation.radio;
   radio.delay_s = options.radio_delay_s.value_or(radio.delay_s);
   radio.jitter_s = options.radio_jitter_s.value_or(radio.jitter_s);
   radio.loss = options.radio_loss.value_or(radio.loss);
   for (const plant::Violation& violation : plant::validate(plan.simulation)) {
-    throw InputError("--imu-rate: " + violation.key + " " + violation.message);
+    throw io::InputError("--imu-rate: " + violation.key + " " + violation.message);
   }
   for (const plant::Violation& violation : plant::validate_faults(plan.simulation.faults, plan.vehicle)) {
-    throw InputError(plan.simulation_file.string() + ": " + violation.key + ": " + violation.message);
+    throw io::InputError(plan.simulation_file.string() + ": " + violation.key + ": " + violation.message);
   }
 }
 
 void take_dispersion(const FlyOptions& options, LaunchConfiguration& plan) {
-  if (options.dispersion == kUncertainty) {
+  if (options.dispersion == simulation::kUncertainty) {
     const std::string file = plan.vehicle_file.string();
-    plan.dispersion = dispersion_of(runtime::load_vehicle_uncertainty(file), plan.vehicle, file);
+    plan.dispersion = simulation::dispersion_of(io::load_vehicle_uncertainty(file), plan.vehicle, file);
   } else if (!options.dispersion.empty()) {
-    plan.dispersion_file = runtime::configuration_file(runtime::kinds::kDispersion, options.dispersion);
-    plan.dispersion = load_dispersion_file(plan.dispersion_file, {plan.vehicle, plan.simulation});
+    plan.dispersion_file = io::configuration_file(io::kinds::kDispersion, options.dispersion);
+    plan.dispersion = simulation::load_dispersion_file(plan.dispersion_file, {plan.vehicle, plan.simulation});
   }
 }
 
@@ -237,7 +237,7 @@ void take_mission(const FlyOptions& options, const FlightInputs& given, LaunchCo
     plan.mission_file = given.mission->name;
     plan.mission = *given.mission;
   } else {
-    plan.mission_file = runtime::configuration_file(runtime::kinds::kMission, options.mission);
+    plan.mission_file = io::configuration_file(io::kinds::kMission, options.mission);
     plan.mission = load_mission(plan.mission_file, options.reading, plan.vehicle, plan.control);
   }
   plan.start_ned = options.start_ned;
@@ -245,9 +245,9 @@ void take_mission(const FlyOptions& options, const FlightInputs& given, LaunchCo
     plan.mission.mission = shifted(std::move(plan.mission.mission), options.start_ned, plan.control.limits);
   if (const control::Outcome outcome = control::check(plan.mission.mission, plan.control.limits);
       !outcome.accepted)
-    throw InputError(fmt::format("{}: started at {:g} m north and {:g} m east of the origin: {}",
-                                 plan.mission_file.c_str(), plan.start_ned.x(), plan.start_ned.y(),
-                                 outcome.reason));
+    throw io::InputError(fmt::format("{}: started at {:g} m north and {:g} m east of the origin: {}",
+                                     plan.mission_file.c_str(), plan.start_ned.x(), plan.start_ned.y(),
+                                     outcome.reason));
   require_takeoff_and_land(plan.mission, plan.mission_file);
   if (plan.launch_mode != LaunchMode::kAttached) {
     plan.planned_duration_s =
@@ -264,22 +264,21 @@ LaunchConfiguration plan_flight(const FlyOptions& options, const FlightInputs& g
   plan.launch_mode = options.launch_mode;
   plan.clock = options.clock;
   plan.speed = options.speed;
-  plan.vehicle_file = runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle);
-  plan.control_file = runtime::configuration_file(runtime::kinds::kControl, options.control);
-  plan.simulation_file = runtime::configuration_file(runtime::kinds::kSimulation, options.simulation);
-  plan.vehicle = given.vehicle ? *given.vehicle : runtime::load_vehicle(plan.vehicle_file);
-  plan.control = given.control ? *given.control : runtime::load_control_settings(plan.control_file);
-  plan.simulation =
-      given.simulation ? *given.simulation : runtime::load_simulation_settings(plan.simulation_file);
+  plan.vehicle_file = io::configuration_file(io::kinds::kVehicle, options.vehicle);
+  plan.control_file = io::configuration_file(io::kinds::kControl, options.control);
+  plan.simulation_file = io::configuration_file(io::kinds::kSimulation, options.simulation);
+  plan.vehicle = given.vehicle ? *given.vehicle : io::load_vehicle(plan.vehicle_file);
+  plan.control = given.control ? *given.control : io::load_control_settings(plan.control_file);
+  plan.simulation = given.simulation ? *given.simulation : io::load_simulation_settings(plan.simulation_file);
   require_valid(given);
   take_simulation_options(options, plan);
   take_dispersion(options, plan);
   plan.seed = options.seed;
   take_mission(options, given, plan);
   if (plan.launch_mode == LaunchMode::kStarted) {
-    plan.vehicle_program = program_beside(options.px4_instance ? "swiftlet-px4" : "swiftlet-plant");
-    plan.mocap_program = program_beside("swiftlet-mocap");
-    plan.control_program = program_beside("swiftlet-control");
+    plan.vehicle_program = io::program_beside(options.px4_instance ? "swiftlet-px4" : "swiftlet-plant");
+    plan.mocap_program = io::program_beside("swiftlet-mocap");
+    plan.control_program = io::program_beside("swiftlet-control");
   }
   plan.folder = options.record.empty() ? default_record_folder(plan.mission.name) : fs::path(options.record);
   plan.trace = options.trace;
@@ -287,7 +286,7 @@ LaunchConfiguration plan_flight(const FlyOptions& options, const FlightInputs& g
   return plan;
 }
 
-DispersionSample draw(const LaunchConfiguration& plan, std::uint64_t seed) {
+simulation::DispersionSample draw(const LaunchConfiguration& plan, std::uint64_t seed) {
   return draw(plan.dispersion, {plan.vehicle, plan.simulation}, seed);
 }
 
@@ -309,8 +308,8 @@ ExistingRecord existing_record(const FlyOptions& options) {
   return options.replace ? ExistingRecord::kReplaced : ExistingRecord::kRefused;
 }
 
-FlightReport report_of(const LaunchConfiguration& plan) {
-  FlightReport report;
+analysis::FlightReport report_of(const LaunchConfiguration& plan) {
+  analysis::FlightReport report;
   report.clock = plan.launch_mode == LaunchMode::kInProcess ? "in process" : runtime::to_string(plan.clock);
   report.mission = plan.mission.name;
   report.vehicle = plan.vehicle.name;
@@ -334,12 +333,12 @@ Eigen::Vector2d start_of(std::size_t i, std::size_t vehicles, double spacing_m, 
   return {offset(i / columns, rows), offset(i % columns, columns)};
 }
 
-std::vector<ProcessSettings> processes(const Fleet& fleet, const comms::NodeSettings& network) {
+std::vector<io::ProcessSettings> processes(const Fleet& fleet, const dds::NodeSettings& network) {
   const LaunchConfiguration& first = fleet.plans.front();
   if (first.launch_mode != LaunchMode::kStarted) return {};
   const ProcessBuilder builder(fleet, network);
   const std::vector<Group> groups = groups_of(fleet);
-  std::vector<ProcessSettings> processes;
+  std::vector<io::ProcessSettings> processes;
   for (const Group& group : groups) processes.push_back(builder.plant(group));
   processes.push_back(builder.mocap(groups));
   for (const Group& group : groups) processes.push_back(builder.control(group));

@@ -48,7 +48,7 @@ struct FlyOptions {
   plant::ControlLevel level = plant::ControlLevel::kActuators;      // at which the vehicle is commanded
   plant::OdometrySource odometry = plant::OdometrySource::kNone;    // brought by the simulated vehicle
   std::optional<double> radio_delay_s, radio_jitter_s, radio_loss;  // unset: as in the simulation file
-  comms::NodeSettings network;
+  dds::NodeSettings network;
   // m, initial position, by which the mission is shifted
   Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();
   bool mission_at_start = true;  // false: the mission is not shifted
@@ -70,15 +70,15 @@ struct LaunchConfiguration {
   LaunchMode launch_mode = LaunchMode::kStarted;
   runtime::Clock clock = runtime::Clock::kRealtime;
   std::optional<double> speed;
-  MissionFile mission;
+  io::MissionFile mission;
   double planned_duration_s = 0.0;  // by the dry run
   std::filesystem::path vehicle_file, control_file, simulation_file, mission_file;
   std::filesystem::path dispersion_file;  // empty without one
   plant::Vehicle vehicle;
   control::ControlSettings control;
   plant::SimulationSettings simulation;
-  Dispersion dispersion;       // of vehicle and simulation; empty unless requested
-  int imu_rate_option_hz = 0;  // FlyOptions::imu_rate_hz
+  simulation::Dispersion dispersion;  // of vehicle and simulation; empty unless requested
+  int imu_rate_option_hz = 0;         // FlyOptions::imu_rate_hz
   std::uint64_t seed = 0;
   Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();  // m
   std::filesystem::path folder;                         // of the record; not created by plan_flight()
@@ -92,14 +92,14 @@ struct LaunchConfiguration {
   std::vector<std::filesystem::path> input_files() const;
 };
 
-// Throws runtime::ConfigError or InputError if the input is invalid or if the vehicle cannot fly the mission, by a dry run
+// Throws io::ConfigError or InputError if the input is invalid or if the vehicle cannot fly the mission, by a dry run
 // (mission_check.hpp), with what would make it possible. Of kAttached neither vehicle nor place is known yet: the mission is
 // not flown in a dry run, and planned_duration_s is 0. Starts no process and writes no file.
 LaunchConfiguration plan_flight(const FlyOptions& options);
 
 // The duration of the mission of the plan, s, from plan.start_ned. Throws InputError if this vehicle cannot fly it, as above.
 double require_flyable(const LaunchConfiguration& plan, const plant::Vehicle& vehicle,
-                       const FileOptions& reading);
+                       const io::FileOptions& reading);
 // The same by the dry run alone, which holds for any vehicle.
 double require_flyable(const LaunchConfiguration& plan);
 
@@ -110,7 +110,7 @@ ExistingRecord existing_record(const FlyOptions& options);
 
 // Samples the vehicle and simulation to fly with this seed; the controller is designed for plan.vehicle.
 // Throws as draw() of dispersion.hpp does.
-DispersionSample draw(const LaunchConfiguration& plan, std::uint64_t seed);
+simulation::DispersionSample draw(const LaunchConfiguration& plan, std::uint64_t seed);
 
 // The vehicles of one command, with the i-th plan for the i-th name. They differ in vehicle file, mission, seed and start
 // only. Vehicles of one file have consecutive seeds in their order.
@@ -126,9 +126,9 @@ Eigen::Vector2d start_of(std::size_t i, std::size_t vehicles, double spacing_m, 
 
 // The processes that serve a fleet of kStarted, on this network: plant and control for each vehicle file, and motion
 // capture for all. Empty for other launch modes.
-std::vector<ProcessSettings> processes(const Fleet& fleet, const comms::NodeSettings& network);
+std::vector<io::ProcessSettings> processes(const Fleet& fleet, const dds::NodeSettings& network);
 
 // A report with the fields of the plan filled in.
-FlightReport report_of(const LaunchConfiguration& plan);
+analysis::FlightReport report_of(const LaunchConfiguration& plan);
 
 }  // namespace swiftlet::ground

@@ -23,14 +23,14 @@ std::int64_t now_ns() {
       .count();
 }
 
-comms::NodeSettings listener(comms::NodeSettings network) {
+dds::NodeSettings listener(dds::NodeSettings network) {
   network.source_of.clear();
   return network;
 }
 
 }  // namespace
 
-MessageRecord::MessageRecord(const comms::NodeSettings& network, const Fleet& fleet)
+MessageRecord::MessageRecord(const dds::NodeSettings& network, const Fleet& fleet)
     : participant_(listener(network)),
       recorder_(participant_, fleet.folder / record::kFlightFile, settings_of(fleet)),
       folder_(fleet.folder),

@@ -19,7 +19,7 @@ class MessageRecord {
  public:
   // Begins the file in the fleet's folder, with the flight's settings as metadata and its files as attachments. Throws
   // std::runtime_error.
-  MessageRecord(const comms::NodeSettings& network, const Fleet& fleet);
+  MessageRecord(const dds::NodeSettings& network, const Fleet& fleet);
 
   // Whether it has received the first samples of this vehicle: of its sensors, its motion capture and its controller.
   bool hears(const std::string& vehicle) const { return recorder_.hears(vehicle); }
@@ -37,7 +37,7 @@ class MessageRecord {
 
   std::mutex mutex_;  // guards on_motion_; held while one runs
   std::map<std::string, std::function<void(std::int64_t)>> on_motion_;
-  comms::Participant participant_;
+  dds::Participant participant_;
   record::FlightRecorder recorder_;
   const std::filesystem::path folder_;
   const bool simulated_time_;

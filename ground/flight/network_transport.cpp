@@ -70,8 +70,8 @@ double simulated_s(const View& view, std::int64_t since_ns) {
 
 }  // namespace
 
-NetworkTransport::NetworkTransport(Client& client, const MissionFile& mission, runtime::Clock clock,
-                                   Watch watch, Progress& progress)
+NetworkTransport::NetworkTransport(Client& client, const io::MissionFile& mission, runtime::Clock clock,
+                                   Watch watch, io::Progress& progress)
     : client_(client),
       mission_(mission),
       lockstep_(clock == runtime::Clock::kLockstep),
@@ -91,11 +91,11 @@ bool NetworkTransport::Silence::lasts(std::uint64_t sample_count) {
 }
 
 void NetworkTransport::require_alive() const {
-  if (const auto exited_process = watch_.exited_process()) throw FlightFailure(*exited_process);
+  if (const auto exited_process = watch_.exited_process()) throw simulation::FlightFailure(*exited_process);
 }
 
 void NetworkTransport::require_no_interrupt() const {
-  if (watch_.interrupts() > 0) throw FlightFailure("interrupted before take-off");
+  if (watch_.interrupts() > 0) throw simulation::FlightFailure("interrupted before take-off");
 }
 
 void NetworkTransport::wait_until_ready() {
@@ -111,7 +111,8 @@ void NetworkTransport::wait_until_ready() {
     require_no_interrupt();
     const auto waited = Clock::now() - start;
     if (waited > kReadyTimeout) {
-      throw FlightFailure("not ready after 20 s: missing " + absent + "; looked for " + client_.where());
+      throw simulation::FlightFailure("not ready after 20 s: missing " + absent + "; looked for " +
+                                      client_.where());
     }
     progress_.update(kBeforeFlight, "waiting for " + absent);
   }
@@ -122,7 +123,7 @@ void NetworkTransport::wait_until_ready() {
     client_.enable_link_loss_failsafe();
     return;
   }
-  wait_until_paused_at(FlightSchedule::kFirstRequestNs);
+  wait_until_paused_at(simulation::FlightSchedule::kFirstRequestNs);
 }
 
 void NetworkTransport::wait_until(const std::function<bool(const View&)>& holds,
@@ -131,7 +132,8 @@ void NetworkTransport::wait_until(const std::function<bool(const View&)>& holds,
   while (!client_.wait(kStep, holds)) {
     require_alive();
     require_no_interrupt();
-    if (Clock::now() - start > kReadyTimeout) throw FlightFailure("not ready after 20 s: " + what_not);
+    if (Clock::now() - start > kReadyTimeout)
+      throw simulation::FlightFailure("not ready after 20 s: " + what_not);
   }
 }
 
@@ -152,7 +154,7 @@ void NetworkTransport::wait_until_paused_at(std::int64_t stamp_ns) {
   wait_until(paused, "simulated time has not reached " + std::to_string(stamp_ns) + " ns");
 }
 
-MissionTransport::Reply NetworkTransport::arm() {
+simulation::MissionTransport::Reply NetworkTransport::arm() {
   msg::Command command;
   command.kind(msg::Command_Constants::ARM);
   const Result answer = client_.command(
@@ -180,13 +182,13 @@ std::int64_t NetworkTransport::at_vehicle_rate(std::int64_t host_ns) const {
   return watch_.speed == 1.0 ? host_ns : std::llround(static_cast<double>(host_ns) * watch_.speed);
 }
 
-void NetworkTransport::update_clock_offset(comms::ClockClient& vehicle_clock) {
+void NetworkTransport::update_clock_offset(clocks::ClockClient& vehicle_clock) {
   vehicle_clock.ask_if_due();
   const std::int64_t now_ns = at_vehicle_rate(runtime::monotonic_ns());
   if (const auto stamp_ns = vehicle_clock.to_vehicle(now_ns)) clock_offset_ns_ = *stamp_ns - now_ns;
 }
 
-void NetworkTransport::learn_clock_offset(comms::ClockClient& vehicle_clock) {
+void NetworkTransport::learn_clock_offset(clocks::ClockClient& vehicle_clock) {
   const auto start = Clock::now();
   for (Clock::duration asked{}; asked < kClockTime || !clock_offset_ns_; asked = Clock::now() - start) {
     require_alive();
@@ -205,11 +207,11 @@ Result NetworkTransport::upload() {
 
 void NetworkTransport::wait_for_other_vehicles() {
   if (watch_.barrier == nullptr) return;
-  std::optional<comms::ClockClient> vehicle_clock;
+  std::optional<clocks::ClockClient> vehicle_clock;
   if (!lockstep_) {
     vehicle_clock.emplace(
         client_.node(), [this] { return at_vehicle_rate(runtime::monotonic_ns()); },
-        comms::ClockClient::Reporting::kNone);
+        clocks::ClockClient::Reporting::kNone);
     learn_clock_offset(*vehicle_clock);
   }
   if (const Result answer = upload(); !answer.accepted()) {
@@ -229,7 +231,7 @@ void NetworkTransport::wait_for_other_vehicles() {
                         : at_vehicle_rate(all_ready_ns + kRealtimeStartAheadNs) + *clock_offset_ns_;
 }
 
-MissionTransport::Reply NetworkTransport::start_mission() {
+simulation::MissionTransport::Reply NetworkTransport::start_mission() {
   const auto cancelled = [this] { return watch_.exited_process() || watch_.interrupts() > 0; };
   Result answer = watch_.barrier == nullptr ? upload() : Result{Result::Kind::kAccepted, ""};
   if (answer.accepted()) {
@@ -283,10 +285,10 @@ void NetworkTransport::yield_to_other_tool(const View& view) {
   });
   if (!result || result->kind != ActionResult::Kind::kCanceled) return;
   if (!watch_.attached) abandon(interruption_by(*result));
-  throw FlightFailure(interruption_by(*result) + "; the vehicle is left to it");
+  throw simulation::FlightFailure(interruption_by(*result) + "; the vehicle is left to it");
 }
 
-MissionTransport::Status NetworkTransport::status() const {
+simulation::MissionTransport::Status NetworkTransport::status() const {
   const View view = client_.view();
   const auto& mission = view.mission.message;
   const bool flown = mission.mission_id() == client_.mission_id();
@@ -304,7 +306,7 @@ void NetworkTransport::fail_silent(const std::string& who) {
     require_alive();
     client_.wait(kStep, [](const View&) { return false; });
   }
-  throw FlightFailure(who + " has sent nothing for 3 s");
+  throw simulation::FlightFailure(who + " has sent nothing for 3 s");
 }
 
 // Waits for vehicle_info and control_status after the landing: they carry the figures of the flight.
@@ -351,20 +353,20 @@ void NetworkTransport::abandon(const std::string& reason) {
   Result landing;
   while (!rotors_off(mode_of(client_.view()))) {
     if (const auto exited_process = watch_.exited_process())
-      throw FlightFailure(reason + "; while landing, " + *exited_process);
+      throw simulation::FlightFailure(reason + "; while landing, " + *exited_process);
     if (watch_.interrupts() > std::max(1, interrupts_before))
-      throw FlightFailure(reason + "; quit in flight");
+      throw simulation::FlightFailure(reason + "; quit in flight");
     if (silence.lasts(client_.view().truth.count))
-      throw FlightFailure(reason + "; while landing, the vehicle has sent nothing for 3 s");
+      throw simulation::FlightFailure(reason + "; while landing, the vehicle has sent nothing for 3 s");
     if (simulated_s(client_.view(), start_ns) > kLandingTimeoutS)
-      throw FlightFailure(reason + "; the vehicle did not land within 30 s");
+      throw simulation::FlightFailure(reason + "; the vehicle did not land within 30 s");
     if (mode_of(client_.view()) == ControlMode::kArmed) {
       msg::Command disarm;
       disarm.kind(msg::Command_Constants::DISARM);
       client_.command(disarm, kRetryPeriod);
     } else if (is_taken_over(landing)) {
-      throw FlightFailure(reason +
-                          "; while landing, another ground tool took over; the vehicle is left to it");
+      throw simulation::FlightFailure(
+          reason + "; while landing, another ground tool took over; the vehicle is left to it");
     } else if (!lands(landing)) {
       in_flight = true;
       landing = client_.command(land, kRetryPeriod);
@@ -373,9 +375,10 @@ void NetworkTransport::abandon(const std::string& reason) {
     client_.wait(kRetryPeriod, [](const View& view) { return rotors_off(mode_of(view)); });
   }
   wait_for_last_figures();
-  throw FlightFailure(reason + (mode_of(client_.view()) == ControlMode::kStopped ? "; rotors stopped"
-                                : in_flight                                      ? "; landed"
-                                                                                 : "; disarmed"));
+  throw simulation::FlightFailure(reason + (mode_of(client_.view()) == ControlMode::kStopped
+                                                ? "; rotors stopped"
+                                            : in_flight ? "; landed"
+                                                        : "; disarmed"));
 }
 
 namespace {
@@ -405,8 +408,8 @@ void NetworkTransport::update_progress(const View& view) {
   const std::size_t item = std::min<std::size_t>(mission.item_index(), mission_.mission.items.size() - 1);
   const std::string text = fmt::format(
       "{:5.1f} s  {}/{} {:<10}  ({:5.2f}, {:5.2f}, {:5.2f}) m, {:5.1f} mm off, {:.2f} V", time_s, item + 1,
-      mission_.mission.items.size(), to_string(mission_.mission.items[item].kind), position[0], position[1],
-      position[2], newest_error_m(view) * 1e3, view.battery.message.voltage_v());
+      mission_.mission.items.size(), io::to_string(mission_.mission.items[item].kind), position[0],
+      position[1], position[2], newest_error_m(view) * 1e3, view.battery.message.voltage_v());
   std::string line = text;
   if (mode_of(view) != ControlMode::kMission)
     line += std::string(", ") + mode_name(view.control.message.mode());

@@ -20,7 +20,7 @@ namespace swiftlet::ground {
 // ends the flight at once. Together with other vehicles all missions start at one time of a common clock, when all are
 // armed, and the failure of another one lands this one. The common clock is the simulated time, in real time the monotonic
 // clock of this host.
-class NetworkTransport final : public MissionTransport {
+class NetworkTransport final : public simulation::MissionTransport {
  public:
   struct Watch {
     std::function<std::optional<std::string>()> exited_process;  // a process that ended, as a sentence
@@ -32,8 +32,8 @@ class NetworkTransport final : public MissionTransport {
   };
 
   // In lockstep the plant was started paused.
-  NetworkTransport(Client& client, const MissionFile& mission, runtime::Clock clock, Watch watch,
-                   Progress& progress);
+  NetworkTransport(Client& client, const io::MissionFile& mission, runtime::Clock clock, Watch watch,
+                   io::Progress& progress);
   ~NetworkTransport() override;
 
   void wait_until_ready() override;
@@ -64,8 +64,8 @@ class NetworkTransport final : public MissionTransport {
   Result upload();
   std::int64_t at_vehicle_rate(std::int64_t host_ns) const;
   // The clocks drift while the other vehicles are awaited: the offset is measured until the start is chosen.
-  void update_clock_offset(comms::ClockClient& vehicle_clock);
-  void learn_clock_offset(comms::ClockClient& vehicle_clock);
+  void update_clock_offset(clocks::ClockClient& vehicle_clock);
+  void learn_clock_offset(clocks::ClockClient& vehicle_clock);
   void wait_until(const std::function<bool(const View&)>& holds, const std::string& what_not);
   void wait_until_recorded();
   void wait_until_paused_at(std::int64_t stamp_ns);
@@ -78,7 +78,7 @@ class NetworkTransport final : public MissionTransport {
   bool is_taken_over(const Result& landing) const;
 
   Client& client_;
-  const MissionFile& mission_;
+  const io::MissionFile& mission_;
   bool lockstep_;
   std::int64_t paused_at_ns_ = 0;  // in lockstep, before the mission
   // In real time: the vehicle's clock minus the monotonic one of this host at its speed.
@@ -88,7 +88,7 @@ class NetworkTransport final : public MissionTransport {
   Result armed_;                                  // the answer to the last request to arm
   Result start_;                                  // the answer to the request that started the mission
   Watch watch_;
-  Progress& progress_;
+  io::Progress& progress_;
   Silence control_silence_, vehicle_silence_, sample_silence_;
 };
 

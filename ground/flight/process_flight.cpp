@@ -12,7 +12,7 @@
 namespace swiftlet::ground {
 namespace {
 
-void take_figures(const View& view, FlightReport& report) {
+void take_figures(const View& view, analysis::FlightReport& report) {
   const auto& control = view.control.message;
   report.control_rate_hz = control.rate_hz();
   report.cycles = control.cycles();
@@ -29,8 +29,8 @@ void take_figures(const View& view, FlightReport& report) {
 
 }  // namespace
 
-ProcessFlight::ProcessFlight(LaunchConfiguration plan, comms::NodeSettings network, ProcessGroup& processes,
-                             const comms::Participant& participant, MessageRecord& messages)
+ProcessFlight::ProcessFlight(LaunchConfiguration plan, dds::NodeSettings network, ProcessGroup& processes,
+                             const dds::Participant& participant, MessageRecord& messages)
     : plan_(std::move(plan)),
       network_(std::move(network)),
       report_(report_of(plan_)),
@@ -46,7 +46,7 @@ ProcessFlight::ProcessFlight(LaunchConfiguration plan, comms::NodeSettings netwo
 ProcessFlight::~ProcessFlight() { messages_.on_motion(network_.vehicle, {}); }
 
 void ProcessFlight::finish(const std::vector<std::string>& end_errors, const std::string& record_fault,
-                           const std::filesystem::path& messages, Progress& progress) {
+                           const std::filesystem::path& messages, io::Progress& progress) {
   messages_.on_motion(network_.vehicle, {});
   client_.reset();
   for (const std::string& error : end_errors) {
@@ -59,7 +59,7 @@ void ProcessFlight::finish(const std::vector<std::string>& end_errors, const std
   write_report(plan_.folder, flight, report_, flown.window.value_or(record::Window{}), progress);
 }
 
-void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* barrier, Progress& progress) {
+void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* barrier, io::Progress& progress) {
   Client& client = *client_;
   const auto start = Clock::now();
   try {
@@ -68,9 +68,9 @@ void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* barrier, Pro
         [this] { return messages_.hears(network_.vehicle); }, barrier,
         plan_.launch_mode == LaunchMode::kAttached,           plan_.speed.value_or(1.0)};
     NetworkTransport vehicle(client, plan_.mission, plan_.clock, watch, progress);
-    ground::fly_mission(vehicle, plan_.planned_duration_s);
+    simulation::fly_mission(vehicle, plan_.planned_duration_s);
     vehicle.wait_for_last_figures();
-  } catch (const FlightFailure& failure) {
+  } catch (const simulation::FlightFailure& failure) {
     report_.reason = failure.what();
     // The end of a process may be noticed after what it caused.
     const auto exited_process = processes_.exited_process();

@@ -22,30 +22,30 @@ class ProcessFlight {
  public:
   // network.vehicle names the vehicle. The processes, the participant and the record are shared with the other vehicles of the
   // flight and must outlive this object. Throws std::runtime_error.
-  ProcessFlight(LaunchConfiguration plan, comms::NodeSettings network, ProcessGroup& processes,
-                const comms::Participant& participant, MessageRecord& messages);
+  ProcessFlight(LaunchConfiguration plan, dds::NodeSettings network, ProcessGroup& processes,
+                const dds::Participant& participant, MessageRecord& messages);
   ~ProcessFlight();
   ProcessFlight(const ProcessFlight&) = delete;
   ProcessFlight& operator=(const ProcessFlight&) = delete;
 
   // Flies the mission. barrier: shared with the other vehicles of the flight; null for a single one. Call once, from any
   // thread. The vehicle is attended to until finish().
-  void fly(const Interrupts& interrupts, StartBarrier* barrier, Progress& progress);
+  void fly(const Interrupts& interrupts, StartBarrier* barrier, io::Progress& progress);
 
   // Judges the flight, once processes and record have ended. end_errors: what ProcessGroup::stop() returned. record_fault: what
   // MessageRecord::finish() returned. messages: the folder of flight.mcap.
   void finish(const std::vector<std::string>& end_errors, const std::string& record_fault,
-              const std::filesystem::path& messages, Progress& progress);
+              const std::filesystem::path& messages, io::Progress& progress);
 
   // Until finish().
   Client& client() { return *client_; }
-  const FlightReport& report() const { return report_; }
+  const analysis::FlightReport& report() const { return report_; }
   const std::string& vehicle_name() const { return network_.vehicle; }
 
  private:
   LaunchConfiguration plan_;
-  comms::NodeSettings network_;
-  FlightReport report_;
+  dds::NodeSettings network_;
+  analysis::FlightReport report_;
   ProcessGroup& processes_;
   MessageRecord& messages_;
   std::optional<Client> client_;

@@ -10,16 +10,16 @@ constexpr std::chrono::seconds kGrace{30};
 
 }  // namespace
 
-ProcessGroup::ProcessGroup(const std::vector<ProcessSettings>& processes) {
+ProcessGroup::ProcessGroup(const std::vector<io::ProcessSettings>& processes) {
   children_.reserve(processes.size());
-  for (const ProcessSettings& process : processes) children_.emplace_back(process);
+  for (const io::ProcessSettings& process : processes) children_.emplace_back(process);
 }
 
 ProcessGroup::~ProcessGroup() { stop(); }
 
 std::optional<std::string> ProcessGroup::exited_process() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  for (ChildProcess& child : children_) {
+  for (io::ChildProcess& child : children_) {
     const auto end = child.poll();
     if (!end) continue;
     const std::string last_line = child.last_log_line();
@@ -31,13 +31,13 @@ std::optional<std::string> ProcessGroup::exited_process() {
 std::vector<std::string> ProcessGroup::stop() {
   const std::lock_guard<std::mutex> lock(mutex_);
   std::vector<std::string> errors;
-  for (ChildProcess& child : children_) child.signal(SIGTERM);
+  for (io::ChildProcess& child : children_) child.signal(SIGTERM);
   const auto deadline = std::chrono::steady_clock::now() + kGrace;
-  for (ChildProcess& child : children_) {
+  for (io::ChildProcess& child : children_) {
     const auto left =
         std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
     const bool ended = child.wait(left).has_value();
-    const ProcessEnd end = child.stop(std::chrono::milliseconds::zero());
+    const io::ProcessEnd end = child.stop(std::chrono::milliseconds::zero());
     if (!ended) {
       errors.push_back(child.name() + " did not end within " + std::to_string(kGrace.count()) +
                        " s of SIGTERM and was killed");

@@ -15,7 +15,7 @@ class ProcessGroup {
  public:
   // Starts the processes in this order. If one cannot be started, ends the others and throws
   // std::runtime_error.
-  explicit ProcessGroup(const std::vector<ProcessSettings>& processes);
+  explicit ProcessGroup(const std::vector<io::ProcessSettings>& processes);
   // Ends running processes: SIGTERM to all, SIGKILL to those that do not end within 10 s.
   ~ProcessGroup();
   ProcessGroup(const ProcessGroup&) = delete;
@@ -29,7 +29,7 @@ class ProcessGroup {
 
  private:
   std::mutex mutex_;  // guards children_
-  std::vector<ChildProcess> children_;
+  std::vector<io::ChildProcess> children_;
 };
 
 }  // namespace swiftlet::ground

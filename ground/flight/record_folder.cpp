@@ -81,11 +81,11 @@ std::string named(const std::string& option, const fs::path& folder) {
 }
 
 [[noreturn]] void refuse(const std::string& option, const fs::path& folder) {
-  throw InputError(named(option, folder) +
-                   (foreign_entry(folder).empty()
-                        ? "the folder holds another record" + owner_of(folder) +
-                              "; choose another folder, or add --replace to delete that record first"
-                        : "the folder is not empty; choose a new or an empty one"));
+  throw io::InputError(named(option, folder) +
+                       (foreign_entry(folder).empty()
+                            ? "the folder holds another record" + owner_of(folder) +
+                                  "; choose another folder, or add --replace to delete that record first"
+                            : "the folder is not empty; choose a new or an empty one"));
 }
 
 // A lock of record.txt that ends with this object; a flight holds it until it ends.
@@ -110,21 +110,22 @@ class OldClaim {
 void remove_record(const fs::path& folder, const std::string& option, const std::vector<fs::path>& inputs) {
   if (fs::is_empty(folder)) return;
   if (!holds_record(folder))
-    throw InputError(named(option, folder) + "--replace deletes records only, and the folder holds none (" +
-                     "no record.txt or report.json); choose another folder");
+    throw io::InputError(named(option, folder) +
+                         "--replace deletes records only, and the folder holds none (" +
+                         "no record.txt or report.json); choose another folder");
   for (const fs::path& input : inputs) {
     if (is_inside(folder, input))
-      throw InputError(named(option, folder) + "--replace would delete " + input.string() +
-                       ", which this flight reads; choose another folder");
+      throw io::InputError(named(option, folder) + "--replace would delete " + input.string() +
+                           ", which this flight reads; choose another folder");
   }
   if (const fs::path foreign = foreign_entry(folder); !foreign.empty()) {
-    throw InputError(named(option, folder) + "--replace deletes records only, and no flight writes " +
-                     foreign.lexically_relative(folder).string() + "; choose another folder");
+    throw io::InputError(named(option, folder) + "--replace deletes records only, and no flight writes " +
+                         foreign.lexically_relative(folder).string() + "; choose another folder");
   }
   const OldClaim old(folder);
   if (!old.is_free())
-    throw InputError(named(option, folder) + "a flight is writing it" + owner_of(folder) +
-                     "; choose another folder");
+    throw io::InputError(named(option, folder) + "a flight is writing it" + owner_of(folder) +
+                         "; choose another folder");
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) fs::remove_all(entry.path());
 }
 
@@ -154,7 +155,7 @@ RecordFolder::RecordFolder(const fs::path& wanted, ExistingRecord existing, cons
       taken = take(wanted.string() + "-" + std::to_string(i), option);
     if (!taken) refuse(option, wanted);
   } catch (const fs::filesystem_error& fault) {
-    throw InputError(named(option, wanted) + "the folder cannot be used: " + fault.code().message());
+    throw io::InputError(named(option, wanted) + "the folder cannot be used: " + fault.code().message());
   }
 }
 
@@ -171,7 +172,8 @@ fs::path RecordFolder::folder_of(const std::string& vehicle) const {
   std::error_code fault;
   fs::create_directory(path_ / vehicle, fault);
   if (fault)
-    throw InputError(named(option_, path_ / vehicle) + "the folder cannot be created: " + fault.message());
+    throw io::InputError(named(option_, path_ / vehicle) +
+                         "the folder cannot be created: " + fault.message());
   return path_ / vehicle;
 }
 
@@ -179,7 +181,7 @@ fs::path RecordFolder::folder_of(const std::string& vehicle) const {
 bool RecordFolder::take(const fs::path& folder, const std::string& option) {
   std::error_code fault;
   made_ = fs::create_directories(folder, fault);
-  if (fault) throw InputError(named(option, folder) + "the folder cannot be created: " + fault.message());
+  if (fault) throw io::InputError(named(option, folder) + "the folder cannot be created: " + fault.message());
   if (!fs::is_empty(folder)) return false;
   claim_ = open((folder / kClaim).c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0644);
   if (claim_ < 0 && errno == EEXIST) return false;
@@ -192,7 +194,7 @@ bool RecordFolder::take(const fs::path& folder, const std::string& option) {
       fs::remove(folder / kClaim, fault);
       close(claim_);
     }
-    throw InputError(named(option, folder) + "the folder cannot be written: " + reason);
+    throw io::InputError(named(option, folder) + "the folder cannot be written: " + reason);
   }
   path_ = folder;
   return true;
@@ -203,7 +205,7 @@ void require_space(const fs::path& folder, std::uintmax_t needed_bytes, const st
   const fs::space_info space = fs::space(nearest_existing(folder), unknown);
   if (unknown) return;
   const std::string fault = space_fault(needed_bytes, space.available);
-  if (!fault.empty()) throw InputError(named(option, folder) + fault);
+  if (!fault.empty()) throw io::InputError(named(option, folder) + fault);
 }
 
 std::string space_fault(std::uintmax_t needed_bytes, std::uintmax_t free_bytes) {

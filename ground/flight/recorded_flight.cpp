@@ -25,9 +25,10 @@ std::string close(record::FlightTrace& trace) {
 
 }  // namespace
 
-FlightReport fly_and_record(LaunchConfiguration plan, const FlyOptions& options, record::Flight& flight,
-                            const std::function<bool()>& cancelled, Progress& progress) {
-  ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
+analysis::FlightReport fly_and_record(LaunchConfiguration plan, const FlyOptions& options,
+                                      record::Flight& flight, const std::function<bool()>& cancelled,
+                                      io::Progress& progress) {
+  simulation::ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
   require_space(plan.folder, plan.record_bytes());
   const RecordFolder folder(plan.folder, existing_record(options), "--record", plan.input_files());
   plan.folder = folder.path();
@@ -38,7 +39,7 @@ FlightReport fly_and_record(LaunchConfiguration plan, const FlyOptions& options,
   for (const std::string& assumption : plan.mission.assumptions)
     progress.say(plan.mission.name + ": " + assumption);
 
-  FlightReport report =
+  analysis::FlightReport report =
       fly_in_process(loop, plan, plan.seed, flight, trace ? &*trace : nullptr, cancelled, &messages);
   report.record_fault = messages.finish();
   if (trace && report.record_fault.empty()) report.record_fault = close(*trace);

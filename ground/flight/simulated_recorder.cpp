@@ -19,7 +19,7 @@
 namespace swiftlet::ground {
 namespace {
 
-namespace topics = comms::topics;
+namespace topics = messages::topics;
 
 constexpr const char* kVehicle = "kl1";
 constexpr std::uint64_t kClient = 1;                // the only one
@@ -36,7 +36,7 @@ bool is_over(control::MissionState state) {
 
 }  // namespace
 
-SimulatedRecorder::SimulatedRecorder(ClosedLoop& loop, const LaunchConfiguration& plan,
+SimulatedRecorder::SimulatedRecorder(simulation::ClosedLoop& loop, const LaunchConfiguration& plan,
                                      const std::string& program)
     : loop_(loop),
       imu_period_ns_(plant::period_ns(loop.imu_rate_hz)),
@@ -83,14 +83,14 @@ void SimulatedRecorder::attempt(const Work& work) {
 }
 
 template <class T>
-void SimulatedRecorder::write(const comms::Topic<T>& topic, const T& message, std::int64_t time_ns) {
+void SimulatedRecorder::write(const messages::Topic<T>& topic, const T& message, std::int64_t time_ns) {
   attempt([&] {
     auto channel = channels_.find(topic.name);
     if (channel == channels_.end()) {
-      const std::uint16_t id = file_.add_channel(kVehicle, topic.name, comms::schema_of<T>());
+      const std::uint16_t id = file_.add_channel(kVehicle, topic.name, messages::schema_of<T>());
       channel = channels_.emplace(topic.name, id).first;
     }
-    const std::vector<std::uint8_t> payload = comms::to_payload(message);
+    const std::vector<std::uint8_t> payload = dds::to_payload(message);
     file_.write(mcap::Message{
         channel->second, ++counts_[channel->second], time_ns, time_ns, {payload.data(), payload.size()}});
   });
@@ -101,27 +101,27 @@ void SimulatedRecorder::write_sample(const plant::TelemetryPacket& packet,
   const std::int64_t now_ns = loop_.plant.stamp_ns();
   if (packet.rotor_speeds) {
     rotor_speeds_sequence_ = packet.rotor_speeds->sequence;
-    write(topics::kRotorSpeeds, comms::to_message(*packet.rotor_speeds), now_ns);
+    write(topics::kRotorSpeeds, messages::to_message(*packet.rotor_speeds), now_ns);
   }
   if (packet.battery) {
     battery_sequence_ = packet.battery->sequence;
-    write(topics::kBattery, comms::to_message(*packet.battery), now_ns);
+    write(topics::kBattery, messages::to_message(*packet.battery), now_ns);
   }
   if (pose) {
     pose_sequence_ = pose->sequence;
-    write(topics::kMocapPose, comms::to_message(*pose), now_ns);
+    write(topics::kMocapPose, messages::to_message(*pose), now_ns);
   }
   const auto write_answered = [&](const auto& topic, auto message) {
-    message.obeyed(comms::to_message(packet.obeyed));
+    message.obeyed(messages::to_message(packet.obeyed));
     message.lockstep().mocap_pose(pose_sequence_);
     message.lockstep().battery(battery_sequence_);
     message.lockstep().rotor_speeds(rotor_speeds_sequence_);
     write(topic, message, now_ns);
   };
   if (packet.odometry) {
-    write_answered(topics::kVehicleOdometry, comms::to_message(*packet.odometry));
+    write_answered(topics::kVehicleOdometry, messages::to_message(*packet.odometry));
   } else {
-    write_answered(topics::kImu, comms::to_message(packet.imu));
+    write_answered(topics::kImu, messages::to_message(packet.imu));
   }
   write_command(now_ns);
 }
@@ -131,13 +131,13 @@ void SimulatedRecorder::write_command(std::int64_t now_ns) {
       [&](const auto& command) {
         using Sent = std::decay_t<decltype(command)>;
         if constexpr (std::is_same_v<Sent, plant::ActuatorCommand>)
-          write(topics::kActuatorCommand, comms::to_message(command), now_ns);
+          write(topics::kActuatorCommand, messages::to_message(command), now_ns);
         if constexpr (std::is_same_v<Sent, plant::RatesSetpoint>)
-          write(topics::kRatesSetpoint, comms::to_message(command), now_ns);
+          write(topics::kRatesSetpoint, messages::to_message(command), now_ns);
         if constexpr (std::is_same_v<Sent, plant::AttitudeSetpoint>)
-          write(topics::kAttitudeSetpoint, comms::to_message(command), now_ns);
+          write(topics::kAttitudeSetpoint, messages::to_message(command), now_ns);
         if constexpr (std::is_same_v<Sent, plant::TrajectorySetpoint>)
-          write(topics::kTrajectorySetpoint, comms::to_message(command), now_ns);
+          write(topics::kTrajectorySetpoint, messages::to_message(command), now_ns);
       },
       loop_.sent);
 }
@@ -145,7 +145,7 @@ void SimulatedRecorder::write_command(std::int64_t now_ns) {
 void SimulatedRecorder::step() {
   const std::int64_t now_ns = loop_.plant.stamp_ns();
   if (truth_due_.due(loop_.plant)) {
-    comms::msg::GroundTruth truth = comms::to_message(loop_.plant.truth());
+    messages::msg::GroundTruth truth = messages::to_message(loop_.plant.truth());
     truth.stamp_ns(now_ns);
     truth.sequence_number(++truth_sequence_);
     write(topics::kGroundTruth, truth, now_ns);
@@ -165,12 +165,12 @@ void SimulatedRecorder::write_telemetry() {
   const control::Status& status = controller.status();
   const std::int64_t now_ns = loop_.plant.stamp_ns();
   ++telemetry_sequence_;
-  comms::msg::Estimate estimate =
-      comms::to_message(controller.estimate(), controller.estimate_deviation(), status.pose_age_s);
+  messages::msg::Estimate estimate =
+      messages::to_message(controller.estimate(), controller.estimate_deviation(), status.pose_age_s);
   estimate.sequence_number(telemetry_sequence_);
   write(topics::kEstimate, estimate, now_ns);
-  comms::msg::Reference reference =
-      comms::to_message(controller.reference(), controller.attitude_setpoint(), status.mode);
+  messages::msg::Reference reference =
+      messages::to_message(controller.reference(), controller.attitude_setpoint(), status.mode);
   reference.stamp_ns(loop_.answered->stamp_ns);
   reference.sequence_number(telemetry_sequence_);
   write(topics::kReference, reference, now_ns);
@@ -188,7 +188,7 @@ void SimulatedRecorder::write_changes() {
 
 void SimulatedRecorder::write_status(const control::Status& status) {
   status_ns_ = loop_.plant.stamp_ns();
-  comms::msg::ControlStatus message = comms::to_message(status, loop_.controller.gains(), failsafe_);
+  messages::msg::ControlStatus message = messages::to_message(status, loop_.controller.gains(), failsafe_);
   message.stamp_ns(status_ns_);
   message.sequence_number(++status_sequence_);
   message.rate_hz(loop_.imu_rate_hz);
@@ -197,7 +197,7 @@ void SimulatedRecorder::write_status(const control::Status& status) {
 
 void SimulatedRecorder::write_mission(const control::Status& status) {
   mission_ns_ = loop_.plant.stamp_ns();
-  comms::msg::MissionStatus message = comms::to_message(status.mission);
+  messages::msg::MissionStatus message = messages::to_message(status.mission);
   message.stamp_ns(mission_ns_);
   message.sequence_number(++mission_sequence_);
   if (is_over(status.mission.state)) {
@@ -208,7 +208,7 @@ void SimulatedRecorder::write_mission(const control::Status& status) {
 }
 
 void SimulatedRecorder::write_vehicle_info() {
-  vehicle_info_.wire_version(comms::kWireVersion);
+  vehicle_info_.wire_version(messages::kWireVersion);
   vehicle_info_ns_ = loop_.plant.stamp_ns();
   vehicle_info_.stamp_ns(vehicle_info_ns_);
   vehicle_info_.sequence_number(vehicle_info_.sequence_number() + 1);
@@ -221,19 +221,19 @@ void SimulatedRecorder::request(const control::Request& request, const control::
   ++request_sequence_;
   std::uint64_t id = kFirstRequest + request_sequence_;
   if (request.kind == control::RequestKind::kMissionUpload) {
-    comms::msg::Mission mission = comms::to_message(*request.mission);
+    messages::msg::Mission mission = messages::to_message(*request.mission);
     mission.client(kClient);
     id = request.mission->id;
     mission.id(id);
     write(topics::kMission, mission, now_ns);
     if (outcome.accepted) write(topics::kFlownMission, mission, now_ns);
   } else {
-    comms::msg::Command command = comms::to_message(request);
+    messages::msg::Command command = messages::to_message(request);
     command.client(kClient);
     command.id(id);
     write(topics::kCommand, command, now_ns);
   }
-  comms::msg::CommandAck ack;
+  messages::msg::CommandAck ack;
   ack.client(kClient);
   ack.id(id);
   ack.accepted(outcome.accepted);

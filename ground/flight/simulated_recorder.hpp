@@ -22,7 +22,8 @@ class SimulatedRecorder {
  public:
   // Writes to the plan's folder. loop: new, must outlive the recorder. Throws std::runtime_error if the file cannot be
   // created.
-  SimulatedRecorder(ClosedLoop& loop, const LaunchConfiguration& plan, const std::string& program);
+  SimulatedRecorder(simulation::ClosedLoop& loop, const LaunchConfiguration& plan,
+                    const std::string& program);
   ~SimulatedRecorder();
   SimulatedRecorder(const SimulatedRecorder&) = delete;
   SimulatedRecorder& operator=(const SimulatedRecorder&) = delete;
@@ -37,7 +38,7 @@ class SimulatedRecorder {
 
  private:
   template <class T>
-  void write(const comms::Topic<T>& topic, const T& message, std::int64_t time_ns);
+  void write(const messages::Topic<T>& topic, const T& message, std::int64_t time_ns);
   template <class Work>
   void attempt(const Work& work);
   void write_sample(const plant::TelemetryPacket& packet, const std::optional<plant::PoseSample>& pose);
@@ -48,7 +49,7 @@ class SimulatedRecorder {
   void write_mission(const control::Status& status);
   void write_vehicle_info();
 
-  ClosedLoop& loop_;
+  simulation::ClosedLoop& loop_;
   const std::int64_t imu_period_ns_;
   plant::TruthSchedule truth_due_;
   const control::FailsafeSettings failsafe_;
@@ -56,7 +57,7 @@ class SimulatedRecorder {
   std::string fault_;
   std::map<std::string, std::uint16_t> channels_;  // by topic
   std::map<std::uint16_t, std::uint32_t> counts_;  // of messages, by channel
-  comms::msg::VehicleInfo vehicle_info_;           // last written, as all below
+  messages::msg::VehicleInfo vehicle_info_;        // last written, as all below
   std::uint64_t pose_sequence_ = 0;
   std::uint64_t battery_sequence_ = 0;
   std::uint64_t rotor_speeds_sequence_ = 0;

@@ -18,7 +18,7 @@ constexpr double kPatience = 100.0;       // planned durations until it is taken
 constexpr double kFullBattery_v = 100.0;  // above all thresholds: the dry run does not check the battery
 
 // Supervision and guidance alone, with a vehicle that is exactly where its reference is.
-class DryRunTransport final : public MissionTransport {
+class DryRunTransport final : public simulation::MissionTransport {
  public:
   DryRunTransport(const control::Mission& mission, const control::ControlSettings& settings,
                   const Eigen::Vector2d& start_ned)
@@ -43,7 +43,7 @@ class DryRunTransport final : public MissionTransport {
   Reply arm() override {
     return reply(takes_off() ? request(control::RequestKind::kArm) : supervisor_.engage_in_flight(inputs_));
   }
-  void wait(std::int64_t, const std::string& reason) override { throw FlightFailure(reason); }
+  void wait(std::int64_t, const std::string& reason) override { throw simulation::FlightFailure(reason); }
   Reply start_mission() override {
     const control::Outcome uploaded = request(control::RequestKind::kMissionUpload);
     start_ns_ = inputs_.stamp_ns;
@@ -114,8 +114,8 @@ MissionDryRun dry_run(const control::Mission& mission, const control::ControlSet
   DryRunTransport transport(mission, settings, start_ned);
   std::string reason;
   try {
-    fly_mission(transport, kPatience * planned_duration_s(mission, settings.limits));
-  } catch (const FlightFailure& failure) {
+    simulation::fly_mission(transport, kPatience * io::planned_duration_s(mission, settings.limits));
+  } catch (const simulation::FlightFailure& failure) {
     reason = failure.what();
   }
   MissionDryRun out = std::move(transport).result();

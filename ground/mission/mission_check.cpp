@@ -75,12 +75,12 @@ std::string value_of(const WorstDemand& worst) {
 
 std::string name_of(const ItemCheck& item, std::size_t index) {
   const std::string line = item.line > 0 ? fmt::format(", line {}", item.line) : "";
-  return fmt::format("item {} ({}{})", index + 1, to_string(item.kind), line.c_str());
+  return fmt::format("item {} ({}{})", index + 1, io::to_string(item.kind), line.c_str());
 }
 
 std::string row_of(const ItemCheck& item, std::size_t index) {
   std::string row =
-      fmt::format("{:5}  {:<10} {:>5} {:9.2f} {:8.2f}", index + 1, to_string(item.kind),
+      fmt::format("{:5}  {:<10} {:>5} {:9.2f} {:8.2f}", index + 1, io::to_string(item.kind),
                   item.line > 0 ? std::to_string(item.line).c_str() : "", item.start_s, item.duration_s);
   if (item.demands.empty()) return row + "\n";
   const bool exceeded = std::any_of(item.demands.begin(), item.demands.end(),
@@ -163,7 +163,7 @@ std::string MissionCheck::refusal() const {
   return where + ": " + value_of(*furthest) + ": " + place_of(*furthest);
 }
 
-MissionCheck check_mission(const MissionFile& file, const plant::Vehicle& vehicle,
+MissionCheck check_mission(const io::MissionFile& file, const plant::Vehicle& vehicle,
                            const control::ControlSettings& settings, const CheckConditions& conditions) {
   const MissionDryRun dry_run = ground::dry_run(file.mission, settings, conditions.start_ned);
   const double supply_voltage_v = conditions.supply_voltage_v.value_or(settings.failsafe.low_battery_voltage);
@@ -185,7 +185,7 @@ MissionCheck check_mission(const MissionFile& file, const plant::Vehicle& vehicl
   return check;
 }
 
-std::string check_table(const MissionCheck& check, const MissionFile& file, const std::string& vehicle) {
+std::string check_table(const MissionCheck& check, const io::MissionFile& file, const std::string& vehicle) {
   std::string text = file.name + (file.description.empty() ? "" : ": " + file.description) + "\n\n" +
                      fmt::format("{:>5}  {:<10} {:>5} {:>9} {:>8} {:>9} {:>9} {:>9} {:>9}\n", "item", "kind",
                                  "line", "from s", "lasts s", "m/s", "m/s^2", "tilt deg", "rotor %");
@@ -203,7 +203,7 @@ std::string check_table(const MissionCheck& check, const MissionFile& file, cons
                             check.supply_voltage_v);
 }
 
-std::string check_json(const MissionCheck& check, const MissionFile& file, const std::string& vehicle,
+std::string check_json(const MissionCheck& check, const io::MissionFile& file, const std::string& vehicle,
                        const std::string& control, const std::string& advice) {
   nlohmann::ordered_json json = {{"mission", file.name},
                                  {"vehicle", vehicle},
@@ -217,7 +217,7 @@ std::string check_json(const MissionCheck& check, const MissionFile& file, const
   for (const ItemCheck& item : check.items) {
     nlohmann::ordered_json demands = nlohmann::ordered_json::array();
     for (const WorstDemand& worst : item.demands) demands.push_back(json_of(worst));
-    json["items"].push_back({{"kind", to_string(item.kind)},
+    json["items"].push_back({{"kind", io::to_string(item.kind)},
                              {"line", item.line},
                              {"start_s", item.start_s},
                              {"duration_s", item.duration_s},

@@ -46,26 +46,27 @@ struct CheckConditions {
 
 // A dry run of the mission, and the demands on its path. Limits and fence: those of the settings, as tightened by the
 // mission.
-MissionCheck check_mission(const MissionFile& file, const plant::Vehicle& vehicle,
+MissionCheck check_mission(const io::MissionFile& file, const plant::Vehicle& vehicle,
                            const control::ControlSettings& settings, const CheckConditions& conditions = {});
 
 // What would make a mission feasible that is not, as sentences with the options of a command: the least time scale, and for
 // samples that are noisy the least tolerance. Empty if neither does. path, options: of the file.
-std::string advice(const MissionFile& file, const std::string& path, const FileOptions& options,
+std::string advice(const io::MissionFile& file, const std::string& path, const io::FileOptions& options,
                    const plant::Vehicle& vehicle, const control::ControlSettings& settings,
                    const CheckConditions& conditions = {});
 
 // "kaylion cannot fly it: item 2 (trajectory): ...; slower by 1.4: --time-scale 1.4"; empty if it can.
-std::string refusal_with_advice(const MissionFile& file, const std::string& path, const FileOptions& options,
-                                const plant::Vehicle& vehicle, const control::ControlSettings& settings,
-                                const MissionCheck& check, const CheckConditions& conditions = {});
+std::string refusal_with_advice(const io::MissionFile& file, const std::string& path,
+                                const io::FileOptions& options, const plant::Vehicle& vehicle,
+                                const control::ControlSettings& settings, const MissionCheck& check,
+                                const CheckConditions& conditions = {});
 
 // check_table(): text for people, ends in a newline. check_json(): JSON, without a newline, of
 //   mission, vehicle, control, feasible, reason, advice, duration_s, supply_voltage_v
 //   items: kind, line, start_s, duration_s,
 //     demands: demand, unit, value, limit, exceeded, time_s, position_ned
-std::string check_table(const MissionCheck& check, const MissionFile& file, const std::string& vehicle);
-std::string check_json(const MissionCheck& check, const MissionFile& file, const std::string& vehicle,
+std::string check_table(const MissionCheck& check, const io::MissionFile& file, const std::string& vehicle);
+std::string check_json(const MissionCheck& check, const io::MissionFile& file, const std::string& vehicle,
                        const std::string& control, const std::string& advice);
 
 }  // namespace swiftlet::ground

@@ -60,7 +60,7 @@ pages::SignalTable path_of(const MissionDryRun& dry_run) {
 
 }  // namespace
 
-std::string mission_page(const MissionFile& file, const MissionDryRun& dry_run,
+std::string mission_page(const io::MissionFile& file, const MissionDryRun& dry_run,
                          const control::Limits& settings) {
   const control::Limits limits = control::tightened(settings, file.mission.bounds);
   pages::FlightLog flight;

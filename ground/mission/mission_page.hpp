@@ -11,7 +11,7 @@
 namespace swiftlet::ground {
 
 // limits: of the control settings. HTML.
-std::string mission_page(const MissionFile& file, const MissionDryRun& dry_run,
+std::string mission_page(const io::MissionFile& file, const MissionDryRun& dry_run,
                          const control::Limits& limits);
 
 }  // namespace swiftlet::ground

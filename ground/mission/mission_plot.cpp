@@ -107,11 +107,11 @@ void add_places(plot::Figure& figure, const MissionDryRun& dry_run) {
   plot::add_to_views(figure, dots);
 }
 
-plot::Figure mission_figure(const MissionFile& file, const MissionDryRun& dry_run,
+plot::Figure mission_figure(const io::MissionFile& file, const MissionDryRun& dry_run,
                             const control::Limits& limits) {
   const std::string title = file.name + (file.description.empty() ? "" : " - " + file.description) +
                             fmt::format(": {:.1f} s, ", dry_run.duration_s) +
-                            counted(file.mission.items.size(), "item");
+                            io::counted(file.mission.items.size(), "item");
   plot::Figure figure = plot::path_figure(
       title, {"height -z (m)", "speed (m/s)", "acceleration (m/s^2)", "tilt of the thrust (deg)"},
       dry_run.duration_s);
@@ -132,7 +132,7 @@ plot::Figure mission_figure(const MissionFile& file, const MissionDryRun& dry_ru
 
 }  // namespace
 
-std::string draw_mission(const std::filesystem::path& png, const MissionFile& file,
+std::string draw_mission(const std::filesystem::path& png, const io::MissionFile& file,
                          const MissionDryRun& dry_run, const control::Limits& settings) {
   return plot::draw_png(mission_figure(file, dry_run, control::tightened(settings, file.mission.bounds)),
                         png);

@@ -12,7 +12,7 @@
 namespace swiftlet::ground {
 
 // limits: of the control settings. Returns an empty string, or a sentence that says why there is no plot.
-std::string draw_mission(const std::filesystem::path& png, const MissionFile& file,
+std::string draw_mission(const std::filesystem::path& png, const io::MissionFile& file,
                          const MissionDryRun& dry_run, const control::Limits& limits);
 
 }  // namespace swiftlet::ground

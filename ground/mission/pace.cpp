@@ -24,7 +24,7 @@ constexpr double kScaleRatio = 1.002;  // ratio of two time scales that are told
 // Which time scales are possible, and what stands against the others.
 class FastestSearch {
  public:
-  FastestSearch(const MissionFile& file, const plant::Vehicle& vehicle,
+  FastestSearch(const io::MissionFile& file, const plant::Vehicle& vehicle,
                 const control::ControlSettings& settings, const CheckConditions& conditions)
       : file_(file), vehicle_(vehicle), settings_(settings), conditions_(conditions) {}
 
@@ -34,9 +34,9 @@ class FastestSearch {
     for (std::string reason = refusal(flies); !reason.empty(); reason = refusal(flies)) {
       fails = flies;
       flies *= kStep;
-      if (flies > kLargestTimeScale)
-        throw runtime::ConfigError(
-            file_.name, 0, "", fmt::format("cannot be flown, also {:g} times as slow: {}", fails, reason));
+      if (flies > io::kLargestTimeScale)
+        throw io::ConfigError(file_.name, 0, "",
+                              fmt::format("cannot be flown, also {:g} times as slow: {}", fails, reason));
     }
     while (fails == flies || refusal(fails).empty()) {
       flies = fails;
@@ -55,7 +55,7 @@ class FastestSearch {
  private:
   // Why the mission cannot be flown at this time scale; empty if it can.
   std::string refusal(double time_scale) const {
-    const MissionFile scaled = stretched(file_, time_scale);
+    const io::MissionFile scaled = io::stretched(file_, time_scale);
     const control::Outcome outcome = control::check(scaled.mission, settings_.limits);
     if (outcome.accepted) return check_mission(scaled, vehicle_, settings_, conditions_).refusal();
     const std::string motion = exceeded_motion(scaled.mission);
@@ -76,17 +76,17 @@ class FastestSearch {
     return "";
   }
 
-  const MissionFile& file_;
+  const io::MissionFile& file_;
   const plant::Vehicle& vehicle_;
   const control::ControlSettings& settings_;
   const CheckConditions& conditions_;
 };
 
 // Ready-made paths may be too fast as they are: the search slows them.
-control::Limits limits_to_begin_with(const std::string& path, const FileOptions& options,
+control::Limits limits_to_begin_with(const std::string& path, const io::FileOptions& options,
                                      control::Limits limits) {
-  const MissionFormat format = read_source(path, options).format;
-  if (format != MissionFormat::kPolynomialCsv && format != MissionFormat::kSampledCsv) return limits;
+  const io::MissionFormat format = io::read_source(path, options).format;
+  if (format != io::MissionFormat::kPolynomialCsv && format != io::MissionFormat::kSampledCsv) return limits;
   limits.max_speed = limits.max_acceleration = std::numeric_limits<double>::infinity();
   return limits;
 }
@@ -100,55 +100,55 @@ std::string sentence_of(const Pace& pace, const ReadingOptions& options) {
 
 }  // namespace
 
-Pace fastest_pace(const MissionFile& file, const plant::Vehicle& vehicle,
+Pace fastest_pace(const io::MissionFile& file, const plant::Vehicle& vehicle,
                   const control::ControlSettings& settings, const CheckConditions& conditions) {
   return FastestSearch(file, vehicle, settings, conditions).fastest();
 }
 
-MissionFile load_mission(const std::string& path, const ReadingOptions& options,
-                         const plant::Vehicle& vehicle, const control::ControlSettings& settings) {
-  if (!options.as_fast_as_possible) return load_mission_file(path, settings.limits, options);
+io::MissionFile load_mission(const std::string& path, const ReadingOptions& options,
+                             const plant::Vehicle& vehicle, const control::ControlSettings& settings) {
+  if (!options.as_fast_as_possible) return io::load_mission_file(path, settings.limits, options);
   const Pace pace =
-      fastest_pace(load_mission_file(path, limits_to_begin_with(path, options, settings.limits), options),
+      fastest_pace(io::load_mission_file(path, limits_to_begin_with(path, options, settings.limits), options),
                    vehicle, settings, {Eigen::Vector2d::Zero(), {}, options.reserve});
-  FileOptions scaled = options;
+  io::FileOptions scaled = options;
   scaled.time_scale *= pace.time_scale;
-  MissionFile file = load_mission_file(path, settings.limits, scaled);
+  io::MissionFile file = io::load_mission_file(path, settings.limits, scaled);
   file.assumptions.push_back(sentence_of(pace, options));
   return file;
 }
 
-TrajectoryFile load_trajectory(const std::string& path, const ReadingOptions& options,
-                               const plant::Vehicle& vehicle, const control::ControlSettings& settings) {
-  if (!options.as_fast_as_possible) return load_trajectory_file(path, settings.limits, options);
-  const TrajectoryFile given =
-      load_trajectory_file(path, limits_to_begin_with(path, options, settings.limits), options);
+io::TrajectoryFile load_trajectory(const std::string& path, const ReadingOptions& options,
+                                   const plant::Vehicle& vehicle, const control::ControlSettings& settings) {
+  if (!options.as_fast_as_possible) return io::load_trajectory_file(path, settings.limits, options);
+  const io::TrajectoryFile given =
+      io::load_trajectory_file(path, limits_to_begin_with(path, options, settings.limits), options);
   CheckConditions conditions = at_start_of(given);
   conditions.reserve = options.reserve;
   const std::string name = std::filesystem::path(path).stem();
   const Pace pace = fastest_pace(mission_of(name, given, settings), vehicle, settings, conditions);
-  FileOptions scaled = options;
+  io::FileOptions scaled = options;
   scaled.time_scale *= pace.time_scale;
-  TrajectoryFile file = load_trajectory_file(path, settings.limits, scaled);
+  io::TrajectoryFile file = io::load_trajectory_file(path, settings.limits, scaled);
   file.assumptions.push_back(sentence_of(pace, options));
   return file;
 }
 
-MissionFile mission_of(const std::string& name, const TrajectoryFile& path,
-                       const control::ControlSettings& settings) {
-  MissionFile file;
+io::MissionFile mission_of(const std::string& name, const io::TrajectoryFile& path,
+                           const control::ControlSettings& settings) {
+  io::MissionFile file;
   file.name = name;
   file.mission.segments = path.segments;
   control::MissionItem& item = file.mission.items.emplace_back();
   item.kind = control::MissionItemKind::kTrajectory;
   item.yaw_free = false;
-  item.speed = std::min(kApproachSpeed, settings.limits.max_speed);
+  item.speed = std::min(io::kApproachSpeed, settings.limits.max_speed);
   item.segment_count = static_cast<std::uint32_t>(path.segments.size());
   file.is_path = true;
   return file;
 }
 
-CheckConditions at_start_of(const TrajectoryFile& path) {
+CheckConditions at_start_of(const io::TrajectoryFile& path) {
   return {control::evaluate(path.segments.front(), 0.0).position_ned.head<2>(), {}, 0.0};
 }
 

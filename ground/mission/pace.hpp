@@ -10,7 +10,7 @@
 
 namespace swiftlet::ground {
 
-struct ReadingOptions : FileOptions {
+struct ReadingOptions : io::FileOptions {
   bool as_fast_as_possible = false;
   double reserve = 0.1;  // 0 .. 1, see CheckConditions; with as_fast_as_possible
 };
@@ -22,21 +22,21 @@ struct Pace {
 };
 
 // The least time scale at which the vehicle can fly the mission by check_mission(), with the reserve of the conditions.
-// Throws runtime::ConfigError with the reason if there is none up to kLargestTimeScale.
-Pace fastest_pace(const MissionFile& file, const plant::Vehicle& vehicle,
+// Throws io::ConfigError with the reason if there is none up to kLargestTimeScale.
+Pace fastest_pace(const io::MissionFile& file, const plant::Vehicle& vehicle,
                   const control::ControlSettings& settings, const CheckConditions& conditions);
 
 // As load_mission_file() and load_trajectory_file(). With as_fast_as_possible the time scale of the options is multiplied by that
 // of fastest_pace(), and the assumptions say by what, which limit is met, and where.
-MissionFile load_mission(const std::string& path, const ReadingOptions& options,
-                         const plant::Vehicle& vehicle, const control::ControlSettings& settings);
-TrajectoryFile load_trajectory(const std::string& path, const ReadingOptions& options,
-                               const plant::Vehicle& vehicle, const control::ControlSettings& settings);
+io::MissionFile load_mission(const std::string& path, const ReadingOptions& options,
+                             const plant::Vehicle& vehicle, const control::ControlSettings& settings);
+io::TrajectoryFile load_trajectory(const std::string& path, const ReadingOptions& options,
+                                   const plant::Vehicle& vehicle, const control::ControlSettings& settings);
 
 // A mission that only flies this path: the vehicle hovers below or above its start.
-MissionFile mission_of(const std::string& name, const TrajectoryFile& path,
-                       const control::ControlSettings& settings);
+io::MissionFile mission_of(const std::string& name, const io::TrajectoryFile& path,
+                           const control::ControlSettings& settings);
 // Where it hovers.
-CheckConditions at_start_of(const TrajectoryFile& path);
+CheckConditions at_start_of(const io::TrajectoryFile& path);
 
 }  // namespace swiftlet::ground

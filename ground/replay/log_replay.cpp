@@ -22,7 +22,7 @@ constexpr auto kReliableTimeout = 1000ms;  // for the last messages
 struct Vehicle {
   std::string prefix;  // "/kl1/", of the file
   std::set<std::string> names;
-  std::optional<comms::Node> node;
+  std::optional<dds::Node> node;
   std::optional<TopicPublishers> publishers;
 };
 
@@ -38,7 +38,7 @@ bool selected(const mcap::Selection& selection, const std::string& topic) {
 
 }  // namespace
 
-ReplayTotals replay(const mcap::Reader& file, const comms::Participant& participant,
+ReplayTotals replay(const mcap::Reader& file, const dds::Participant& participant,
                     const ReplaySettings& settings, const std::function<bool(const ReplayTotals&)>& proceed) {
   std::deque<Vehicle> vehicles;
   for (const auto& [recorded, published] : settings.names) {

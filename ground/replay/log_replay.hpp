@@ -27,7 +27,7 @@ struct ReplayTotals {
 // The messages of the vehicles in settings.names, on the topics of Swiftlet. proceed: called before each message with the
 // totals so far; false ends the replay. Throws ConfigError for a damaged file, std::runtime_error if a topic cannot be
 // published.
-ReplayTotals replay(const mcap::Reader& file, const comms::Participant& participant,
+ReplayTotals replay(const mcap::Reader& file, const dds::Participant& participant,
                     const ReplaySettings& settings, const std::function<bool(const ReplayTotals&)>& proceed);
 
 }  // namespace swiftlet::ground

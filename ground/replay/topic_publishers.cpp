@@ -9,16 +9,16 @@
 
 namespace swiftlet::ground {
 
-TopicPublishers::TopicPublishers(comms::Node& node, const std::set<std::string>& names) {
-  comms::for_each_topic([&](const auto& topic) {
+TopicPublishers::TopicPublishers(dds::Node& node, const std::set<std::string>& names) {
+  messages::for_each_topic([&](const auto& topic) {
     using Message = typename std::decay_t<decltype(topic)>::Message;
     if (names.count(topic.name) == 0) return;
-    const auto publisher = std::make_shared<comms::Publisher<Message>>(node.publish(topic));
+    const auto publisher = std::make_shared<dds::Publisher<Message>>(node.publish(topic));
     topics_[topic.name] = {
         [publisher] { return publisher->matched() > 0; },
         [publisher](mcap::ByteView payload) {
           Message message;
-          return comms::from_payload(payload.data, payload.size, message) && publisher->publish(message);
+          return dds::from_payload(payload.data, payload.size, message) && publisher->publish(message);
         },
         [publisher](std::chrono::milliseconds timeout) { return publisher->wait_until_received(timeout); }};
   });

@@ -15,7 +15,7 @@ namespace swiftlet::ground {
 class TopicPublishers {
  public:
   // names: of topics, "imu"; others are ignored. Throws std::runtime_error.
-  TopicPublishers(comms::Node& node, const std::set<std::string>& names);
+  TopicPublishers(dds::Node& node, const std::set<std::string>& names);
 
   // Returns false if the payload is no message of the topic, or was not sent.
   bool publish(const std::string& name, mcap::ByteView payload);

@@ -14,16 +14,16 @@
 namespace swiftlet::ros {
 namespace {
 
-comms::Fault fault_of(const std::string& sentence) {
-  comms::Fault fault;
+messages::Fault fault_of(const std::string& sentence) {
+  messages::Fault fault;
   std::snprintf(fault.text, sizeof fault.text, "%s", sentence.c_str());
   return fault;
 }
 
 template <class T>
-std::int64_t stamp_of(const comms::RawSample& sample) {
+std::int64_t stamp_of(const dds::RawSample& sample) {
   std::int64_t stamp_ns = 0;
-  const auto offset = static_cast<std::size_t>(comms::schema_of<T>().stamp_offset);
+  const auto offset = static_cast<std::size_t>(messages::schema_of<T>().stamp_offset);
   if (offset + sizeof(stamp_ns) <= sample.size)
     std::memcpy(&stamp_ns, sample.payload + offset, sizeof(stamp_ns));
   return stamp_ns;
@@ -44,13 +44,13 @@ Gateway::Gateway(const ground::Context& context, const std::string& vehicle, con
   });
   for (const record::StandardTopic& one : standard_.ros_topics())
     writers_.emplace(one.topic, writer_of(node_, one.topic, one.schema->name));
-  forward(comms::topics::kEstimate);
-  forward(comms::topics::kReference);
-  forward(comms::topics::kImu);
-  forward(comms::topics::kBattery);
-  goals_ = std::make_unique<Reader<PoseStamped>>(node_, "goal_pose", comms::Qos::kRequest,
+  forward(messages::topics::kEstimate);
+  forward(messages::topics::kReference);
+  forward(messages::topics::kImu);
+  forward(messages::topics::kBattery);
+  goals_ = std::make_unique<Reader<PoseStamped>>(node_, "goal_pose", messages::Qos::kRequest,
                                                  [this](const Bytes& payload) { take_goal(payload); });
-  velocities_ = std::make_unique<Reader<Twist>>(node_, "cmd_vel", comms::Qos::kStream,
+  velocities_ = std::make_unique<Reader<Twist>>(node_, "cmd_vel", messages::Qos::kStream,
                                                 [this](const Bytes& payload) { take_velocity(payload); });
   pilot_ = std::thread([this] { fly_to_goals(); });
 }
@@ -68,10 +68,10 @@ Gateway::~Gateway() {
 }
 
 template <class T>
-void Gateway::forward(const comms::Topic<T>& topic) {
-  const bool keeps_time = std::is_same_v<T, comms::msg::Estimate>;
+void Gateway::forward(const messages::Topic<T>& topic) {
+  const bool keeps_time = std::is_same_v<T, messages::msg::Estimate>;
   subscriptions_.push_back(node_.subscribe_raw<T>(
-      topic, [this, name = std::string(topic.name), keeps_time](const comms::RawSample& sample) {
+      topic, [this, name = std::string(topic.name), keeps_time](const dds::RawSample& sample) {
         const std::int64_t time_ns =
             settings_.time == Time::kVehicle ? stamp_of<T>(sample) : runtime::system_ns();
         if (keeps_time && clock_) clock_(time_ns);

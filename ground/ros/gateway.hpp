@@ -49,7 +49,7 @@ class Gateway {
 
  private:
   template <class T>
-  void forward(const comms::Topic<T>& topic);
+  void forward(const messages::Topic<T>& topic);
   void take_goal(const Bytes& payload);
   void take_velocity(const Bytes& payload);
   void fly_to_goals();
@@ -58,19 +58,19 @@ class Gateway {
   const GatewaySettings settings_;
   const std::function<void(std::int64_t)> clock_;
   ground::Vehicle vehicle_;
-  record::StandardMessages standard_;                           // of the thread that receives
-  std::map<std::string, Writer> writers_;                       // by topic
-  comms::ThrottledWarning write_faults_{"what goes to ROS 2"};  // of the same thread
-  comms::ThrottledWarning velocity_faults_{"cmd_vel"};  // these two of the thread that receives velocities
-  ground::SetpointTally setpoints_;                     // that control has answered
+  record::StandardMessages standard_;                         // of the thread that receives
+  std::map<std::string, Writer> writers_;                     // by topic
+  dds::ThrottledWarning write_faults_{"what goes to ROS 2"};  // of the same thread
+  dds::ThrottledWarning velocity_faults_{"cmd_vel"};  // these two of the thread that receives velocities
+  ground::SetpointTally setpoints_;                   // that control has answered
 
   std::mutex mutex_;  // guards the two below
   std::condition_variable changed_;
   std::optional<Goal> goal_;  // not yet asked for
   bool ending_ = false;
 
-  comms::Node node_;
-  std::vector<comms::Subscription> subscriptions_;
+  dds::Node node_;
+  std::vector<dds::Subscription> subscriptions_;
   std::unique_ptr<Reader<PoseStamped>> goals_;
   std::unique_ptr<Reader<Twist>> velocities_;
   std::thread pilot_;

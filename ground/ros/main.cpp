@@ -29,7 +29,7 @@ namespace {
 struct Options {
   GatewaySettings gateway;
   std::size_t gid_bytes = kGidBytes;
-  comms::NodeSettings node;
+  dds::NodeSettings node;
   runtime::LogSettings log;
 };
 
@@ -52,14 +52,14 @@ void add_options(runtime::CommandLine app, Options& options) {
          "ROS 2 that is to see the nodes: humble numbers endpoints in another way than those after it")
       .show_default("jazzy");
   options.node.name = "ros";
-  comms::add_service_options(app, options.node);
+  dds::add_service_options(app, options.node);
   runtime::add_log_options(app, options.log);
 }
 
 // Publishes /clock, which all vehicles share.
 class ClockPublisher {
  public:
-  ClockPublisher(const comms::Participant& participant, const std::string& vehicle)
+  ClockPublisher(const dds::Participant& participant, const std::string& vehicle)
       : node_(participant, vehicle), writer_(writer<Clock>(node_, "/clock")) {}
 
   void publish(std::int64_t time_ns) {
@@ -70,14 +70,14 @@ class ClockPublisher {
   }
 
  private:
-  comms::Node node_;
+  dds::Node node_;
   Writer writer_;
 };
 
 void run(const Options& options) {
   if (!options.node.security.empty())
     throw std::invalid_argument("--security: no role of DDS Security may use the topics of ROS 2");
-  const std::vector<std::string> names = comms::vehicles_of_list(options.node.vehicle);
+  const std::vector<std::string> names = messages::vehicles_of_list(options.node.vehicle);
   runtime::StopSignal stop;
   const runtime::Logging logging("ros", options.log);
   const RosGraph graph(options.node, options.gid_bytes);

@@ -10,7 +10,7 @@
 namespace swiftlet::ros {
 
 template <class Type>
-class RawType : public comms::PayloadType {
+class RawType : public dds::PayloadType {
  public:
   using type = Message<Type>;
 
@@ -24,14 +24,14 @@ class RawType : public comms::PayloadType {
   std::uint32_t size(const void* message) const override {
     return static_cast<std::uint32_t>(static_cast<const type*>(message)->payload.size());
   }
-  bool fill(const void* message, comms::rtps::SerializedPayload_t& payload) override {
+  bool fill(const void* message, dds::fastrtps::SerializedPayload_t& payload) override {
     if (size(message) > payload.max_size) return false;
     const Bytes& bytes = static_cast<const type*>(message)->payload;
     payload.length = size(message);
     std::copy(bytes.begin(), bytes.end(), payload.data);
     return true;
   }
-  bool take(const comms::rtps::SerializedPayload_t& payload, void* message) override {
+  bool take(const dds::fastrtps::SerializedPayload_t& payload, void* message) override {
     static_cast<type*>(message)->payload.assign(payload.data, payload.data + payload.length);
     return true;
   }

@@ -53,7 +53,7 @@ class CdrReader {
 
   void align(std::size_t size) { reader_.skip((size - (begin_ - reader_.rest()) % size) % size); }
 
-  runtime::ByteReader reader_;
+  io::ByteReader reader_;
   std::size_t begin_ = 0;
 };
 

@@ -20,9 +20,9 @@
 namespace swiftlet::ros {
 namespace {
 
-namespace dds = eprosima::fastdds::dds;
-using comms::rtps::GUID_t;
-using comms::rtps::GuidPrefix_t;
+namespace fastdds = eprosima::fastdds::dds;
+using dds::fastrtps::GUID_t;
+using dds::fastrtps::GuidPrefix_t;
 
 constexpr std::chrono::milliseconds kPeriod{100};
 constexpr const char* kTopic = "ros_discovery_info";
@@ -33,14 +33,14 @@ struct ParticipantEntities {
   static constexpr const char* kTypeHash =
       "RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e";
 };
-using EntitiesType = comms::CheckedTypeSupport<RawType<ParticipantEntities>>;
+using EntitiesType = dds::CheckedTypeSupport<RawType<ParticipantEntities>>;
 
 // A process of Swiftlet.
 struct Process {
   std::string name;
   std::map<GUID_t, std::string> writers, readers;  // topics as ROS 2 has them on the wire: rt/kl1/imu
   bool changed = true;
-  dds::DataWriter* announcer = nullptr;
+  fastdds::DataWriter* announcer = nullptr;
 };
 
 // Of a node: the numbers of its endpoints.
@@ -77,7 +77,7 @@ void put_gid(record::CdrWriter& out, const GUID_t& guid, std::size_t gid_bytes) 
 // rmw_dds_common/msg/ParticipantEntitiesInfo.
 Bytes entities_message(const GuidPrefix_t& participant, const Process& process, std::size_t gid_bytes) {
   record::CdrWriter out;
-  put_gid(out, {participant, comms::rtps::c_EntityId_RTPSParticipant}, gid_bytes);
+  put_gid(out, {participant, dds::fastrtps::c_EntityId_RTPSParticipant}, gid_bytes);
   const std::map<std::string, Endpoints> nodes = nodes_of(process);
   out.put(static_cast<std::uint32_t>(nodes.size()));
   for (const auto& [space, endpoints] : nodes) {
@@ -90,7 +90,7 @@ Bytes entities_message(const GuidPrefix_t& participant, const Process& process, 
   return out.take();
 }
 
-comms::NodeSettings renamed(comms::NodeSettings settings) {
+dds::NodeSettings renamed(dds::NodeSettings settings) {
   settings.name = "ros_graph";
   settings.source_of.clear();
   return settings;
@@ -98,13 +98,13 @@ comms::NodeSettings renamed(comms::NodeSettings settings) {
 
 }  // namespace
 
-class RosGraph::Impl final : public comms::DiscoveryListener {
+class RosGraph::Impl final : public dds::DiscoveryListener {
  public:
-  Impl(const comms::NodeSettings& settings, std::size_t gid_bytes)
+  Impl(const dds::NodeSettings& settings, std::size_t gid_bytes)
       : settings_(renamed(settings)),
         gid_bytes_(gid_bytes),
-        session_(settings_, comms::Announcement{}, comms::guard_of(settings_), this),
-        topic_(session_.topic(kTopic, dds::TypeSupport(new EntitiesType()))),
+        session_(settings_, rtps::Announcement{}, dds::guard_of(settings_), this),
+        topic_(session_.topic(kTopic, fastdds::TypeSupport(new EntitiesType()))),
         task_(std::in_place, kPeriod, [this] { announce_changes(); }) {}
   ~Impl() override { task_.reset(); }
   Impl(const Impl&) = delete;
@@ -113,8 +113,7 @@ class RosGraph::Impl final : public comms::DiscoveryListener {
  private:
   void on_participant(const GUID_t& guid, const std::string& name,
                       const std::vector<std::uint8_t>& user_data) override {
-    if (comms::from_user_data(user_data).host.empty())
-      return;  // a program of others, which speaks for itself
+    if (rtps::from_user_data(user_data).host.empty()) return;  // a program of others, which speaks for itself
     const std::lock_guard<std::mutex> lock(mutex_);
     Process& process = processes_[guid.guidPrefix];
     process.name = name;
@@ -127,10 +126,10 @@ class RosGraph::Impl final : public comms::DiscoveryListener {
     if (gone->second.announcer != nullptr) ended_.push_back(gone->second.announcer);
     processes_.erase(gone);
   }
-  void on_writer(const GUID_t& guid, const std::string& topic, const comms::EndpointQos&) override {
+  void on_writer(const GUID_t& guid, const std::string& topic, const dds::EndpointQos&) override {
     add(&Process::writers, guid, topic);
   }
-  void on_reader(const GUID_t& guid, const std::string& topic, const comms::EndpointQos&) override {
+  void on_reader(const GUID_t& guid, const std::string& topic, const dds::EndpointQos&) override {
     add(&Process::readers, guid, topic);
   }
   void on_writer_gone(const GUID_t& guid) override { remove(&Process::writers, guid); }
@@ -154,7 +153,7 @@ class RosGraph::Impl final : public comms::DiscoveryListener {
 
   // Each process has a writer of its own, whose last message late readers receive: the topic has no keys.
   void announce_changes() {
-    std::vector<dds::DataWriter*> ended;
+    std::vector<fastdds::DataWriter*> ended;
     std::vector<std::pair<GuidPrefix_t, Bytes>> changes;
     {
       const std::lock_guard<std::mutex> lock(mutex_);
@@ -164,12 +163,12 @@ class RosGraph::Impl final : public comms::DiscoveryListener {
         changes.emplace_back(participant, entities_message(participant, process, gid_bytes_));
       }
     }
-    for (dds::DataWriter* announcer : ended) session_.publisher->delete_datawriter(announcer);
+    for (fastdds::DataWriter* announcer : ended) session_.publisher->delete_datawriter(announcer);
     for (auto& [participant, payload] : changes) announce(participant, std::move(payload));
   }
 
   void announce(const GuidPrefix_t& participant, Bytes payload) {
-    dds::DataWriter* announcer = nullptr;
+    fastdds::DataWriter* announcer = nullptr;
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       const auto process = processes_.find(participant);
@@ -177,8 +176,8 @@ class RosGraph::Impl final : public comms::DiscoveryListener {
       announcer = process->second.announcer;
     }
     if (announcer == nullptr) {
-      dds::DataWriterQos qos = comms::writer_qos(comms::Qos::kLatchedLarge);
-      comms::state_type_hash(qos, ParticipantEntities::kTypeHash);
+      fastdds::DataWriterQos qos = dds::writer_qos(messages::Qos::kLatchedLarge);
+      dds::state_type_hash(qos, ParticipantEntities::kTypeHash);
       announcer = session_.publisher->create_datawriter(topic_, qos);
       if (announcer == nullptr) return runtime::log_error("cannot publish {}", kTopic);
       const std::lock_guard<std::mutex> lock(mutex_);
@@ -190,20 +189,20 @@ class RosGraph::Impl final : public comms::DiscoveryListener {
       process->second.announcer = announcer;
     }
     const Message<ParticipantEntities> message{std::move(payload)};
-    comms::write(*announcer, &message);
+    dds::write(*announcer, &message);
   }
 
-  const comms::NodeSettings settings_;
+  const dds::NodeSettings settings_;
   const std::size_t gid_bytes_;
   std::mutex mutex_;  // guards the two below; not held while Fast DDS is called, which calls back
   std::map<GuidPrefix_t, Process> processes_;
-  std::vector<dds::DataWriter*> ended_;  // announcers of processes that are gone
-  comms::ParticipantSession session_;
-  dds::Topic* topic_;
-  std::optional<comms::PeriodicTask> task_;
+  std::vector<fastdds::DataWriter*> ended_;  // announcers of processes that are gone
+  dds::ParticipantSession session_;
+  fastdds::Topic* topic_;
+  std::optional<dds::PeriodicTask> task_;
 };
 
-RosGraph::RosGraph(comms::NodeSettings settings, std::size_t gid_bytes)
+RosGraph::RosGraph(dds::NodeSettings settings, std::size_t gid_bytes)
     : impl_(std::make_unique<Impl>(std::move(settings), gid_bytes)) {}
 RosGraph::~RosGraph() = default;
 

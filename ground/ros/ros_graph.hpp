@@ -18,7 +18,7 @@ constexpr std::size_t kGidBytesOfHumble = 24;
 class RosGraph {
  public:
   // Joins the domain with a participant of its own. Throws std::runtime_error.
-  RosGraph(comms::NodeSettings settings, std::size_t gid_bytes);
+  RosGraph(dds::NodeSettings settings, std::size_t gid_bytes);
   ~RosGraph();
   RosGraph(const RosGraph&) = delete;
   RosGraph& operator=(const RosGraph&) = delete;

@@ -67,22 +67,22 @@ using Writer = std::function<bool(Bytes)>;
 // name: "pose" in the namespace of the node's vehicle, "/tf" outside. qos: kLatched or kLatchedLarge, which match all
 // readers of ROS 2. Throws std::runtime_error.
 template <class Type>
-Writer writer(comms::Node& node, const std::string& name, comms::Qos qos = comms::Qos::kLatched);
+Writer writer(dds::Node& node, const std::string& name, messages::Qos qos = messages::Qos::kLatched);
 
 // The writer of a topic of the type that ROS 2 calls "geometry_msgs/msg/PoseStamped". Throws std::logic_error for a type
 // that is not one of the above.
-Writer writer_of(comms::Node& node, const std::string& name, const std::string& ros_type);
+Writer writer_of(dds::Node& node, const std::string& name, const std::string& ros_type);
 
 // A reader of one topic. Throws std::runtime_error.
 template <class Type>
 class Reader {
  public:
-  Reader(comms::Node& node, const std::string& name, comms::Qos qos,
+  Reader(dds::Node& node, const std::string& name, messages::Qos qos,
          std::function<void(const Bytes&)> callback);
 
  private:
   std::unique_ptr<const std::string> name_;  // outlives the subscription
-  comms::Subscription subscription_;
+  dds::Subscription subscription_;
 };
 
 }  // namespace swiftlet::ros

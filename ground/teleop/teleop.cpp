@@ -29,7 +29,7 @@ void Teleop::update(const Sticks& sticks) {
   }
   const VehicleState state = vehicle_.state();
   if (state.mode != Mode::kHolding && state.mode != Mode::kSetpoint) return;
-  const double yaw_rad = control::euler_angles(state.q_ned_from_frd).heading.yaw_rad;
+  const double yaw_rad = math::euler_angles(state.q_ned_from_frd).heading.yaw_rad;
   if (!std::isfinite(yaw_rad) || !vehicle_.send(velocity_of(sticks, limits_, yaw_rad))) return;
   moving_ = true;
   ++sent_;

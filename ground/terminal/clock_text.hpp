@@ -8,6 +8,6 @@
 namespace swiftlet::ground {
 
 // "+3.000524 s, +50.2 ppm, set once".
-std::string clock_text(const comms::msg::ClockStatus& clock);
+std::string clock_text(const messages::msg::ClockStatus& clock);
 
 }  // namespace swiftlet::ground

@@ -10,7 +10,7 @@ constexpr std::size_t kMostInALog = 6;  // vehicles in a line that goes to a fil
 
 }  // namespace
 
-FleetProgress::FleetProgress(ProgressLine& line, const std::vector<std::string>& vehicles) : line_(line) {
+FleetProgress::FleetProgress(io::ProgressLine& line, const std::vector<std::string>& vehicles) : line_(line) {
   for (const std::string& vehicle : vehicles) shares_.emplace_back(*this, vehicle);
 }
 

@@ -13,15 +13,15 @@ namespace swiftlet::ground {
 
 class FleetProgress {
  public:
-  FleetProgress(ProgressLine& line, const std::vector<std::string>& vehicles);
+  FleetProgress(io::ProgressLine& line, const std::vector<std::string>& vehicles);
   FleetProgress(const FleetProgress&) = delete;
   FleetProgress& operator=(const FleetProgress&) = delete;
 
   // The progress of one vehicle, by its index. Each vehicle may report from its own thread.
-  Progress& of(std::size_t vehicle) { return shares_[vehicle]; }
+  io::Progress& of(std::size_t vehicle) { return shares_[vehicle]; }
 
  private:
-  class Share final : public Progress {
+  class Share final : public io::Progress {
    public:
     Share(FleetProgress& all, std::string vehicle) : all_(all), vehicle_(std::move(vehicle)) {}
     void update(int stage, const std::string& text) override;
@@ -37,7 +37,7 @@ class FleetProgress {
 
   void show_last();  // requires mutex_
 
-  ProgressLine& line_;
+  io::ProgressLine& line_;
   std::mutex mutex_;  // guards line_ and shares_
   std::deque<Share> shares_;
 };

@@ -35,12 +35,13 @@ void print_alarm(std::FILE* stream, const std::string& line) {
 }
 
 double heading_deg(const Eigen::Quaterniond& q_ned_from_frd) {
-  const double yaw_deg = tenths_of_degrees(control::euler_angles(q_ned_from_frd).heading.yaw_rad);
+  const double yaw_deg = tenths_of_degrees(math::euler_angles(q_ned_from_frd).heading.yaw_rad);
   return yaw_deg < 0.0 ? yaw_deg + 360.0 : yaw_deg;
 }
 
-std::string odometry_text(const comms::msg::ControlStatus& control) {
-  const bool in_force = control.estimate_source() == comms::msg::ControlStatus_Constants::ESTIMATE_OF_VEHICLE;
+std::string odometry_text(const messages::msg::ControlStatus& control) {
+  const bool in_force =
+      control.estimate_source() == messages::msg::ControlStatus_Constants::ESTIMATE_OF_VEHICLE;
   const bool compared = control.odometry_angle_rad() >= 0.0;
   if (!in_force && !compared && control.odometry_resets() == 0) return {};
   std::string text =
@@ -51,9 +52,9 @@ std::string odometry_text(const comms::msg::ControlStatus& control) {
   return text + (in_force ? ", flown by it" : ", flown by that of motion capture");
 }
 
-std::string attitude_text(const comms::msg::Estimate& estimate) {
-  const Eigen::Quaterniond q_ned_from_frd = comms::wire::quaternion(estimate.q_ned_from_frd());
-  const control::EulerAngles angles = control::euler_angles(q_ned_from_frd);
+std::string attitude_text(const messages::msg::Estimate& estimate) {
+  const Eigen::Quaterniond q_ned_from_frd = messages::wire::quaternion(estimate.q_ned_from_frd());
+  const math::EulerAngles angles = math::euler_angles(q_ned_from_frd);
   return fmt::format("roll {:.1f}, pitch {:.1f}, heading {:.1f} deg", tenths_of_degrees(angles.roll_rad),
                      tenths_of_degrees(angles.pitch_rad), heading_deg(q_ned_from_frd));
 }

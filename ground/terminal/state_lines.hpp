@@ -24,9 +24,9 @@ double heading_deg(const Eigen::Quaterniond& q_ned_from_frd);
 
 // "roll 1.2, pitch -0.4, heading 90.0 deg": Euler angles of the estimate, Eq. (3); heading from north to
 // east, 0 to 360.
-std::string attitude_text(const comms::msg::Estimate& estimate);
+std::string attitude_text(const messages::msg::Estimate& estimate);
 
 // How far the vehicle's own estimate is from that of motion capture, and which of both flies; empty for a vehicle without one.
-std::string odometry_text(const comms::msg::ControlStatus& control);
+std::string odometry_text(const messages::msg::ControlStatus& control);
 
 }  // namespace swiftlet::ground

@@ -16,9 +16,9 @@
 namespace swiftlet::ground {
 namespace {
 
-using comms::wire::vector;
 using control::Mode;
 using Eigen::Vector3d;
+using messages::wire::vector;
 
 constexpr double kFarOff_m = 0.1;    // tracking error
 constexpr double kLateSteps = 0.01;  // share of the control steps

@@ -63,7 +63,7 @@ std::optional<Displacement> displacement(const VehicleRecording& recording, cons
   if (!begin || !end) return std::nullopt;
   const Eigen::Vector3d moved_ned = end->position_ned - begin->position_ned;
   return Displacement{moved_ned, begin->q_ned_from_frd.conjugate() * moved_ned,
-                      plant::rotation_vector(begin->q_ned_from_frd.conjugate() * end->q_ned_from_frd)};
+                      math::rotation_vector(begin->q_ned_from_frd.conjugate() * end->q_ned_from_frd)};
 }
 
 std::string map_finding(const std::string& sensor, const std::optional<AxisMap>& map) {

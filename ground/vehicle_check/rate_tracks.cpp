@@ -23,7 +23,7 @@ double correlation_at(const GyroTrack& gyro, const std::vector<MocapRate>& mocap
     by_mocap.push_back(rate.body_rates_frd.norm());
   }
   if (by_gyro.size() * 2 < mocap.size()) return 0.0;
-  const double value = correlation(by_gyro, by_mocap);
+  const double value = math::correlation(by_gyro, by_mocap);
   return std::isfinite(value) ? value : 0.0;
 }
 
@@ -72,7 +72,7 @@ std::vector<MocapRate> mocap_rates(const VehicleRecording& recording) {
     if (!before.tracked || !now.tracked || interval_ns <= 0 || interval_ns > kLongestGap_ns) continue;
     const Eigen::Quaterniond turn = before.q_ned_from_frd.conjugate() * now.q_ned_from_frd;
     rates.push_back(
-        {before.stamp_ns, now.stamp_ns, plant::rotation_vector(turn) / math::seconds(interval_ns)});
+        {before.stamp_ns, now.stamp_ns, math::rotation_vector(turn) / math::seconds(interval_ns)});
   }
   return rates;
 }

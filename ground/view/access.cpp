@@ -34,7 +34,7 @@ bool same(const std::string& a, const std::string& b) {
 std::vector<std::string> parts_of(const std::string& target) {
   const std::size_t mark = target.find('?');
   if (mark == std::string::npos) return {};
-  return runtime::split_text(target.substr(mark + 1), '&');
+  return io::split_text(target.substr(mark + 1), '&');
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ constexpr std::array<const char*, 2> kSubprotocols = {"foxglove.sdk.v1", "foxglo
 struct Channel {
   std::uint32_t id = 0;
   std::string topic;  // "/kl1/imu"
-  const comms::MessageSchema* schema = nullptr;
+  const messages::MessageSchema* schema = nullptr;
 };
 
 struct Service {

@@ -19,11 +19,11 @@ constexpr std::size_t kLogLines = 50;  // of a vehicle, for viewers that come la
 }  // namespace
 
 struct LiveTopics::Vehicle {
-  Vehicle(const comms::Participant& participant, const std::string& its_name)
+  Vehicle(const dds::Participant& participant, const std::string& its_name)
       : name(its_name), node(participant, its_name), standard(its_name) {}
 
   const std::string name;
-  comms::Node node;
+  dds::Node node;
   record::StandardMessages standard;
 };
 
@@ -33,17 +33,17 @@ struct LiveTopics::Source {
   std::string topic;  // "imu"
   std::uint32_t channel = 0;
   std::uint16_t number = 0;
-  std::function<comms::Subscription(Source&)> subscribe;
+  std::function<dds::Subscription(Source&)> subscribe;
   std::atomic<std::uint64_t> dropped{0};
   std::size_t users = 0;
-  std::optional<comms::Subscription> subscription;  // while it has users
+  std::optional<dds::Subscription> subscription;  // while it has users
 };
 
 LiveTopics::LiveTopics(const Context& context) : participant_(context.participant()), queue_(kQueueBytes) {}
 
 LiveTopics::~LiveTopics() = default;
 
-std::uint32_t LiveTopics::add_channel(const std::string& topic, const comms::MessageSchema& schema) {
+std::uint32_t LiveTopics::add_channel(const std::string& topic, const messages::MessageSchema& schema) {
   const auto [known, is_new] = known_.try_emplace(topic, static_cast<std::uint32_t>(channels_.size()));
   if (is_new) {
     channels_.push_back({known->second, topic, &schema});
@@ -53,14 +53,14 @@ std::uint32_t LiveTopics::add_channel(const std::string& topic, const comms::Mes
 }
 
 template <class T>
-void LiveTopics::add_topic(Vehicle& vehicle, const comms::Topic<T>& topic) {
+void LiveTopics::add_topic(Vehicle& vehicle, const messages::Topic<T>& topic) {
   sources_.emplace_back();
   Source& source = sources_.back();
   source.vehicle = &vehicle;
   source.topic = topic.name;
   source.number = static_cast<std::uint16_t>(sources_.size() - 1);
   source.subscribe = [this, topic](Source& of) {
-    return of.vehicle->node.subscribe_raw<T>(topic, [this, &of](const comms::RawSample& sample) {
+    return of.vehicle->node.subscribe_raw<T>(topic, [this, &of](const dds::RawSample& sample) {
       const std::int64_t now_ns = runtime::system_ns();
       if (!queue_.put({of.number,
                        static_cast<std::uint32_t>(sample.sequence_number),
@@ -100,13 +100,14 @@ void LiveTopics::add_vehicle(const std::string& name) {
 }
 
 void LiveTopics::add_topics(Vehicle& vehicle) {
-  comms::for_each_topic([&](const auto& topic) {
+  messages::for_each_topic([&](const auto& topic) {
     using Message = typename std::decay_t<decltype(topic)>::Message;
     add_topic(vehicle, topic);
     Source& source = sources_.back();
-    source.channel = add_channel("/" + vehicle.name + "/" + source.topic, comms::schema_of<Message>());
+    source.channel = add_channel("/" + vehicle.name + "/" + source.topic, messages::schema_of<Message>());
     states_[source.channel].sources.push_back(&source);
-    states_[source.channel].is_event = topic.qos == comms::Qos::kRequest || topic.qos == comms::Qos::kReply;
+    states_[source.channel].is_event =
+        topic.qos == messages::Qos::kRequest || topic.qos == messages::Qos::kReply;
   });
 }
 

@@ -61,12 +61,12 @@ class LiveTopics {
     std::size_t kept = 1;  // of them
   };
 
-  std::uint32_t add_channel(const std::string& topic, const comms::MessageSchema& schema);
+  std::uint32_t add_channel(const std::string& topic, const messages::MessageSchema& schema);
   void add_topics(Vehicle& vehicle);
   template <class T>
-  void add_topic(Vehicle& vehicle, const comms::Topic<T>& topic);
+  void add_topic(Vehicle& vehicle, const messages::Topic<T>& topic);
 
-  const comms::Participant participant_;
+  const dds::Participant participant_;
   record::SampleQueue queue_;
   std::vector<foxglove::Channel> channels_;
   std::vector<State> states_;                   // of the channels

@@ -64,7 +64,7 @@ std::string text_of(beast::string_view text) { return {text.data(), text.size()}
 std::string subprotocol_of(const Request& request) {
   const std::string offered = text_of(request[http::field::sec_websocket_protocol]);
   for (const char* const known : foxglove::kSubprotocols) {
-    for (std::string name : runtime::split_text(offered, ',')) {
+    for (std::string name : io::split_text(offered, ',')) {
       name.erase(0, name.find_first_not_of(' '));
       name.erase(name.find_last_not_of(' ') + 1);
       if (name == known) return name;

@@ -61,7 +61,7 @@ class Reader {
 
  private:
   const BenchNoise& noise_;
-  plant::RandomStream random_;
+  math::RandomStream random_;
 };
 
 EscData esc_data(const plant::Vehicle& vehicle, Reader reader) {

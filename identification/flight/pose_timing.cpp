@@ -42,7 +42,7 @@ class Turned {
   // Times must increase from call to call.
   Quaterniond at(double time_s) {
     while (row_ + 1 < log_.size() && log_.time_s[row_ + 1] <= time_s) {
-      turned_ = plant::renormalised(turned_ * step(log_.time_s[row_ + 1]));
+      turned_ = math::renormalised(turned_ * step(log_.time_s[row_ + 1]));
       ++row_;
     }
     return turned_ * step(time_s);
@@ -57,7 +57,7 @@ class Turned {
       const double share = passed_s / (log_.time_s[row_ + 1] - log_.time_s[row_]);
       rates += 0.5 * std::min(share, 1.0) * (log_.body_rates_frd[row_ + 1] - log_.body_rates_frd[row_]);
     }
-    return plant::rotation(passed_s * (rates - offset_));
+    return math::rotation(passed_s * (rates - offset_));
   }
 
   const FlightLog& log_;
@@ -125,7 +125,7 @@ double rough_delay(const FlightLog& log, const std::vector<Poses>& segments) {
       const double length_s = log.poses[to].time_s - log.poses[from].time_s;
       if (length_s < kSpanS) continue;
       const Vector3d rates =
-          plant::rotation_vector(log.poses[from].q_ned_from_frd.conjugate() * log.poses[to].q_ned_from_frd) /
+          math::rotation_vector(log.poses[from].q_ned_from_frd.conjugate() * log.poses[to].q_ned_from_frd) /
           length_s;
       spans.push_back({log.poses[from].time_s, log.poses[to].time_s});
       by_poses.insert(by_poses.end(), rates.begin(), rates.end());
@@ -179,7 +179,7 @@ void residuals(const FlightLog& log, const std::vector<Poses>& segments, const V
       const FlightPose& pose = log.poses[segment.first + static_cast<std::size_t>(i)];
       const Quaterniond begun = pose.q_ned_from_frd * turned.at(pose.time_s - x[0]).conjugate();
       if (i == 0) start = begun;
-      const Vector3d apart = plant::rotation_vector(start.conjugate() * begun);
+      const Vector3d apart = math::rotation_vector(start.conjugate() * begun);
       for (Index axis = 0; axis < 3; ++axis) out[axis * rows + begin + i] = apart[axis];
     }
     for (Index axis = 0; axis < 3; ++axis) {

@@ -101,14 +101,14 @@ struct State {
   Motion minus(const State& other) const {
     Motion out;
     out << position - other.position, velocity - other.velocity,
-        plant::rotation_vector(other.attitude.conjugate() * attitude), force_bias - other.force_bias,
+        math::rotation_vector(other.attitude.conjugate() * attitude), force_bias - other.force_bias,
         rate_bias - other.rate_bias;
     return out;
   }
   void add(const Motion& error) {
     position += error.segment<3>(kPosition);
     velocity += error.segment<3>(kVelocity);
-    attitude = (attitude * plant::rotation(error.segment<3>(kAttitude))).normalized();
+    attitude = (attitude * math::rotation(error.segment<3>(kAttitude))).normalized();
     force_bias += error.segment<3>(kForceBias);
     rate_bias += error.segment<3>(kRateBias);
   }
@@ -123,11 +123,11 @@ struct Sought {
   Vector3d gravity() const { return plant::kGravity * Vector3d(vertical.x(), vertical.y(), 1.0); }
   Parameters vector() const {
     Parameters out;
-    out << plant::rotation_vector(misalignment), lever_arm, vertical, delay_s;
+    out << math::rotation_vector(misalignment), lever_arm, vertical, delay_s;
     return out;
   }
   void add(const Parameters& error) {
-    misalignment = (misalignment * plant::rotation(error.segment<3>(kMisalignment))).normalized();
+    misalignment = (misalignment * math::rotation(error.segment<3>(kMisalignment))).normalized();
     lever_arm += error.segment<3>(kLeverArm);
     vertical += error.segment<2>(kVertical);
     delay_s += error[kDelay];
@@ -159,11 +159,11 @@ Propagation propagate(const State& from, const MotionRecording::Interval& interv
   for (const MotionRecording::Reading& reading : interval.readings) {
     const Vector3d turn = reading.dt * (reading.rates - from.rate_bias);
     const Vector3d force =
-        out.state.attitude * plant::rotation(0.5 * turn) * (reading.force - from.force_bias);
+        out.state.attitude * math::rotation(0.5 * turn) * (reading.force - from.force_bias);
     const Vector3d acceleration = force + sought.gravity();
     out.state.position += reading.dt * (out.state.velocity + 0.5 * reading.dt * acceleration);
     out.state.velocity += reading.dt * acceleration;
-    out.state.attitude = out.state.attitude * plant::rotation(turn);
+    out.state.attitude = out.state.attitude * math::rotation(turn);
     velocity_change += reading.dt * force;
   }
   out.state.attitude.normalize();
@@ -196,13 +196,13 @@ Observation observe(const FlightPose& pose, const State& state, const Sought& so
   const double delay_s = sought.delay_s;
   const Vector3d rates = state.rates - state.rate_bias;
   const Vector3d acceleration = state.attitude * (state.force - state.force_bias) + sought.gravity();
-  const Quaterniond ahead = plant::rotation(delay_s * rates);
+  const Quaterniond ahead = math::rotation(delay_s * rates);
   const Quaterniond attitude = state.attitude * ahead.conjugate();
   const Vector3d position =
       state.position - delay_s * state.velocity + 0.5 * delay_s * delay_s * acceleration;
   Observation out;
   out.residual << pose.position_ned - (position - attitude * sought.lever_arm),
-      plant::rotation_vector(sought.misalignment * attitude.conjugate() * pose.q_ned_from_frd);
+      math::rotation_vector(sought.misalignment * attitude.conjugate() * pose.q_ned_from_frd);
   const Matrix3d from_vehicle = attitude.toRotationMatrix();
   const Matrix3d swing = from_vehicle * hat(sought.lever_arm);
   const Matrix3d turn = ahead.toRotationMatrix();
@@ -318,7 +318,7 @@ class AlignmentFit {
   BodyAlignment result() const {
     BodyAlignment out;
     const Parameters deviation = kAllowance * covariance_.diagonal().cwiseMax(0.0).cwiseSqrt();
-    out.misalignment = {plant::rotation_vector(sought_.misalignment), deviation.segment<3>(kMisalignment)};
+    out.misalignment = {math::rotation_vector(sought_.misalignment), deviation.segment<3>(kMisalignment)};
     out.lever_arm = {sought_.lever_arm, deviation.segment<3>(kLeverArm)};
     out.vertical = sought_.vertical;
     out.vertical_deviation = deviation.segment<2>(kVertical);

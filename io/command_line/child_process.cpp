@@ -14,7 +14,7 @@
 #include <unistd.h>
 #include <utility>
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 constexpr std::chrono::milliseconds kPollPeriod{5};
@@ -157,4 +157,4 @@ std::string ChildProcess::last_log_line() const {
   return last;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

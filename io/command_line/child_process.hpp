@@ -9,7 +9,7 @@
 #include <sys/types.h>
 #include <vector>
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 struct ProcessSettings {
   std::string name;  // for messages
@@ -60,4 +60,4 @@ class ChildProcess {
   std::optional<ProcessEnd> end_;
 };
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

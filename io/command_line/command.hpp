@@ -9,7 +9,7 @@
 
 #include "swiftlet/services/runtime/command_line.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 // Exit codes of the program.
 constexpr int kDone = 0;      // the command succeeded
@@ -31,4 +31,4 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

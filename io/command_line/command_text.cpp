@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 // Parses a CLI11 type such as "TEXT:{realtime,lockstep}" into value, choices and facts.
@@ -54,4 +54,4 @@ CommandText text_of(const CLI::App& app, const std::vector<std::string>& above) 
 
 CommandText command_text(runtime::CommandLine command) { return text_of(command.app(), {}); }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -6,7 +6,7 @@
 
 #include "swiftlet/services/runtime/command_line.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 struct OptionText {
   std::vector<std::string> names;  // "--json", "-y"; the name of a positional argument
@@ -40,4 +40,4 @@ std::string zsh_completion(const CommandText& program);
 std::string manual_page(const CommandText& command);
 std::string manual_page_name(const CommandText& command);  // "swiftlet-sim-fly"
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -4,7 +4,7 @@
 
 #include "swiftlet/io/command_line/command_text.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OptionText, names, positional, required, value, choices, description,
                                    facts)
@@ -20,4 +20,4 @@ CommandText command_text_of_json(const std::string& text) {
   }
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

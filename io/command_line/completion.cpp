@@ -7,7 +7,7 @@
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/text.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 // "/sim/fly" for `swiftlet sim fly`; "" for the program itself.
@@ -28,7 +28,7 @@ std::string command_patterns(const CommandText& program) {
   for_each(program, [&](const CommandText& command) {
     if (command.words.size() > 1) patterns.push_back(path_of(command));
   });
-  return runtime::joined(patterns, " | ");
+  return io::joined(patterns, " | ");
 }
 
 // "/fly --clock" for each name of an option that takes a value.
@@ -43,8 +43,8 @@ std::vector<std::string> value_patterns(const CommandText& command, const Option
 // The arguments with which the program prints the names that the option may have, one a line; "" if it has none.
 std::string names_command(const OptionText& option) {
   if (option.names.front() == "--vehicle-name") return "list --names --time 0.5";
-  if (option.value == runtime::kinds::kAnyValue) return "config ls --names";
-  for (const runtime::ConfigurationKind& kind : runtime::configuration_kinds()) {
+  if (option.value == io::kinds::kAnyValue) return "config ls --names";
+  for (const io::ConfigurationKind& kind : io::configuration_kinds()) {
     if (option.value == kind.value) return std::string("config ls --names ") + kind.folder;
   }
   return "";
@@ -68,17 +68,17 @@ std::string values_after_options(const CommandText& program, const std::string& 
       if (patterns.empty()) continue;
       const std::string asked = names_command(option);
       const std::string choices =
-          asked.empty() ? runtime::joined(option.choices, " ") : output_of(program_word, asked);
+          asked.empty() ? io::joined(option.choices, " ") : output_of(program_word, asked);
       if (choices.empty()) {
         others.insert(others.end(), patterns.begin(), patterns.end());
       } else {
-        text += std::string("    ") + open + runtime::joined(patterns, " | ") + ") " + list_begin + choices +
+        text += std::string("    ") + open + io::joined(patterns, " | ") + ") " + list_begin + choices +
                 list_end + (asked.empty() ? "" : files) + " return ;;\n";
       }
     }
   });
   if (!others.empty())
-    text += std::string("    ") + open + runtime::joined(others, " | ") + ") " + files + " return ;;\n";
+    text += std::string("    ") + open + io::joined(others, " | ") + ") " + files + " return ;;\n";
   return text;
 }
 
@@ -147,9 +147,8 @@ std::string bash_completion(const CommandText& program) {
       "  local options=\"\" words=\"\"\n"
       "  case \"$chosen\" in\n";
   for_each(program, [&](const CommandText& command) {
-    text += "    \"" + path_of(command) + "\")\n      options=\"" +
-            runtime::joined(option_names(command), " ") + "\"\n      words=\"" +
-            runtime::joined(plain_words(command), " ");
+    text += "    \"" + path_of(command) + "\")\n      options=\"" + io::joined(option_names(command), " ") +
+            "\"\n      words=\"" + io::joined(plain_words(command), " ");
     const std::string names = positional_names(command, program_word);
     text += (names.empty() ? "" : " " + names) + "\"\n      ;;\n";
   });
@@ -215,4 +214,4 @@ std::string zsh_completion(const CommandText& program) {
          name + " \"$@\"\n";
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

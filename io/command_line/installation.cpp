@@ -7,7 +7,7 @@
 
 #include "swiftlet/io/program_directory.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,7 +35,7 @@ std::string shell_quoted(const std::string& word) {
 }
 
 fs::path program_beside(const std::string& name) {
-  fs::path program = runtime::program_directory() / name;
+  fs::path program = io::program_directory() / name;
   if (!is_program(program)) build_in_source_tree(program);
   if (!is_program(program)) {
     throw std::runtime_error(name + " not found, must be in the folder of this program, " +
@@ -44,6 +44,6 @@ fs::path program_beside(const std::string& name) {
   return program;
 }
 
-bool has_program_beside(const std::string& name) { return is_program(runtime::program_directory() / name); }
+bool has_program_beside(const std::string& name) { return is_program(io::program_directory() / name); }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

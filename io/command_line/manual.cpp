@@ -5,7 +5,7 @@
 
 #include "swiftlet/io/command_line/command_text.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 // Escapes dashes, backslashes, quotes and a dot at the start of a line, so that man(7) prints the text
@@ -117,4 +117,4 @@ std::string manual_page(const CommandText& command) {
   return text;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -4,7 +4,7 @@
 
 #include "swiftlet/io/command_line/command.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -41,4 +41,4 @@ std::vector<fs::path> files_of(const fs::path& path) {
   return out;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 struct OutputFile {
   std::string option;  // "--out"
@@ -19,4 +19,4 @@ void refuse_overwriting(const std::vector<OutputFile>& outputs,
 // Returns all entries of a folder, or the path itself if it is not a folder.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& path);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -15,7 +15,7 @@
 #include "swiftlet/io/command_line/run_command_line.hpp"
 #include "swiftlet/io/text.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 constexpr const char* kCommandTextOption = "--command-text";  // prints the commands of a program as JSON
@@ -38,7 +38,7 @@ std::string output_of(const std::filesystem::path& program) {
 // The command of these words, such as "sim batch"; nullptr if the program has none.
 CommandText* find(CommandText& program, const std::string& words) {
   CommandText* found = &program;
-  for (const std::string& word : runtime::split_text(words, ' ')) {
+  for (const std::string& word : io::split_text(words, ' ')) {
     if (found == nullptr) break;
     auto& commands = found->commands;
     const auto next = std::find_if(commands.begin(), commands.end(),
@@ -97,7 +97,7 @@ const char* purpose_of(const std::string& command) {
 
 void add_program_commands(runtime::CommandLine root) {
   for (const ProgramCommand& command : program_commands()) {
-    const std::vector<std::string> words = runtime::split_text(command.words, ' ');
+    const std::vector<std::string> words = io::split_text(command.words, ' ');
     runtime::CommandLine above = root;
     for (std::size_t i = 0; i + 1 < words.size(); ++i) above = above.subcommand(words[i]);
     above.add_subcommand(words.back(), command.purpose);
@@ -150,4 +150,4 @@ int run_commands(int argc, char** argv, const char* version,
   });
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

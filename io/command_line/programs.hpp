@@ -8,7 +8,7 @@
 #include "swiftlet/io/command_line/command.hpp"
 #include "swiftlet/io/command_line/command_text.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 // A command that another program carries out, with the same arguments.
 struct ProgramCommand {
@@ -39,4 +39,4 @@ CommandText text_of_all_programs(runtime::CommandLine root);
 int run_commands(int argc, char** argv, const char* version,
                  const std::function<std::vector<Command>(runtime::CommandLine root)>& add_commands);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

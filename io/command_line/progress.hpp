@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 class Progress {
  public:
@@ -15,4 +15,4 @@ class Progress {
   virtual void say(const std::string& text) = 0;
 };
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -4,7 +4,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 constexpr std::chrono::milliseconds kTerminalPeriod{100};
@@ -49,4 +49,4 @@ void ProgressLine::say(const std::string& text) {
   line_open_ = false;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

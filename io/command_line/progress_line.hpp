@@ -7,7 +7,7 @@
 
 #include "swiftlet/io/command_line/progress.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 class ProgressLine final : public Progress {
  public:
@@ -31,4 +31,4 @@ class ProgressLine final : public Progress {
   std::chrono::steady_clock::time_point next_{};
 };
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -8,7 +8,7 @@
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 int report_error(const std::exception& error, int code) {
@@ -30,7 +30,7 @@ int run_reporting_errors(const std::function<int()>& run) {
     return run();
   } catch (const InputError& error) {
     return report_error(error, kBadInput);
-  } catch (const runtime::ConfigError& error) {
+  } catch (const io::ConfigError& error) {
     return report_error(error, kBadInput);
   } catch (const std::exception& error) {
     return report_error(error, kFailed);
@@ -47,4 +47,4 @@ int run_command_line(runtime::Program& program, int argc, char** argv, const std
   return runtime::exit_code_after_output("swiftlet", exit_code);
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

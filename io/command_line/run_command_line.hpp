@@ -5,15 +5,15 @@
 
 #include "swiftlet/services/runtime/command_line.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
-// Returns the exit code of `run`: kBadInput after an InputError or a runtime::ConfigError, kFailed after any other exception. Prints an
+// Returns the exit code of `run`: kBadInput after an InputError or a io::ConfigError, kFailed after any other exception. Prints an
 // error as one line to standard error.
 int run_reporting_errors(const std::function<int()>& run);
 
 // Returns the exit code of the program: that of `run`, kDone after --help, kBadInput after wrong usage, an
-// InputError or a runtime::ConfigError, kFailed after any other exception or if standard output cannot be
+// InputError or a io::ConfigError, kFailed after any other exception or if standard output cannot be
 // written. Prints an error as one line to standard error.
 int run_command_line(runtime::Program& program, int argc, char** argv, const std::function<int()>& run);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -16,11 +16,11 @@
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/math/angles.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
-using runtime::ByteReader;
-using runtime::ConfigError;
+using io::ByteReader;
+using io::ConfigError;
 
 constexpr std::uint8_t kMagic = 0xBC;
 constexpr std::size_t kHeaderBytes = 5;
@@ -234,4 +234,4 @@ CrazyflieLog read_crazyflie_log(std::string_view bytes, const std::string& file_
   return log;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

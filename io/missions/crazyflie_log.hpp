@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 bool is_crazyflie_log(std::string_view bytes);
 
@@ -22,7 +22,7 @@ struct CrazyflieLog {
   std::vector<std::string> assumptions;
 };
 
-// Throws runtime::ConfigError for a log that is cut or damaged, of another version, or without the estimated position.
+// Throws io::ConfigError for a log that is cut or damaged, of another version, or without the estimated position.
 CrazyflieLog read_crazyflie_log(std::string_view bytes, const std::string& file_name);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -10,7 +10,7 @@
 #include "swiftlet/io/missions/mission_frame.hpp"
 #include "swiftlet/io/missions/placement.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 // Two opposite corners, m in NED.
 struct Fence {
@@ -31,4 +31,4 @@ struct FileOptions {
   std::optional<Fence> fence = {};  // inside that of the control settings, in place of the file's own
 };
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

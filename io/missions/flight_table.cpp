@@ -10,10 +10,10 @@
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
-using runtime::ConfigError;
+using io::ConfigError;
 
 constexpr double kSampleAtRest_m_s = 1e-3;
 
@@ -76,7 +76,7 @@ std::vector<Row> rows_of(std::istream& in, const std::vector<std::string>& heade
   int line = 1;
   for (std::string text; std::getline(in, text);) {
     ++line;
-    const std::vector<std::string> fields = runtime::first_csv_line(text, file_name, line);
+    const std::vector<std::string> fields = io::first_csv_line(text, file_name, line);
     if (fields.empty()) continue;
     if (fields.size() != header.size()) {
       throw ConfigError(file_name, line, "",
@@ -85,7 +85,7 @@ std::vector<Row> rows_of(std::istream& in, const std::vector<std::string>& heade
     if (fields[places[1]].empty()) continue;
     Row row{line, {}, {}};
     for (const std::size_t place : places) {
-      const auto number = runtime::parse_number(fields[place]);
+      const auto number = io::parse_number(fields[place]);
       if (!number) throw ConfigError(file_name, line, header[place], "is not a finite number");
       row.numbers.push_back(*number);
       row.fields.push_back(fields[place]);
@@ -111,12 +111,12 @@ void stop(std::vector<double>& numbers) {
 }  // namespace
 
 std::vector<std::string> table_header(std::string_view text, const std::string& file_name) {
-  std::vector<std::string> header = runtime::first_csv_line(text, file_name);
+  std::vector<std::string> header = io::first_csv_line(text, file_name);
   if (header.size() > 1 && header.back().empty()) header.pop_back();
   return header;
 }
 
-runtime::CsvTable reference_of_flight(const std::string& text, const std::string& file_name) {
+io::CsvTable reference_of_flight(const std::string& text, const std::string& file_name) {
   std::istringstream in(text);
   std::string first;
   std::getline(in, first);
@@ -136,17 +136,17 @@ runtime::CsvTable reference_of_flight(const std::string& text, const std::string
   stop((end - 1)->numbers);
   std::vector<std::string> columns;
   for (std::size_t i = 0; i < at.size(); ++i) columns.emplace_back(kFlightColumns[i].header);
-  runtime::CsvTable table(file_name, columns);
+  io::CsvTable table(file_name, columns);
   std::for_each(begin, end, [&](const Row& row) {
     table.add_row(row.line, row.numbers, {row.fields.begin(), row.fields.end()});
   });
   return table;
 }
 
-std::string extent_of(const runtime::CsvTable& reference) {
+std::string extent_of(const io::CsvTable& reference) {
   return fmt::format(
       "the reference of a recorded flight between take-off and landing, t = {:.2f} to {:.2f} s, in NED",
       reference.number(0, 0), reference.number(reference.row_count() - 1, 0));
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

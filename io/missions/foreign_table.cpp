@@ -17,10 +17,10 @@
 #include "swiftlet/io/flight_csv.hpp"
 #include "swiftlet/io/text.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
-using runtime::ConfigError;
+using io::ConfigError;
 using Fields = std::vector<std::string>;
 
 std::string lower(std::string text) {
@@ -29,7 +29,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-std::string without_blanks(const std::string& text) { return std::string(runtime::trimmed(text, " \t\r")); }
+std::string without_blanks(const std::string& text) { return std::string(io::trimmed(text, " \t\r")); }
 
 // separator ' ': any number of blanks and tabs.
 Fields split(const std::string& line, char separator) {
@@ -148,7 +148,7 @@ Parts parts_of(const std::string& text) {
 }
 
 double number_of(const std::string& field, const std::string& file, int line, const std::string& name) {
-  const auto number = runtime::parse_number(field);
+  const auto number = io::parse_number(field);
   if (!number) throw ConfigError(file, line, name, "is " + field.substr(0, 60) + ", must be a finite number");
   return *number;
 }
@@ -158,7 +158,7 @@ bool rises_evenly(const std::vector<Fields>& rows, std::size_t column) {
   if (rows.size() < 3) return false;
   std::vector<double> values;
   for (const Fields& row : rows) {
-    const auto number = column < row.size() ? runtime::parse_number(row[column]) : std::nullopt;
+    const auto number = column < row.size() ? io::parse_number(row[column]) : std::nullopt;
     if (!number) return false;
     values.push_back(*number);
   }
@@ -198,7 +198,7 @@ Fields assumed_columns(const std::vector<Fields>& rows, const std::string& file,
 
 // Stamps without a unit that are too large for seconds since 1970.
 std::string unit_of_stamps(const std::string& first) {
-  const double stamp = std::abs(runtime::parse_number(first).value_or(0.0));
+  const double stamp = std::abs(io::parse_number(first).value_or(0.0));
   return stamp >= 1e17 ? "ns" : stamp >= 1e14 ? "us" : stamp >= 1e11 ? "ms" : "";
 }
 
@@ -330,7 +330,7 @@ class Writer {
   std::string file_;
 };
 
-bool is_header(const Fields& fields) { return !fields.empty() && !runtime::is_number(fields.front()); }
+bool is_header(const Fields& fields) { return !fields.empty() && !io::is_number(fields.front()); }
 
 bool is_polynomial(const Fields& fields) { return lower(fields.front()) == "duration"; }
 
@@ -352,7 +352,7 @@ bool is_known(const std::string& header) {
 bool is_own(const Parts& parts, const std::string& text) {
   if (parts.rows.empty()) return true;
   const Fields first = split(parts.rows.front().text, ',');
-  if (runtime::is_flight_csv(first)) return true;
+  if (io::is_flight_csv(first)) return true;
   const bool dense = parts.rows.size() == static_cast<std::size_t>(parts.rows.back().number);
   if (!dense || text.find_first_of("#%") != std::string::npos || !is_header(first)) return false;
   return first.front() == "duration" || std::all_of(first.begin(), first.end(), is_known);
@@ -413,8 +413,8 @@ void write(ForeignTable& out, const Table& table, const Fields& header, const st
     out.text += text + '\n';
     ++line;
   };
-  put(header_line, runtime::joined(header, ","));
-  for (std::size_t i = 0; i < rows.size(); ++i) put(table.lines[i].number, runtime::joined(rows[i], ","));
+  put(header_line, io::joined(header, ","));
+  for (std::size_t i = 0; i < rows.size(); ++i) put(table.lines[i].number, io::joined(rows[i], ","));
 }
 
 }  // namespace
@@ -429,7 +429,7 @@ ForeignTable read_foreign_table(const std::string& text, const std::string& file
   };
   if (columns.empty() && is_own(parts, text)) return as_it_is();
   const bool has_rows = std::any_of(parts.rows.begin(), parts.rows.end(), [](const Line& line) {
-    return runtime::is_number(split(line.text, separator_of(line.text)).front());
+    return io::is_number(split(line.text, separator_of(line.text)).front());
   });
   if (!has_rows) return as_it_is();
   const Table table = table_of(parts, file_name, columns, out);
@@ -467,4 +467,4 @@ ForeignTable read_foreign_table(const std::string& text, const std::string& file
   return out;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

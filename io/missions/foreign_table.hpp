@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 struct ForeignTable {
   std::string text;    // with a header of motion_columns.hpp or of polynomials
@@ -24,9 +24,9 @@ struct ForeignTable {
 // Returns the table with the line numbers of the file, and with blank lines where it has none. A table whose header is known
 // as it is keeps its columns. columns: the names of all columns in order, from --columns, in place of the header;
 // empty: none.
-// Throws runtime::ConfigError for an unknown column, a quaternion that is none, decimal commas, and for a table
+// Throws io::ConfigError for an unknown column, a quaternion that is none, decimal commas, and for a table
 // without a header whose columns could be two things, with both and with the option that says which.
 ForeignTable read_foreign_table(const std::string& text, const std::string& file_name,
                                 const std::string& columns);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

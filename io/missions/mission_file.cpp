@@ -13,12 +13,12 @@
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/missions/mission_items.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 using control::MissionItem;
 using control::MissionItemKind;
-using runtime::ConfigNode;
+using io::ConfigNode;
 
 constexpr double kLargestToleranceM = 10.0;
 constexpr int kMaxName = 64;
@@ -57,7 +57,7 @@ control::MissionBounds fence_of(const FileOptions& options, const control::Limit
   if (!options.fence) return {};
   control::MissionBounds bounds = fenced({}, options.fence->min_ned, options.fence->max_ned);
   const control::Outcome outcome = control::check(bounds, settings);
-  if (!outcome.accepted) throw runtime::ConfigError("--fence", 0, "", outcome.reason);
+  if (!outcome.accepted) throw io::ConfigError("--fence", 0, "", outcome.reason);
   return bounds;
 }
 
@@ -137,8 +137,8 @@ MissionFile time_scaled(MissionFile file, const control::Limits& limits, const F
   file = stretched(std::move(file), options.time_scale);
   const control::Outcome outcome = control::check(file.mission, limits);
   if (!outcome.accepted)
-    throw runtime::ConfigError(path, 0, "",
-                               fmt::format("with --time-scale {:g}: {}", options.time_scale, outcome.reason));
+    throw io::ConfigError(path, 0, "",
+                          fmt::format("with --time-scale {:g}: {}", options.time_scale, outcome.reason));
   return file;
 }
 
@@ -213,15 +213,15 @@ TrajectoryFile load_trajectory_file(const std::string& path, const control::Limi
   };
   const auto& items = file.mission.items;
   if (std::count_if(items.begin(), items.end(), is_trajectory) != 1) {
-    throw runtime::ConfigError(path, 0, "",
-                               "must hold exactly one trajectory; `swiftlet mission fly` flies missions");
+    throw io::ConfigError(path, 0, "",
+                          "must hold exactly one trajectory; `swiftlet mission fly` flies missions");
   }
   return {std::move(file.mission.segments), std::move(file.assumptions)};
 }
 
 MissionFile parse_mission_file(const std::string& text, const std::string& file_name,
                                const control::Limits& limits, const FileOptions& options) {
-  return read_mission(runtime::parse_config(text, file_name), limits, options);
+  return read_mission(io::parse_config(text, file_name), limits, options);
 }
 
 MissionFile stretched(MissionFile file, double factor) {
@@ -287,4 +287,4 @@ const char* to_string(MissionItemKind kind) {
   return "unknown";
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -27,7 +27,7 @@
 #include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/io/missions/file_options.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 // A path in NED that begins at rest, and the assumptions made in reading it.
 struct TrajectoryFile {
@@ -48,7 +48,7 @@ struct MissionFile {
   bool lands() const;
 };
 
-// Both throw runtime::ConfigError with file, line, key, value and limit for a violation of the format, the
+// Both throw io::ConfigError with file, line, key, value and limit for a violation of the format, the
 // limits or the fence. load_mission_file() reads any supported format, parse_mission_file() YAML only.
 // Trajectory files are searched in the folder of file_name. Options that do not apply to the format of the file
 // are refused.
@@ -58,7 +58,7 @@ MissionFile parse_mission_file(const std::string& text, const std::string& file_
                                const control::Limits& limits, const FileOptions& options = {});
 
 // Reads only the path: a CSV file of any format, or the trajectory of a mission that holds exactly one. Throws
-// runtime::ConfigError as load_mission_file() does.
+// io::ConfigError as load_mission_file() does.
 TrajectoryFile load_trajectory_file(const std::string& path, const control::Limits& limits,
                                     const FileOptions& options = {});
 
@@ -72,4 +72,4 @@ double planned_duration_s(const control::Mission& mission, const control::Limits
 
 const char* to_string(control::MissionItemKind kind);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

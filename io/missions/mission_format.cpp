@@ -12,7 +12,7 @@
 #include "swiftlet/io/missions/whole_flight.hpp"
 #include "swiftlet/io/text_file.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 constexpr const char* kKnownFormats =
@@ -35,7 +35,7 @@ MissionFormat detect_format(std::string_view text, const std::string& file_name)
   if (extension == ".plan" || json) return MissionFormat::kQGroundControlPlan;
   if (extension == ".yaml" || extension == ".yml") return MissionFormat::kYaml;
 
-  const std::vector<std::string> fields = runtime::first_csv_line(text, file_name);
+  const std::vector<std::string> fields = io::first_csv_line(text, file_name);
   if (!fields.empty()) {
     if (fields.front() == "duration") return MissionFormat::kPolynomialCsv;
     const auto has = [&](const char* name) {
@@ -44,21 +44,21 @@ MissionFormat detect_format(std::string_view text, const std::string& file_name)
     };
     if (has("t")) return MissionFormat::kSampledCsv;
     const bool numbers = std::all_of(fields.begin(), fields.end(),
-                                     [](const std::string& field) { return runtime::is_number(field); });
+                                     [](const std::string& field) { return io::is_number(field); });
     if ((has("x") && has("y")) || (numbers && (fields.size() == 3 || fields.size() == 4)))
       return MissionFormat::kWaypointCsv;
   }
   if (extension != ".csv") return MissionFormat::kYaml;
   if (fields.empty())
-    throw runtime::ConfigError(file_name, 0, "", std::string("is empty, must hold ") + kKnownFormats);
-  throw runtime::ConfigError(file_name, 1, "",
-                             "has " + std::to_string(fields.size()) + " fields, of which the first is " +
-                                 fields.front().substr(0, 40) + "; must begin with " + kKnownFormats);
+    throw io::ConfigError(file_name, 0, "", std::string("is empty, must hold ") + kKnownFormats);
+  throw io::ConfigError(file_name, 1, "",
+                        "has " + std::to_string(fields.size()) + " fields, of which the first is " +
+                            fields.front().substr(0, 40) + "; must begin with " + kKnownFormats);
 }
 
 Source read_source(const std::string& path, const FileOptions& options) {
   Source source;
-  source.text = runtime::read_text_file(path);
+  source.text = io::read_text_file(path);
   const std::string extension = lower_case_extension(path);
   const std::size_t first = source.text.find_first_not_of(" \t\r\n");
   const bool json = first != std::string::npos && source.text[first] == '{';
@@ -84,14 +84,13 @@ Source read_source(const std::string& path, const FileOptions& options) {
   const bool table =
       source.format != MissionFormat::kYaml && source.format != MissionFormat::kQGroundControlPlan;
   if (options.frame && source.format == MissionFormat::kQGroundControlPlan)
-    throw runtime::ConfigError(path, 0, "",
-                               "names the frame of each item itself: --frame is for other files");
+    throw io::ConfigError(path, 0, "", "names the frame of each item itself: --frame is for other files");
   if (!options.columns.empty() && (!table || log))
-    throw runtime::ConfigError(path, 0, "", "is no table: --columns is for CSV files");
+    throw io::ConfigError(path, 0, "", "is no table: --columns is for CSV files");
   if (options.tolerance_m && source.format != MissionFormat::kSampledCsv)
-    throw runtime::ConfigError(path, 0, "", "is no table of samples: --tolerance is for those");
+    throw io::ConfigError(path, 0, "", "is no table of samples: --tolerance is for those");
   if ((options.from_s || options.until_s) && source.format != MissionFormat::kSampledCsv)
-    throw runtime::ConfigError(path, 0, "", "is no table of samples: --from and --until are for those");
+    throw io::ConfigError(path, 0, "", "is no table of samples: --from and --until are for those");
   return source;
 }
 
@@ -110,4 +109,4 @@ MissionFile parse_waypoint_csv(const std::string& text, const std::string& file_
   return whole_flight(file_name, read_waypoint_csv(text, file_name, limits, options, first_line), limits);
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -20,7 +20,7 @@
 #include "swiftlet/io/missions/file_options.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 constexpr std::size_t kMaxPoints = control::kMaxTrajectorySegments + 1;  // of a path through waypoints
 
@@ -35,14 +35,14 @@ struct Source {
   std::vector<std::string> assumptions;
 };
 
-// Reads a file and detects its format. Throws runtime::ConfigError, also for options that the format does not have.
+// Reads a file and detects its format. Throws io::ConfigError, also for options that the format does not have.
 Source read_source(const std::string& path, const FileOptions& options = {});
 
 // Detects the format from the content, or from the extension of file_name if the content is ambiguous. Throws
-// runtime::ConfigError for a CSV file of another format.
+// io::ConfigError for a CSV file of another format.
 MissionFormat detect_format(std::string_view text, const std::string& file_name);
 
-// first_line: of the text in the file, for messages. All functions below throw runtime::ConfigError with file,
+// first_line: of the text in the file, for messages. All functions below throw io::ConfigError with file,
 // line, column, value and limit for a violation of the format, the limits or the fence.
 TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& file_name,
                                    const control::Limits& limits, const FileOptions& options = {},
@@ -67,4 +67,4 @@ MissionFile parse_waypoint_csv(const std::string& text, const std::string& file_
 MissionFile parse_qgroundcontrol_plan(const std::string& text, const std::string& file_name,
                                       const control::Limits& limits, const FileOptions& options = {});
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

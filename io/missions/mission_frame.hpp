@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 // kNed: x north, y east, z down; yaw clockwise from north. kEnu: x east, y north, z up; yaw counter-clockwise
 // from east. kNwu: x north, y west, z up; yaw counter-clockwise from north.
@@ -50,4 +50,4 @@ inline double ned_yaw_rate_from(MissionFrame frame, double yaw_rate) {
   return frame == MissionFrame::kNed ? yaw_rate : -yaw_rate;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

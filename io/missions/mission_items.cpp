@@ -14,12 +14,12 @@
 #include "swiftlet/io/missions/whole_flight.hpp"
 #include "swiftlet/io/text_file.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 using control::MissionItem;
 using control::MissionItemKind;
-using runtime::ConfigNode;
+using io::ConfigNode;
 
 constexpr double kLongestHoldS = 3600.0;
 constexpr double kLargestRadiusM = 10.0;
@@ -97,8 +97,8 @@ class ItemReader {
       node.fail("sets nothing, must give one of speed_m_s, yaw_rad, acceptance_radius_m or hold_s");
     if (speed) defaults_.speed = speed_of(*speed);
     if (yaw) defaults_.yaw = yaw_of(*yaw);
-    if (radius) defaults_.acceptance_radius_m = radius->number(runtime::between(0.0, kLargestRadiusM));
-    if (hold) defaults_.hold_s = hold->number(runtime::between(0.0, kLongestHoldS));
+    if (radius) defaults_.acceptance_radius_m = radius->number(io::between(0.0, kLargestRadiusM));
+    if (hold) defaults_.hold_s = hold->number(io::between(0.0, kLongestHoldS));
   }
 
   MissionItem takeoff(const ConfigNode& node) const {
@@ -107,7 +107,7 @@ class ItemReader {
     item.kind = MissionItemKind::kTakeoff;
     const ConfigNode height = node.at("height_m");
     item.position_ned.z() =
-        placement_.position(Eigen::Vector3d(0.0, 0.0, -height.number(runtime::above(0.0)))).z();
+        placement_.position(Eigen::Vector3d(0.0, 0.0, -height.number(io::above(0.0)))).z();
     Eigen::Vector3d top_ned =
         0.5 * (limits_.fence_min_ned + limits_.fence_max_ned);  // horizontal position unknown
     top_ned.z() = item.position_ned.z();
@@ -266,8 +266,7 @@ class ItemReader {
       leg.shape = control::LegShape::kStraight;
     } else if (corridor) {
       leg.shape = control::LegShape::kCorridor;
-      leg.corridor_m =
-          placement_.scale * corridor->number(runtime::between(kLeastCorridorM, kLargestCorridorM));
+      leg.corridor_m = placement_.scale * corridor->number(io::between(kLeastCorridorM, kLargestCorridorM));
     }
     path.legs.assign(path.points.size() - 1, leg);
   }
@@ -314,15 +313,15 @@ class ItemReader {
   }
   double hold(const ConfigNode& node) const {
     const auto given = node.find("hold_s");
-    return given ? given->number(runtime::between(0.0, kLongestHoldS)) : defaults_.hold_s;
+    return given ? given->number(io::between(0.0, kLongestHoldS)) : defaults_.hold_s;
   }
   double radius(const ConfigNode& node) const {
     const auto given = node.find("acceptance_radius_m");
-    return given ? given->number(runtime::between(0.0, kLargestRadiusM)) : defaults_.acceptance_radius_m;
+    return given ? given->number(io::between(0.0, kLargestRadiusM)) : defaults_.acceptance_radius_m;
   }
 
   double wrapped_yaw_ned(const ConfigNode& node) const {
-    const double yaw_ned = ned_yaw_from(frame_, node.number(runtime::between(-M_PI, M_PI)));
+    const double yaw_ned = ned_yaw_from(frame_, node.number(io::between(-M_PI, M_PI)));
     return std::remainder(placement_.yaw(yaw_ned), 2 * M_PI);
   }
 
@@ -353,4 +352,4 @@ void read_mission_items(const ConfigNode& list, MissionFrame frame, const Placem
   if (file.mission.items.empty()) list.fail("has no item to fly, must have at least one besides set");
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

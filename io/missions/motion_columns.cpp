@@ -7,7 +7,7 @@
 #include "swiftlet/io/text.hpp"
 #include "swiftlet/math/angles.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 constexpr double kStandardGravity = 9.80665;  // m/s^2, one g
@@ -53,7 +53,7 @@ const std::array<Known, 18> kKnownColumns = {{{"t", &kSeconds, Axes::kNone},
 const Known& known(Motion column) { return kKnownColumns[static_cast<std::size_t>(column)]; }
 
 [[noreturn]] void refuse(const std::string& file, const std::string& message) {
-  throw runtime::ConfigError(file, 1, "header", message);
+  throw io::ConfigError(file, 1, "header", message);
 }
 
 bool ends_with(const std::string& text, const std::string& ending) {
@@ -71,8 +71,8 @@ Declaration declaration_of(const std::string& header) {
   Declaration out;
   const std::size_t open = header.find('[');
   if (open != std::string::npos && header.back() == ']')
-    out.unit = runtime::trimmed(header.substr(open + 1, header.size() - open - 2));
-  out.name = runtime::trimmed(header.substr(0, open));
+    out.unit = io::trimmed(header.substr(open + 1, header.size() - open - 2));
+  out.name = io::trimmed(header.substr(0, open));
   for (const char* axes : {"_ned", "_enu", "_nwu", "_frd"}) {
     if (!ends_with(out.name, axes)) continue;
     out.axes = axes;
@@ -249,4 +249,4 @@ std::string list_of(const std::vector<Motion>& columns) {
   return text;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -20,7 +20,7 @@
 
 #include "swiftlet/io/missions/mission_frame.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 enum class Motion : int {
   kT,  // s
@@ -51,7 +51,7 @@ std::string header_of(Motion column);
 
 class MotionColumns {
  public:
-  // header: the columns of the first line. frame: that of --frame, if given. Throws runtime::ConfigError for a
+  // header: the columns of the first line. frame: that of --frame, if given. Throws io::ConfigError for a
   // column with an unknown name or unit or given twice, for a mixture of frames, and for a missing frame.
   MotionColumns(const std::vector<std::string>& header, const std::string& file_name,
                 std::optional<MissionFrame> frame);
@@ -85,7 +85,7 @@ class MotionColumns {
   bool assumed_ = false;
 };
 
-// Throws runtime::ConfigError unless all columns of `needed` are there, of each group of `more` all or none, and
+// Throws io::ConfigError unless all columns of `needed` are there, of each group of `more` all or none, and
 // no others. what: "a stream of positions".
 void require_columns(const MotionColumns& columns, const std::string& file_name, const std::string& what,
                      const std::vector<Motion>& needed, const std::vector<std::vector<Motion>>& more);
@@ -93,4 +93,4 @@ void require_columns(const MotionColumns& columns, const std::string& file_name,
 // "x [m], y [m] and z [m]"
 std::string list_of(const std::vector<Motion>& columns);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

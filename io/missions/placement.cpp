@@ -6,7 +6,7 @@
 
 #include "swiftlet/math/angles.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 // Cosine and sine, exact for multiples of 90 deg: a fence stays where it is.
@@ -64,4 +64,4 @@ std::string Placement::sentence() const {
   return text;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

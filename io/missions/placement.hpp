@@ -9,7 +9,7 @@
 
 #include "swiftlet/control/types/polynomial.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 struct Placement {
   double scale = 1.0;                                    // > 0
@@ -27,4 +27,4 @@ struct Placement {
   std::string sentence() const;
 };
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -2,7 +2,7 @@
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 constexpr double kLongestSegment_s = 3600.0;
@@ -16,7 +16,7 @@ std::vector<std::string> columns() {
   return names;
 }
 
-control::PolynomialSegment read(const runtime::CsvTable& table, std::size_t row) {
+control::PolynomialSegment read(const io::CsvTable& table, std::size_t row) {
   control::PolynomialSegment segment;
   segment.duration_s = table.number(row, 0, {0.0, kLongestSegment_s, true, false}, "s");
   std::size_t column = 1;
@@ -31,8 +31,7 @@ control::PolynomialSegment read(const runtime::CsvTable& table, std::size_t row)
 TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& file_name,
                                    const control::Limits& limits, const FileOptions& options,
                                    int first_line) {
-  const runtime::CsvTable table =
-      runtime::parse_csv(text, file_name, columns(), 1, {true, true, true, first_line});
+  const io::CsvTable table = io::parse_csv(text, file_name, columns(), 1, {true, true, true, first_line});
   if (table.row_count() > control::kMaxTrajectorySegments) {
     table.fail(control::kMaxTrajectorySegments, "duration",
                "is segment " + std::to_string(control::kMaxTrajectorySegments + 1) + ", at most " +
@@ -55,4 +54,4 @@ TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& f
                  [&](std::size_t segment, const std::string& fault) { table.fail(segment, "", fault); });
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -14,12 +14,12 @@
 #include "swiftlet/io/missions/whole_flight.hpp"
 #include "swiftlet/math/geodesy.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 using control::MissionItem;
 using control::MissionItemKind;
-using runtime::ConfigNode;
+using io::ConfigNode;
 
 constexpr double kHomeTolerance_m = 0.1;
 constexpr double kLongestHold_s = 3600.0;
@@ -54,20 +54,20 @@ ConfigNode read_json(std::string text, const std::string& file_name) {
   try {
     [[maybe_unused]] const auto valid = nlohmann::json::parse(text);
   } catch (const nlohmann::json::out_of_range&) {  // such as 1e309; no position given
-    throw runtime::ConfigError(file_name, 0, "", "holds a number beyond 1.8e308, must hold smaller ones");
+    throw io::ConfigError(file_name, 0, "", "holds a number beyond 1.8e308, must hold smaller ones");
   } catch (const nlohmann::json::parse_error& error) {
     const std::size_t at = std::min(error.byte, text.size());
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(at);
     const auto line = 1 + std::count(text.begin(), end, '\n');
     const std::size_t line_begin = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
     const std::size_t column = line_begin == std::string::npos ? at : at - line_begin - 1;
-    throw runtime::ConfigError(
-        file_name, static_cast<int>(line), "column " + std::to_string(std::max<std::size_t>(column, 1)),
-        text.empty() ? "the file is empty, must be a JSON document" : "is invalid JSON");
+    throw io::ConfigError(file_name, static_cast<int>(line),
+                          "column " + std::to_string(std::max<std::size_t>(column, 1)),
+                          text.empty() ? "the file is empty, must be a JSON document" : "is invalid JSON");
   }
   std::replace(text.begin(), text.end(), '\t', ' ');  // tabs separate values in JSON but not in YAML
   if (text.back() != '\n') text += '\n';
-  return runtime::parse_config(text, file_name);
+  return io::parse_config(text, file_name);
 }
 
 // JSON's null.
@@ -97,14 +97,13 @@ class PlanReader {
  private:
   void read_home(const ConfigNode& node) {
     const std::vector<ConfigNode> values = node.items(3, 3);
-    home_ = Home{
-        {values[0].number(runtime::between(-90.0, 90.0)), values[1].number(runtime::between(-180.0, 180.0))},
-        values[2].number(runtime::between(-kHighest_m, kHighest_m))};
+    home_ = Home{{values[0].number(io::between(-90.0, 90.0)), values[1].number(io::between(-180.0, 180.0))},
+                 values[2].number(io::between(-kHighest_m, kHighest_m))};
   }
 
   void read_speed(const ConfigNode& mission) {
     const auto node = mission.find("hoverSpeed");
-    const double wanted = node && !is_null(*node) ? node->number(runtime::above(0.0)) : kDefaultSpeed;
+    const double wanted = node && !is_null(*node) ? node->number(io::above(0.0)) : kDefaultSpeed;
     set_speed(wanted);
   }
   void set_speed(double wanted) {
@@ -131,7 +130,7 @@ class PlanReader {
         need_height(item);
         return land_at(item, {0.0, 0.0});
       case kChangeSpeed:
-        return set_speed(params[1].number(runtime::above(0.0)));
+        return set_speed(params[1].number(io::above(0.0)));
       default:
         command.fail("is " + std::to_string(command.integer()) + ", must be " + kCommands);
     }
@@ -157,11 +156,11 @@ class PlanReader {
     waypoint.position_ned = position(item, params, false);
     require_inside(item, waypoint.position_ned);
     waypoint.speed = speed_;
-    if (!is_null(params[0])) waypoint.hold_s = params[0].number(runtime::between(0.0, kLongestHold_s));
+    if (!is_null(params[0])) waypoint.hold_s = params[0].number(io::between(0.0, kLongestHold_s));
     if (!is_null(params[3])) {
       waypoint.yaw_free = false;
       waypoint.yaw_rad =
-          std::remainder(params[3].number(runtime::between(-360.0, 360.0)) * M_PI / 180.0, 2.0 * M_PI);
+          std::remainder(params[3].number(io::between(-360.0, 360.0)) * M_PI / 180.0, 2.0 * M_PI);
     }
     need_takeoff(waypoint.position_ned.z());
     add(waypoint);
@@ -223,11 +222,10 @@ class PlanReader {
         global_ = true;
         Eigen::Vector2d north_east = at_.head<2>();
         if (placed) {
-          north_east =
-              math::north_east_of(home_->position, {params[4].number(runtime::between(-90.0, 90.0)),
-                                                    params[5].number(runtime::between(-180.0, 180.0))});
+          north_east = math::north_east_of(home_->position, {params[4].number(io::between(-90.0, 90.0)),
+                                                             params[5].number(io::between(-180.0, 180.0))});
         }
-        const double altitude_m = params[6].number(runtime::between(-kHighest_m, kHighest_m));
+        const double altitude_m = params[6].number(io::between(-kHighest_m, kHighest_m));
         return {north_east.x(), north_east.y(),
                 -(kind == kGlobal ? altitude_m - home_->altitude_m : altitude_m)};
       }
@@ -235,7 +233,7 @@ class PlanReader {
       case kLocalEnu: {
         local_ = true;
         const auto metres = [&](std::size_t i) {
-          return params[i].number(runtime::between(-kHighest_m, kHighest_m));
+          return params[i].number(io::between(-kHighest_m, kHighest_m));
         };
         Eigen::Vector3d given(placed ? metres(4) : 0.0, placed ? metres(5) : 0.0, metres(6));
         if (kind == kLocalEnu) given = ned_from(MissionFrame::kEnu, given);
@@ -310,4 +308,4 @@ MissionFile parse_qgroundcontrol_plan(const std::string& text, const std::string
   return PlanReader(root, limits, options.placement).read(file_name);
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

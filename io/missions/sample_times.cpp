@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 constexpr double kLeastStep_s = 1e-4;
@@ -14,15 +14,14 @@ constexpr double kGap = 3.0;      // usual steps
 constexpr double kJitter = 0.05;  // of the usual step
 constexpr int kMaxListed = 3;
 
-void require_rising(const runtime::CsvTable& table, std::size_t column, double factor) {
+void require_rising(const io::CsvTable& table, std::size_t column, double factor) {
   for (std::size_t row = 1; row < table.row_count(); ++row) {
     const double before = table.number(row - 1, column);
     const double now = table.number(row, column);
     if (now == before)
       table.fail(row, table.column(column),
-                 "is " + runtime::exact(now) + " again, stamps must rise from row to row");
-    table.number(row, column,
-                 runtime::between(before + kLeastStep_s / factor, before + kLongestStep_s / factor),
+                 "is " + io::exact(now) + " again, stamps must rise from row to row");
+    table.number(row, column, io::between(before + kLeastStep_s / factor, before + kLongestStep_s / factor),
                  factor == 1.0 ? "s" : "");
   }
 }
@@ -47,7 +46,7 @@ void make_even(std::vector<double>& time_s) {
   for (std::size_t i = 0; i < time_s.size(); ++i) time_s[i] = step_s * static_cast<double>(i);
 }
 
-void remark_on_steps(const runtime::CsvTable& table, const std::vector<double>& steps_s, SampleTimes& times) {
+void remark_on_steps(const io::CsvTable& table, const std::vector<double>& steps_s, SampleTimes& times) {
   int gaps = 0;
   std::size_t shortest = 0;
   std::size_t longest = 0;  // that is no gap
@@ -81,7 +80,7 @@ std::string SampleTimes::rate() const {
   return fmt::format("{:.4g} Hz", rate_hz);
 }
 
-SampleTimes sample_times(const runtime::CsvTable& table, std::size_t column, double factor) {
+SampleTimes sample_times(const io::CsvTable& table, std::size_t column, double factor) {
   require_rising(table, column, factor);
   SampleTimes times;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
@@ -108,4 +107,4 @@ SampleTimes sample_times(const runtime::CsvTable& table, std::size_t column, dou
   return times;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

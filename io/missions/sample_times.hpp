@@ -6,7 +6,7 @@
 
 #include "swiftlet/io/csv.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 struct SampleTimes {
   std::vector<double> time_s;  // of each row, from 0; rising
@@ -18,8 +18,8 @@ struct SampleTimes {
 };
 
 // column: that of the stamps; factor: from its unit to s. Stamps that are even but for the rounding of their
-// last digit become even. Throws runtime::ConfigError with the line of a stamp that repeats, decreases or comes
+// last digit become even. Throws io::ConfigError with the line of a stamp that repeats, decreases or comes
 // more than an hour after the one before.
-SampleTimes sample_times(const runtime::CsvTable& table, std::size_t column, double factor);
+SampleTimes sample_times(const io::CsvTable& table, std::size_t column, double factor);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -14,7 +14,7 @@
 #include "swiftlet/io/missions/sample_times.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 using control::PositionYaw;
@@ -39,11 +39,10 @@ struct Given {
 
 Given given_in(const MotionColumns& columns, const std::string& file_name) {
   if (!columns.has(Motion::kX) && columns.has_any({Motion::kVx, Motion::kAx, Motion::kRoll, Motion::kP})) {
-    throw runtime::ConfigError(file_name, 1, "header",
-                               "has no positions, must have " +
-                                   list_of({Motion::kX, Motion::kY, Motion::kZ}) +
-                                   "; `swiftlet stream` flies velocities, accelerations, attitudes and "
-                                   "body rates");
+    throw io::ConfigError(file_name, 1, "header",
+                          "has no positions, must have " + list_of({Motion::kX, Motion::kY, Motion::kZ}) +
+                              "; `swiftlet stream` flies velocities, accelerations, attitudes and "
+                              "body rates");
   }
   require_columns(columns, file_name, "a trajectory", {Motion::kT, Motion::kX, Motion::kY, Motion::kZ},
                   {{Motion::kVx, Motion::kVy, Motion::kVz},
@@ -66,7 +65,7 @@ struct Samples {
 };
 
 // Half of the last digit of three columns of a row, in NED and SI units.
-Eigen::Vector3d rounding_of(const runtime::CsvTable& table, std::size_t row, const MotionColumns& columns,
+Eigen::Vector3d rounding_of(const io::CsvTable& table, std::size_t row, const MotionColumns& columns,
                             Motion x) {
   Eigen::Vector3d rounding;
   for (int axis = 0; axis < 3; ++axis) {
@@ -76,7 +75,7 @@ Eigen::Vector3d rounding_of(const runtime::CsvTable& table, std::size_t row, con
   return ned_from(columns.frame(), rounding).cwiseAbs();
 }
 
-PositionYaw tolerance_of(const runtime::CsvTable& table, std::size_t row, const MotionColumns& columns,
+PositionYaw tolerance_of(const io::CsvTable& table, std::size_t row, const MotionColumns& columns,
                          const std::optional<double>& tolerance_m) {
   if (tolerance_m) return PositionYaw::Constant(*tolerance_m);
   PositionYaw tolerance = PositionYaw::Constant(kLeastTolerance_rad);
@@ -89,7 +88,7 @@ PositionYaw tolerance_of(const runtime::CsvTable& table, std::size_t row, const 
 }
 
 // Without a unit, a yaw beyond a full turn may be in degrees.
-void require_clear_yaw(const runtime::CsvTable& table, std::size_t row, const MotionColumns& columns) {
+void require_clear_yaw(const io::CsvTable& table, std::size_t row, const MotionColumns& columns) {
   const auto yaw = columns.index(Motion::kYaw);
   if (!yaw || columns.declares_units() || std::abs(table.number(row, *yaw)) <= 2.0 * M_PI) return;
   table.fail(
@@ -101,7 +100,7 @@ void require_clear_yaw(const runtime::CsvTable& table, std::size_t row, const Mo
           table.number(row, *yaw)));
 }
 
-Samples read(const runtime::CsvTable& table, const MotionColumns& columns, const Given& given,
+Samples read(const io::CsvTable& table, const MotionColumns& columns, const Given& given,
              const std::optional<double>& tolerance_m) {
   Samples samples;
   const std::size_t t = *columns.index(Motion::kT);
@@ -134,7 +133,7 @@ void cut(Samples& samples, const FileOptions& options, const std::string& file_n
   const auto begin = std::lower_bound(time_s.begin(), time_s.end(), from_s - kSameTime_s) - time_s.begin();
   const auto end = std::upper_bound(time_s.begin(), time_s.end(), until_s + kSameTime_s) - time_s.begin();
   if (end - begin < 2)
-    throw runtime::ConfigError(
+    throw io::ConfigError(
         file_name, 0, "",
         fmt::format("has {} samples from {:g} to {:g} s, must have at least 2: its last is at {:g} s",
                     std::max<std::ptrdiff_t>(end - begin, 0), from_s, until_s, time_s.back()));
@@ -173,7 +172,7 @@ void scale_time(Samples& samples, double factor) {
 }
 
 // Refuses places that no vehicle reaches in time, by their row: steps in the file.
-void require_reachable(const runtime::CsvTable& table, const Samples& samples, double scale,
+void require_reachable(const io::CsvTable& table, const Samples& samples, double scale,
                        const control::Limits& limits) {
   for (std::size_t i = 1; i < samples.size(); ++i) {
     const double step_s = samples.times.time_s[i] - samples.times.time_s[i - 1];
@@ -188,7 +187,7 @@ void require_reachable(const runtime::CsvTable& table, const Samples& samples, d
   }
 }
 
-std::vector<SplineSample> spline_samples(const runtime::CsvTable& table, const MotionColumns& columns,
+std::vector<SplineSample> spline_samples(const io::CsvTable& table, const MotionColumns& columns,
                                          const Samples& samples, bool with_derivatives, double widened) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   std::vector<SplineSample> out;
@@ -220,7 +219,7 @@ struct Fit {
   double widened = 1.0;
 };
 
-Fit fit(const runtime::CsvTable& table, const MotionColumns& columns, const Samples& samples,
+Fit fit(const io::CsvTable& table, const MotionColumns& columns, const Samples& samples,
         bool with_derivatives, bool may_widen) {
   constexpr double kAtRest_m_s = control::kJoin_m_s;
   const bool rests = samples.velocities.empty() || samples.velocities.back().norm() <= kAtRest_m_s;
@@ -238,7 +237,7 @@ Fit fit(const runtime::CsvTable& table, const MotionColumns& columns, const Samp
     }
     const double needed = out.widened * std::max(2.0, path.tolerance_use);
     if (!may_widen || needed * least_m > kMostTolerance_m) {
-      throw runtime::ConfigError(
+      throw io::ConfigError(
           table.file(), 0, "",
           fmt::format(
               "no path of {} segments passes all samples within {:.2g} m: the samples are noisy, or too "
@@ -295,7 +294,7 @@ std::string columns_used(const MotionColumns& columns, bool with_derivatives) {
   return text;
 }
 
-void say(const runtime::CsvTable& table, const MotionColumns& columns, const Samples& samples, const Fit& fit,
+void say(const io::CsvTable& table, const MotionColumns& columns, const Samples& samples, const Fit& fit,
          bool with_derivatives, std::vector<std::string>& assumptions) {
   const Comparison comparison = compare(samples, fit.segments);
   assumptions.insert(assumptions.end(), samples.times.remarks.begin(), samples.times.remarks.end());
@@ -335,15 +334,15 @@ std::size_t row_of(const Samples& samples, const std::vector<control::Polynomial
 TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file_name,
                                 const control::Limits& limits, const FileOptions& options, int first_line) {
   std::vector<std::string> header = table_header(text, file_name);
-  std::optional<runtime::CsvTable> recorded;
-  if (runtime::is_flight_csv(header)) {
+  std::optional<io::CsvTable> recorded;
+  if (io::is_flight_csv(header)) {
     recorded = reference_of_flight(text, file_name);
     header = recorded->columns();
   }
   const MotionColumns columns(header, file_name, options.frame);
   const Given given = given_in(columns, file_name);
-  const runtime::CsvTable table =
-      recorded ? *recorded : runtime::parse_csv(text, file_name, header, 2, {true, true, true, first_line});
+  const io::CsvTable table =
+      recorded ? *recorded : io::parse_csv(text, file_name, header, 2, {true, true, true, first_line});
   Samples samples = read(table, columns, given, options.tolerance_m);
   cut(samples, options, file_name);
   std::vector<std::string> assumptions;
@@ -376,4 +375,4 @@ TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file
                  });
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -10,12 +10,12 @@
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/math/euler.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 using control::Setpoint;
 using control::SetpointKind;
-using runtime::ConfigError;
+using io::ConfigError;
 
 // The columns of a kind of stream: the required ones, and optional groups, each complete or absent.
 struct Form {
@@ -67,7 +67,7 @@ const Form& form_of(const std::string& file, const MotionColumns& columns) {
 }
 
 double finite_number(const std::string& text, const std::string& file, int line, const std::string& column) {
-  const auto number = runtime::parse_number(text);
+  const auto number = io::parse_number(text);
   if (!number) throw ConfigError(file, line, column, "is '" + text + "', must be a finite number");
   return *number;
 }
@@ -115,7 +115,7 @@ Setpoint SetpointRows::setpoint_of(const std::vector<double>& row) const {
   setpoint.yaw_rad = columns_.yaw_ned(row);
   setpoint.yaw_rate = columns_.yaw_rate_ned(row);
   setpoint.q_ned_from_frd =
-      control::quaternion_from_euler({number(Motion::kRoll), number(Motion::kPitch), number(Motion::kYaw)});
+      math::quaternion_from_euler({number(Motion::kRoll), number(Motion::kPitch), number(Motion::kYaw)});
   setpoint.body_rates_frd = {number(Motion::kP), number(Motion::kQ), number(Motion::kR)};
   setpoint.specific_thrust = number(Motion::kThrust);
   return setpoint;
@@ -123,7 +123,7 @@ Setpoint SetpointRows::setpoint_of(const std::vector<double>& row) const {
 
 std::optional<TimedSetpoint> SetpointRows::read(const std::string& line) {
   ++line_;
-  const std::vector<std::string> fields = runtime::first_csv_line(line, file_, line_);
+  const std::vector<std::string> fields = io::first_csv_line(line, file_, line_);
   if (fields.empty()) return std::nullopt;
   if (fields.size() != names_.size()) {
     throw ConfigError(
@@ -140,8 +140,8 @@ TimedSetpoint SetpointRows::setpoint(const std::vector<double>& row, int line) {
   const double time_s = columns_.value(row, Motion::kT);
   if (last_time_s_ && time_s <= *last_time_s_) {
     throw ConfigError(file_, line, "t",
-                      "is " + runtime::exact(time_s) + " s, must be above that of the previous row, " +
-                          runtime::exact(*last_time_s_) + " s");
+                      "is " + io::exact(time_s) + " s, must be above that of the previous row, " +
+                          io::exact(*last_time_s_) + " s");
   }
   last_time_s_ = time_s;
   const Setpoint setpoint = setpoint_of(row);
@@ -152,7 +152,7 @@ TimedSetpoint SetpointRows::setpoint(const std::vector<double>& row, int line) {
   return TimedSetpoint{time_s, setpoint};
 }
 
-std::vector<TimedSetpoint> setpoints_of(const runtime::CsvTable& table, std::optional<MissionFrame> frame) {
+std::vector<TimedSetpoint> setpoints_of(const io::CsvTable& table, std::optional<MissionFrame> frame) {
   SetpointRows reader(table.columns(), table.file(), frame);
   std::vector<TimedSetpoint> rows;
   for (std::size_t row = 0; row < table.row_count(); ++row)
@@ -189,4 +189,4 @@ SetpointSource resampled(SetpointSource source, double rate_hz) {
   };
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -20,7 +20,7 @@
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/missions/motion_columns.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 struct TimedSetpoint {
   double time_s = 0.0;
@@ -30,12 +30,12 @@ struct TimedSetpoint {
 // Reads rows one at a time, so that the input may be a live stream.
 class SetpointRows {
  public:
-  // header: the columns of the first line. frame: that of --frame, if given. Throws runtime::ConfigError with
+  // header: the columns of the first line. frame: that of --frame, if given. Throws io::ConfigError with
   // the invalid column and the valid ones.
   SetpointRows(const std::vector<std::string>& header, const std::string& file_name,
                std::optional<MissionFrame> frame = std::nullopt);
 
-  // Returns the setpoint of the next line; nothing for a blank line. Throws runtime::ConfigError for an
+  // Returns the setpoint of the next line; nothing for a blank line. Throws io::ConfigError for an
   // invalid row, or if its time is not later than that of the previous row.
   std::optional<TimedSetpoint> read(const std::string& line);
   // The same for the numbers of a row that was read already.
@@ -56,8 +56,8 @@ class SetpointRows {
   std::optional<double> last_time_s_;
 };
 
-// The rows of a table whose columns name their frame. Throws runtime::ConfigError as SetpointRows does.
-std::vector<TimedSetpoint> setpoints_of(const runtime::CsvTable& table, std::optional<MissionFrame> frame);
+// The rows of a table whose columns name their frame. Throws io::ConfigError as SetpointRows does.
+std::vector<TimedSetpoint> setpoints_of(const io::CsvTable& table, std::optional<MissionFrame> frame);
 
 // Returns the next row; nothing at the end.
 using SetpointSource = std::function<std::optional<TimedSetpoint>()>;
@@ -65,4 +65,4 @@ using SetpointSource = std::function<std::optional<TimedSetpoint>()>;
 // Resamples the rows at rate_hz by linear interpolation; headings and attitudes turn the shorter way.
 SetpointSource resampled(SetpointSource source, double rate_hz);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

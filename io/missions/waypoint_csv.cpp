@@ -10,10 +10,10 @@
 #include "swiftlet/io/missions/motion_columns.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
-control::WaypointPath read(const runtime::CsvTable& table, const MotionColumns& columns) {
+control::WaypointPath read(const io::CsvTable& table, const MotionColumns& columns) {
   control::WaypointPath path;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (row == kMaxPoints)
@@ -52,16 +52,15 @@ std::size_t row_of(const control::PlannedPath& planned, std::size_t segment) {
 
 TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& file_name,
                                  const control::Limits& limits, const FileOptions& options, int first_line) {
-  std::vector<std::string> first = runtime::first_csv_line(text, file_name);
+  std::vector<std::string> first = io::first_csv_line(text, file_name);
   if (first.empty()) first.emplace_back();  // parse_csv() refuses the empty file
-  const bool has_header = !first.front().empty() && !runtime::is_number(first.front());
+  const bool has_header = !first.front().empty() && !io::is_number(first.front());
   if (first.size() > 1 && first.back().empty()) first.pop_back();
   const std::vector<std::string> header = columns_of(first, has_header);
   const MotionColumns columns(header, file_name, options.frame);
   require_columns(columns, file_name, "a list of waypoints", {Motion::kX, Motion::kY, Motion::kZ},
                   {{Motion::kYaw}});
-  const runtime::CsvTable table =
-      runtime::parse_csv(text, file_name, header, 2, {has_header, true, true, first_line});
+  const io::CsvTable table = io::parse_csv(text, file_name, header, 2, {has_header, true, true, first_line});
   control::WaypointPath path = read(table, columns);
   path.limits = reference_limits(limits);
 
@@ -86,7 +85,7 @@ TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& fil
   try {
     planned = control::plan(path);
   } catch (const std::invalid_argument& fault) {
-    throw runtime::ConfigError(file_name, 0, "", fault.what());
+    throw io::ConfigError(file_name, 0, "", fault.what());
   }
   for (control::PolynomialSegment& segment : planned.segments)
     segment = control::stretched(segment, options.time_scale);
@@ -96,4 +95,4 @@ TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& fil
                  });
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -8,7 +8,7 @@
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/csv.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 constexpr std::string_view kBegin = "QGC WPL ";
@@ -24,7 +24,7 @@ std::string plan_of_waypoint_list(const std::string& text, const std::string& fi
   std::string line;
   std::getline(in, line);
   if (line.find("110") == std::string::npos)
-    throw runtime::ConfigError(file_name, 1, "", "is " + line.substr(0, 40) + ", must be QGC WPL 110");
+    throw io::ConfigError(file_name, 1, "", "is " + line.substr(0, 40) + ", must be QGC WPL 110");
   std::string plan = "{\"fileType\": \"Plan\", \"mission\": {";
   std::string before = "\"items\": [";
   bool home = true;
@@ -35,16 +35,16 @@ std::string plan_of_waypoint_list(const std::string& text, const std::string& fi
     for (std::string field; fields >> field;) row.push_back(field);
     if (row.empty()) continue;
     if (row.size() != kFields)
-      throw runtime::ConfigError(file_name, number, "",
-                                 fmt::format("has {} fields, must have {}", row.size(), kFields));
+      throw io::ConfigError(file_name, number, "",
+                            fmt::format("has {} fields, must have {}", row.size(), kFields));
     std::string parameters;
     for (std::size_t i = 0; i < kFields; ++i) {
-      const auto value = runtime::parse_number(row[i]);
+      const auto value = io::parse_number(row[i]);
       if (!value)
-        throw runtime::ConfigError(file_name, number, fmt::format("field {}", i + 1),
-                                   "is " + row[i].substr(0, 40) + ", must be a finite number");
+        throw io::ConfigError(file_name, number, fmt::format("field {}", i + 1),
+                              "is " + row[i].substr(0, 40) + ", must be a finite number");
       if (i >= kFirstParameter && i + 1 < kFields)
-        parameters += (parameters.empty() ? "" : ", ") + runtime::exact(*value);
+        parameters += (parameters.empty() ? "" : ", ") + io::exact(*value);
     }
     if (home && row[kFrame] == "0") {  // latitude, longitude, altitude
       std::string::size_type at = 0;
@@ -61,4 +61,4 @@ std::string plan_of_waypoint_list(const std::string& text, const std::string& fi
   return plan + "]}}\n";
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

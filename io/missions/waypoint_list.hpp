@@ -6,11 +6,11 @@
 #include <string>
 #include <string_view>
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 bool is_waypoint_list(std::string_view text);
 
-// The same as a .plan document, line by line. Throws runtime::ConfigError.
+// The same as a .plan document, line by line. Throws io::ConfigError.
 std::string plan_of_waypoint_list(const std::string& text, const std::string& file_name);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -11,7 +11,7 @@
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/io/config_error.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 namespace {
 
 constexpr double kTrackingTolerance_m = 0.1;  // of the tracking error, as in config/missions
@@ -43,7 +43,7 @@ double raise_by(const Heights& heights, MissionFrame frame, const std::string& f
   if (heights.greatest_m < 0.0) {
     const MissionFrame other = frame == MissionFrame::kNed ? MissionFrame::kEnu : MissionFrame::kNed;
     const auto axis = [](MissionFrame of) { return of == MissionFrame::kNed ? "down" : "up"; };
-    throw runtime::ConfigError(
+    throw io::ConfigError(
         file_name, 0, "",
         fmt::format(
             "the whole path is below the ground, at heights of {:.2f} to {:.2f} m: z is read as {} ({}); "
@@ -141,4 +141,4 @@ MissionFile whole_flight(const std::string& file_name, TrajectoryFile path, cons
   return file;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -12,7 +12,7 @@
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 control::PolynomialSegment ned_segment(MissionFrame frame, const control::PolynomialSegment& segment);
 
@@ -33,7 +33,7 @@ struct Heights {
 Heights heights_of(const std::vector<control::PolynomialSegment>& segments);
 
 // Returns by how much a path must be raised, m; 0 if it stays above kLeastHeight_m. Adds the decision to the
-// assumptions. Throws runtime::ConfigError for a path that lies below the ground as a whole: its z probably
+// assumptions. Throws io::ConfigError for a path that lies below the ground as a whole: its z probably
 // points the other way. frame: in which it was read.
 double raise_by(const Heights& heights, MissionFrame frame, const std::string& file_name,
                 std::vector<std::string>& assumptions);
@@ -58,4 +58,4 @@ std::string advice_of(double slower, const FileOptions& options);
 
 control::MotionLimits reference_limits(const control::Limits& limits);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

@@ -11,8 +11,8 @@
 namespace swiftlet::mocap {
 namespace {
 
-using runtime::ByteReader;
-using runtime::ConfigError;
+using io::ByteReader;
+using io::ConfigError;
 
 constexpr std::uint32_t kPcapMicroseconds = 0xa1b2c3d4;
 constexpr std::uint32_t kPcapNanoseconds = 0xa1b23c4d;

@@ -6,7 +6,7 @@
 namespace swiftlet::mocap::natnet {
 namespace {
 
-using runtime::ByteReader;
+using io::ByteReader;
 
 constexpr std::size_t kApplicationNameBytes = 256;  // of the application, in messages of fixed size
 constexpr std::size_t kPositionBytes = 12;          // three floats

@@ -97,7 +97,7 @@ struct EchoResponse {
 
 struct Message {
   MessageId id{};
-  runtime::ByteReader payload;
+  io::ByteReader payload;
 };
 
 // Most bodies of a frame, and definitions of a server.
@@ -108,10 +108,10 @@ std::optional<Message> parse_message(const std::uint8_t* data, std::size_t size)
 
 // These return why a payload was refused, a string literal; nullptr if it was read. After a refusal the content of the output
 // is undefined. They never read beyond the payload, and `frame` keeps its memory.
-const char* parse_server_info(runtime::ByteReader payload, ServerInfo& info);
-const char* parse_models(runtime::ByteReader payload, Version version, std::vector<BodyDefinition>& bodies);
-const char* parse_frame(runtime::ByteReader payload, Version version, Frame& frame);
-const char* parse_echo_response(runtime::ByteReader payload, EchoResponse& response);
+const char* parse_server_info(io::ByteReader payload, ServerInfo& info);
+const char* parse_models(io::ByteReader payload, Version version, std::vector<BodyDefinition>& bodies);
+const char* parse_frame(io::ByteReader payload, Version version, Frame& frame);
+const char* parse_echo_response(io::ByteReader payload, EchoResponse& response);
 
 using Datagram = std::vector<std::uint8_t>;
 

@@ -10,7 +10,7 @@
 namespace swiftlet::mocap {
 namespace {
 
-using runtime::ConfigNode;
+using io::ConfigNode;
 
 constexpr double kFurthestOriginM = 1000.0;
 
@@ -23,9 +23,9 @@ VehicleBody read_vehicle(const std::string& name, const ConfigNode& node) {
     vehicle.id = static_cast<std::int32_t>(id->integer(0, std::numeric_limits<std::int32_t>::max()));
   if (!vehicle.body && !vehicle.id) node.fail("has neither body nor id, must have one");
   if (const auto arm = node.find("lever_arm_frd_m"))
-    vehicle.lever_arm_frd = arm->vector3(runtime::between(-kLongestLeverArmM, kLongestLeverArmM));
+    vehicle.lever_arm_frd = arm->vector3(io::between(-kLongestLeverArmM, kLongestLeverArmM));
   if (const auto turn = node.find("misalignment_rad")) {
-    vehicle.misalignment = turn->vector3(runtime::between(-M_PI, M_PI));
+    vehicle.misalignment = turn->vector3(io::between(-M_PI, M_PI));
     if (vehicle.misalignment.norm() > M_PI)
       turn->fail("is longer than pi, must be a rotation vector of at most pi");
   }
@@ -65,11 +65,10 @@ Room read_room(const ConfigNode& root) {
   read_source(root, room);
   room.axes = root.at("frame").choice<Axes>({{"zup", Axes::kZUp}, {"yup", Axes::kYUp}});
   if (const auto origin = root.find("origin_m"))
-    room.origin = origin->vector3(runtime::between(-kFurthestOriginM, kFurthestOriginM));
-  if (const auto north = root.find("north_rad"))
-    room.north_rad = north->number(runtime::between(-M_PI, M_PI));
+    room.origin = origin->vector3(io::between(-kFurthestOriginM, kFurthestOriginM));
+  if (const auto north = root.find("north_rad")) room.north_rad = north->number(io::between(-M_PI, M_PI));
   if (const auto latency = root.find("latency_s"))
-    room.latency_s = latency->number(runtime::between(0.0, kLongestLatencyS));
+    room.latency_s = latency->number(io::between(0.0, kLongestLatencyS));
   const ConfigNode vehicles = root.at("vehicles");
   for (const auto& [name, node] : vehicles.entries()) {
     const VehicleBody vehicle = read_vehicle(name, node);
@@ -115,10 +114,10 @@ std::string VehicleBody::body_text() const {
 }
 
 Room parse_room(std::string_view text, const std::string& file_name) {
-  return read_room(runtime::parse_config(text, file_name));
+  return read_room(io::parse_config(text, file_name));
 }
 
-Room load_room(const std::string& path) { return parse_room(runtime::read_text_file(path), path); }
+Room load_room(const std::string& path) { return parse_room(io::read_text_file(path), path); }
 
 const VehicleBody* find(const Room& room, const std::string& vehicle) {
   for (const VehicleBody& body : room.vehicles) {
@@ -144,7 +143,7 @@ NedPose RoomFrame::body_pose(const Eigen::Vector3d& position,
 NedPose RoomFrame::vehicle_pose(const Eigen::Vector3d& position, const Eigen::Quaterniond& q_room_from_body,
                                 const VehicleBody& vehicle) const {
   NedPose pose = body_pose(position, q_room_from_body);
-  pose.q_ned_from_frd = (pose.q_ned_from_frd * plant::rotation(vehicle.misalignment)).normalized();
+  pose.q_ned_from_frd = (pose.q_ned_from_frd * math::rotation(vehicle.misalignment)).normalized();
   pose.position_ned += pose.q_ned_from_frd * vehicle.lever_arm_frd;
   return pose;
 }

@@ -5,7 +5,7 @@
 namespace swiftlet::mocap::vicon {
 namespace {
 
-using runtime::ByteReader;
+using io::ByteReader;
 
 constexpr std::size_t kSubjectNameBytes = 24;
 constexpr std::size_t kContentBytes = kSubjectNameBytes + 6 * 8;

@@ -7,7 +7,7 @@
 namespace swiftlet::mocap::vrpn {
 namespace {
 
-using runtime::ByteReader;
+using io::ByteReader;
 
 constexpr std::string_view kMagic = "vrpn: ver. 07.";  // followed by the minor version, which does not matter
 constexpr std::string_view kCookie = "vrpn: ver. 07.35  0";

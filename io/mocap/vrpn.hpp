@@ -40,7 +40,7 @@ struct Message {
   std::int32_t sender = 0;
   std::int32_t type = 0;
   std::uint32_t sequence = 0;  // counts the messages of a UDP stream; some servers leave it 0
-  runtime::ByteReader payload{nullptr, 0, false};
+  io::ByteReader payload{nullptr, 0, false};
   std::size_t bytes = 0;  // of the message with header and padding
 };
 
@@ -58,9 +58,9 @@ enum class Parsed { kMessage, kIncomplete, kFault };
 Parsed parse_message(const std::uint8_t* data, std::size_t size, Message& message);
 
 // The name in a description of a sender or type; nullopt if the payload is none.
-std::optional<std::string> parse_description(runtime::ByteReader payload);
+std::optional<std::string> parse_description(io::ByteReader payload);
 // Returns why the payload was refused, a string literal; nullptr if it was read.
-const char* parse_pose(runtime::ByteReader payload, Pose& pose);
+const char* parse_pose(io::ByteReader payload, Pose& pose);
 
 using Bytes = std::vector<std::uint8_t>;
 

@@ -11,7 +11,7 @@
 
 #include "swiftlet/io/text.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 namespace {
 
 bool is_host(const std::string& text) {
@@ -95,4 +95,4 @@ std::vector<DiscoveryServerAddress> parse_discovery_servers(const std::string& l
   return servers;
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 using Ipv4 = std::uint32_t;  // 127.0.0.1 is 0x7f000001
 constexpr bool is_loopback(Ipv4 address) { return address >> 24U == 127; }
@@ -42,4 +42,4 @@ std::string fault_of_discovery_servers(const std::string& list);
 // Requires that fault_of_discovery_servers() is empty.
 std::vector<DiscoveryServerAddress> parse_discovery_servers(const std::string& list);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

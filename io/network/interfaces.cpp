@@ -11,7 +11,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 namespace {
 
 int mtu_of(const char* interface) {
@@ -74,4 +74,4 @@ std::vector<std::string> addresses_of_interfaces(const std::vector<std::string>&
   return addresses;
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -6,7 +6,7 @@
 
 #include "swiftlet/io/network/host_address.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 constexpr const char* kLoopback = "127.0.0.1";
 
@@ -35,4 +35,4 @@ std::string fault_of_interface(const std::string& name_or_address);
 // The addresses of these interfaces, given by name or address. Throws std::runtime_error if one is not up.
 std::vector<std::string> addresses_of_interfaces(const std::vector<std::string>& names_or_addresses);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -15,7 +15,7 @@
 #include <openssl/x509v3.h>
 #include <stdexcept>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 namespace {
 
 template <auto kFree>
@@ -354,4 +354,4 @@ std::optional<std::string> signed_text(const std::string& document,
   return text_of(out);
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // Both in PEM.
 struct Credential {
@@ -47,4 +47,4 @@ std::string serial_number_of(const std::string& certificate);
 // "CN=control,O=Swiftlet" (RFC 2253)
 std::string subject_name_of(const std::string& certificate);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

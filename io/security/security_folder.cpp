@@ -12,7 +12,7 @@
 #include "swiftlet/io/temporary_folder.hpp"
 #include "swiftlet/io/text_file.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -210,4 +210,4 @@ std::string fault_of_security_folder(const SecurityFolder& folder, const std::st
   }
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

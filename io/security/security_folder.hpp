@@ -15,7 +15,7 @@
 #include <system_error>
 #include <vector>
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 struct SecurityFolder {
   std::filesystem::path path;
@@ -60,4 +60,4 @@ void revoke_identity(const SecurityFolder& folder, const std::filesystem::path& 
 // Why a process of this role cannot join with the folder, a sentence that names the file; empty if it can.
 std::string fault_of_security_folder(const SecurityFolder& folder, const std::string& role);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -4,7 +4,7 @@
 #include "swiftlet/io/settings/violations.hpp"
 #include "swiftlet/io/text_file.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 namespace {
 
@@ -228,4 +228,4 @@ control::ControlSettings load_control_settings(const std::string& path) {
   return parse_control_settings(read_text_file(path), path);
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -7,11 +7,11 @@
 
 #include "swiftlet/control/types/settings.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // Returns settings that pass control::validate(). Throws ConfigError otherwise. file_name appears in messages
 // only.
 control::ControlSettings parse_control_settings(std::string_view text, const std::string& file_name);
 control::ControlSettings load_control_settings(const std::string& path);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

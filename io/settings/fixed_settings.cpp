@@ -7,7 +7,7 @@
 #include "swiftlet/io/flat_yaml.hpp"
 #include "swiftlet/io/text_file.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 namespace {
 
 constexpr std::array<std::string_view, 6> kTunable = {"name",          "attitude.roll.", "attitude.pitch.",
@@ -60,4 +60,4 @@ bool same_setting(std::string_view a, std::string_view b) {
   return std::equal(scalars_a.begin(), scalars_a.end(), scalars_b.begin(), scalars_b.end(), same_scalar);
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -7,7 +7,7 @@
 
 #include "swiftlet/control/types/settings_request.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // The settings of a control settings file whose keys TunableSettings does not cover; without the name. Throws
 // ConfigError for a text that is not YAML.
@@ -17,4 +17,4 @@ std::vector<control::FixedSetting> load_fixed_settings(const std::string& path);
 // True for texts of equal values: "2", "2.0"; "[1, 2]", "[1.0,2]".
 bool same_setting(std::string_view a, std::string_view b);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

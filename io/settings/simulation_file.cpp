@@ -9,7 +9,7 @@
 #include "swiftlet/io/settings/violations.hpp"
 #include "swiftlet/io/text_file.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 namespace {
 
@@ -226,4 +226,4 @@ plant::SimulationSettings load_simulation_settings(const std::string& path) {
   return parse_simulation_settings(read_text_file(path), path);
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

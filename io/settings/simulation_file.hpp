@@ -8,11 +8,11 @@
 
 #include "swiftlet/plant/simulation/settings.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // Returns settings that pass plant::validate(). Throws ConfigError otherwise. file_name appears in messages
 // only.
 plant::SimulationSettings parse_simulation_settings(std::string_view text, const std::string& file_name);
 plant::SimulationSettings load_simulation_settings(const std::string& path);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -10,7 +10,7 @@
 #include "swiftlet/plant/model/plausibility.hpp"
 #include "swiftlet/plant/model/rotor.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 namespace {
 
@@ -134,7 +134,7 @@ plant::VehicleUncertainty read_uncertainty(const ConfigNode& root) {
   for (const ConfigNode& item : correlations->items()) {
     const std::vector<ConfigNode> between = item.at("between").items(2, 2);
     out.correlations.push_back({read_parameter_key(between[0]), read_parameter_key(between[1]),
-                                item.at("value").number(runtime::between(-1.0, 1.0))});
+                                item.at("value").number(io::between(-1.0, 1.0))});
   }
   return out;
 }
@@ -171,4 +171,4 @@ plant::VehicleUncertainty load_vehicle_uncertainty(const std::string& path) {
   return parse_vehicle_uncertainty(read_text_file(path), path);
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

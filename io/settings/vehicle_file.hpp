@@ -8,7 +8,7 @@
 #include "swiftlet/plant/model/vehicle.hpp"
 #include "swiftlet/plant/model/vehicle_uncertainty.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // Returns a vehicle that passes plant::validate(). Throws ConfigError for a missing or unknown key, a wrong
 // unit, a missing source or a violated rule. file_name appears in messages only.
@@ -26,4 +26,4 @@ plant::Vehicle load_vehicle(const std::string& path);
 plant::VehicleUncertainty parse_vehicle_uncertainty(std::string_view text, const std::string& file_name);
 plant::VehicleUncertainty load_vehicle_uncertainty(const std::string& path);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

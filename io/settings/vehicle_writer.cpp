@@ -7,7 +7,7 @@
 #include "swiftlet/io/flat_yaml.hpp"
 #include "swiftlet/io/text_file.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 namespace {
 
@@ -160,4 +160,4 @@ std::string vehicle_text(const plant::Vehicle& vehicle, const VehicleSources& so
   return out.str();
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

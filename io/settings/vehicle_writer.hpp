@@ -8,7 +8,7 @@
 #include "swiftlet/plant/model/vehicle.hpp"
 #include "swiftlet/plant/model/vehicle_uncertainty.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // The source of each quantity by its key, such as "motor.k2" or "rotors[0].position_frd". The readers throw
 // ConfigError for invalid YAML.
@@ -23,4 +23,4 @@ VehicleSources load_vehicle_sources(const std::string& path);
 std::string vehicle_text(const plant::Vehicle& vehicle, const VehicleSources& sources,
                          const plant::VehicleUncertainty& uncertainty, const std::string& comment);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

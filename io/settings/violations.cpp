@@ -1,6 +1,6 @@
 #include "swiftlet/io/settings/violations.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 void reject_violations(const ConfigNode& root, const std::vector<plant::Violation>& violations) {
   if (violations.empty()) return;
@@ -8,4 +8,4 @@ void reject_violations(const ConfigNode& root, const std::vector<plant::Violatio
   throw ConfigError(root.file(), root.nearest(first.key).line(), first.key, first.message);
 }
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -6,10 +6,10 @@
 #include "swiftlet/io/config.hpp"
 #include "swiftlet/plant/model/violation.hpp"
 
-namespace swiftlet::runtime {
+namespace swiftlet::io {
 
 // Throws ConfigError for the first violation, with the line of its key or, if the key is missing, of the
 // nearest enclosing map. Does nothing without a violation.
 void reject_violations(const ConfigNode& root, const std::vector<plant::Violation>& violations);
 
-}  // namespace swiftlet::runtime
+}  // namespace swiftlet::io

@@ -14,7 +14,7 @@
 namespace swiftlet::ulog {
 namespace {
 
-using runtime::ByteReader;
+using io::ByteReader;
 
 constexpr std::string_view kMagic("ULog\x01\x12\x35", 7);
 constexpr std::size_t kHeader = 16;
@@ -266,6 +266,6 @@ double Log::parameter(const std::string& name) const {
   return found->second;
 }
 
-void Log::fail(const std::string& what) const { throw runtime::ConfigError(file_name_, 0, "", what); }
+void Log::fail(const std::string& what) const { throw io::ConfigError(file_name_, 0, "", what); }
 
 }  // namespace swiftlet::ulog

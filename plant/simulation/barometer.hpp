@@ -25,7 +25,7 @@ class Barometer {
  private:
   double noise_pa_;
   double walk_pa_;  // standard deviation of one step of the walk
-  RandomStream random_;
+  math::RandomStream random_;
   double bias_pa_;
 };
 

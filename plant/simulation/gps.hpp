@@ -33,8 +33,8 @@ class Gps {
   GpsSettings settings_;
   SiteSettings site_;
   double decay_;  // of the slow error over a period
-  RandomStream noise_;
-  RandomStream drift_;
+  math::RandomStream noise_;
+  math::RandomStream drift_;
   Eigen::Vector3d error_ned_;  // slow
 };
 

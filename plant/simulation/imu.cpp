@@ -10,14 +10,14 @@ Imu::Imu(const ImuSettings& settings, std::uint64_t seed)
     : accelerometer_{settings.accelerometer_noise_density * std::sqrt(settings.rate_hz),
                      settings.accelerometer_bias_walk * std::sqrt(kWalkSamples / settings.rate_hz),
                      settings.accelerometer_range,
-                     RandomStream(seed, streams::kAccelerometerNoise),
-                     RandomStream(seed, streams::kAccelerometerBias),
+                     math::RandomStream(seed, streams::kAccelerometerNoise),
+                     math::RandomStream(seed, streams::kAccelerometerBias),
                      Eigen::Vector3d::Zero()},
       gyro_{settings.gyro_noise_density * std::sqrt(settings.rate_hz),
             settings.gyro_bias_walk * std::sqrt(kWalkSamples / settings.rate_hz),
             settings.gyro_range,
-            RandomStream(seed, streams::kGyroNoise),
-            RandomStream(seed, streams::kGyroBias),
+            math::RandomStream(seed, streams::kGyroNoise),
+            math::RandomStream(seed, streams::kGyroBias),
             Eigen::Vector3d::Zero()} {
   accelerometer_.bias = settings.accelerometer_bias_sigma * accelerometer_.walk.normal3();
   gyro_.bias = settings.gyro_bias_sigma * gyro_.walk.normal3();

@@ -30,8 +30,8 @@ class Imu {
     double noise_sigma;
     double walk_sigma;  // standard deviation of one step of the walk
     double range;
-    RandomStream noise;
-    RandomStream walk;
+    math::RandomStream noise;
+    math::RandomStream walk;
     Eigen::Vector3d bias;
 
     Eigen::Vector3d measure(const Eigen::Vector3d& truth, bool walks);

@@ -25,7 +25,7 @@ class Magnetometer {
  private:
   Eigen::Vector3d field_ned_;
   double noise_gauss_;
-  RandomStream random_;
+  math::RandomStream random_;
   Eigen::Vector3d bias_;
 };
 

@@ -23,7 +23,7 @@ Mocap::Mocap(const MocapSettings& settings, std::uint64_t seed)
       schedule_(settings, seed),
       dropout_length_ns_(math::nanoseconds(settings.dropout_length_s)),
       misalignment_(small_rotation(settings.misalignment_rad *
-                                   RandomStream(seed, streams::kMocapMisalignment).on_unit_sphere())),
+                                   math::RandomStream(seed, streams::kMocapMisalignment).on_unit_sphere())),
       position_noise_(seed, streams::kMocapPosition),
       orientation_noise_(seed, streams::kMocapOrientation),
       dropouts_(seed, streams::kMocapDropouts),
@@ -62,7 +62,7 @@ PoseSample Mocap::expose(std::int64_t stamp_ns, const Eigen::Vector3d& position_
   return pose;
 }
 
-Eigen::Vector3d Mocap::error(RandomStream& noise) const {
+Eigen::Vector3d Mocap::error(math::RandomStream& noise) const {
   return settings_.model == MocapModel::kBounded ? noise.in_unit_ball() : noise.normal3();
 }
 

@@ -37,7 +37,8 @@ class Mocap {
  private:
   PoseSample expose(std::int64_t stamp_ns, const Eigen::Vector3d& position_ned,
                     const Eigen::Quaterniond& q_ned_from_frd);
-  Eigen::Vector3d error(RandomStream& noise) const;  // of unit bound (kBounded) or unit standard deviation
+  Eigen::Vector3d error(
+      math::RandomStream& noise) const;  // of unit bound (kBounded) or unit standard deviation
   bool in_dropout(std::int64_t stamp_ns);
   std::size_t wrapped(std::size_t i) const { return i < in_flight_.size() ? i : i - in_flight_.size(); }
 
@@ -45,9 +46,9 @@ class Mocap {
   MocapSchedule schedule_;
   std::int64_t dropout_length_ns_;
   Eigen::Quaterniond misalignment_;
-  RandomStream position_noise_;
-  RandomStream orientation_noise_;
-  RandomStream dropouts_;
+  math::RandomStream position_noise_;
+  math::RandomStream orientation_noise_;
+  math::RandomStream dropouts_;
 
   std::optional<std::int64_t> dropout_end_ns_;
   std::uint64_t sequence_ = 0;

@@ -48,7 +48,7 @@ MocapSchedule::Events MocapSchedule::advance(std::int64_t stamp_ns) {
 
 // The schedule counts from stamp 0, whatever the first stamp is.
 void MocapSchedule::start(std::int64_t stamp_ns) {
-  intervals_ = RandomStream(seed_, streams::kMocapIntervals);
+  intervals_ = math::RandomStream(seed_, streams::kMocapIntervals);
   count_ = 0;
   next_exposure_ns_ = 0;
   while (next_exposure_ns_ < stamp_ns) next_exposure_ns_ += interval_ns();

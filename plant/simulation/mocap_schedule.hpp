@@ -38,7 +38,7 @@ class MocapSchedule {
   MocapSettings settings_;
   std::uint64_t seed_;
   std::int64_t latency_ns_;
-  RandomStream intervals_;
+  math::RandomStream intervals_;
   std::optional<std::int64_t> last_stamp_ns_;
   std::int64_t next_exposure_ns_ = 0;
   std::uint64_t delivered_ = 0;

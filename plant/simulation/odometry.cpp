@@ -10,7 +10,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-Vector4d normal4(RandomStream& random) {
+Vector4d normal4(math::RandomStream& random) {
   return {random.normal(), random.normal(), random.normal(), random.normal()};
 }
 

@@ -32,7 +32,7 @@ class Odometry {
 
   OdometrySettings settings_;
   FaultSchedule faults_;
-  RandomStream random_;
+  math::RandomStream random_;
   Eigen::Vector4d sigma_;
   Eigen::Vector4d error_;
   Eigen::Vector4d error_rate_;

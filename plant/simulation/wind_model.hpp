@@ -40,7 +40,7 @@ class WindModel {
   Eigen::Vector3d lagged_;  // of Dryden's model: gust_ behind a second lag of the same time
   Eigen::Vector2d along_;   // unit vector of the horizontal wind, NED
   Eigen::Vector3d wind_ned_;
-  RandomStream random_;
+  math::RandomStream random_;
 };
 
 }  // namespace swiftlet::plant

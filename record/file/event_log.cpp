@@ -11,7 +11,7 @@ namespace swiftlet::record {
 namespace {
 
 // The definition of foxglove's schemas for ROS 2, without its comments.
-constexpr comms::MessageSchema kLog{
+constexpr messages::MessageSchema kLog{
     "foxglove_msgs/msg/Log",
     "uint8 UNKNOWN=0\nuint8 DEBUG=1\nuint8 INFO=2\nuint8 WARNING=3\nuint8 ERROR=4\nuint8 FATAL=5\n"
     "builtin_interfaces/Time timestamp\nuint8 level\nstring message\nstring name\nstring file\nuint32 line\n"
@@ -39,7 +39,7 @@ const char* name_of(control::MissionState state) {
 
 template <class T>
 bool read(const mcap::Message& message, T& out) {
-  return comms::from_payload(message.payload.data, message.payload.size, out);
+  return dds::from_payload(message.payload.data, message.payload.size, out);
 }
 
 std::string joined(const std::string& what, const std::string& why) {
@@ -63,17 +63,17 @@ EventLog::EventLog(std::string vehicle) : vehicle_(std::move(vehicle)) {}
 StandardTopic EventLog::topic() const {
   return {"/" + vehicle_ + "/log",
           &kLog,
-          {comms::topics::kControlStatus.name, comms::topics::kMissionStatus.name,
-           comms::topics::kCommandAck.name, comms::topics::kVehicleInfo.name},
+          {messages::topics::kControlStatus.name, messages::topics::kMissionStatus.name,
+           messages::topics::kCommandAck.name, messages::topics::kVehicleInfo.name},
           true};
 }
 
 std::vector<StandardMessage> EventLog::of(const std::string& topic, const mcap::Message& message) {
   std::vector<StandardMessage> lines;
-  if (topic == comms::topics::kControlStatus.name) of_control_status(message, lines);
-  if (topic == comms::topics::kMissionStatus.name) of_mission_status(message, lines);
-  if (topic == comms::topics::kCommandAck.name) of_command_ack(message, lines);
-  if (topic == comms::topics::kVehicleInfo.name) of_vehicle_info(message, lines);
+  if (topic == messages::topics::kControlStatus.name) of_control_status(message, lines);
+  if (topic == messages::topics::kMissionStatus.name) of_mission_status(message, lines);
+  if (topic == messages::topics::kCommandAck.name) of_command_ack(message, lines);
+  if (topic == messages::topics::kVehicleInfo.name) of_vehicle_info(message, lines);
   return lines;
 }
 
@@ -83,7 +83,7 @@ StandardMessage EventLog::line(std::int64_t time_ns, LogLevel level, const char*
 }
 
 void EventLog::of_control_status(const mcap::Message& message, std::vector<StandardMessage>& lines) {
-  comms::msg::ControlStatus status;
+  messages::msg::ControlStatus status;
   if (!read(message, status)) return;
   const auto say = [&](LogLevel level, const std::string& text) {
     lines.push_back(line(message.log_time_ns, level, "control", text));
@@ -102,7 +102,7 @@ void EventLog::of_control_status(const mcap::Message& message, std::vector<Stand
 }
 
 void EventLog::of_mission_status(const mcap::Message& message, std::vector<StandardMessage>& lines) {
-  comms::msg::MissionStatus status;
+  messages::msg::MissionStatus status;
   if (!read(message, status)) return;
   const auto state = static_cast<control::MissionState>(status.state());
   const std::string mission = joined(name_of(state), status.reason().c_str());
@@ -115,7 +115,7 @@ void EventLog::of_mission_status(const mcap::Message& message, std::vector<Stand
 }
 
 void EventLog::of_command_ack(const mcap::Message& message, std::vector<StandardMessage>& lines) const {
-  comms::msg::CommandAck ack;
+  messages::msg::CommandAck ack;
   if (!read(message, ack)) return;
   lines.push_back(
       line(message.log_time_ns, ack.accepted() ? LogLevel::kInfo : LogLevel::kWarning, "control",
@@ -123,7 +123,7 @@ void EventLog::of_command_ack(const mcap::Message& message, std::vector<Standard
 }
 
 void EventLog::of_vehicle_info(const mcap::Message& message, std::vector<StandardMessage>& lines) {
-  comms::msg::VehicleInfo info;
+  messages::msg::VehicleInfo info;
   if (!read(message, info)) return;
   const std::string fault = info.fault().c_str();
   if (fault != fault_ && !fault.empty())

@@ -18,8 +18,8 @@
 namespace swiftlet::record {
 namespace {
 
+using io::ConfigError;
 using mcap::Series;
-using runtime::ConfigError;
 
 constexpr const char* kTypes = "swiftlet_msgs/msg/";
 constexpr double kUnitTolerance = 0.01;
@@ -365,7 +365,7 @@ std::vector<std::string> recorded_vehicles(const mcap::Reader& file) {
       vehicles.insert(topic->vehicle);
   }
   std::vector<std::string> names(vehicles.begin(), vehicles.end());
-  std::sort(names.begin(), names.end(), runtime::comes_before);
+  std::sort(names.begin(), names.end(), io::comes_before);
   return names;
 }
 

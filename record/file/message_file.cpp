@@ -28,7 +28,7 @@ MessageFile::MessageFile(std::filesystem::path file, mcap::WriterSettings settin
     : file_(std::move(file), std::move(settings)), standard_messages_(standard_messages) {}
 
 std::uint16_t MessageFile::add_channel(const std::string& vehicle, const char* topic,
-                                       const comms::MessageSchema& schema) {
+                                       const messages::MessageSchema& schema) {
   const std::uint16_t id = file_.add_channel("/" + vehicle + "/" + topic, schema_in(schema), "cdr", {});
   sources_[id] = {&vehicles_.try_emplace(vehicle, vehicle).first->second, topic};
   return id;
@@ -51,7 +51,7 @@ void MessageFile::write(const StandardMessage& message, std::int64_t time_ns) {
       standard_channel(message), 0, time_ns, time_ns, {message.payload.data(), message.payload.size()}});
 }
 
-std::uint16_t MessageFile::schema_in(const comms::MessageSchema& schema) {
+std::uint16_t MessageFile::schema_in(const messages::MessageSchema& schema) {
   const auto known = schemas_.find(&schema);
   if (known != schemas_.end()) return known->second;
   return schemas_[&schema] = file_.add_schema(schema.name, "ros2msg", schema.definition);

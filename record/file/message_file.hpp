@@ -34,7 +34,7 @@ class MessageFile {
 
   // A channel for a topic of a vehicle, "/kl1/imu". topic: "imu", must outlive the file
   std::uint16_t add_channel(const std::string& vehicle, const char* topic,
-                            const comms::MessageSchema& schema);
+                            const messages::MessageSchema& schema);
   void write(const mcap::Message& message);
   // Without a message of a vehicle. time_ns: of the log and of the publication
   void write(const StandardMessage& message, std::int64_t time_ns);
@@ -50,12 +50,12 @@ class MessageFile {
     const char* topic = nullptr;
   };
 
-  std::uint16_t schema_in(const comms::MessageSchema& schema);
+  std::uint16_t schema_in(const messages::MessageSchema& schema);
   std::uint16_t standard_channel(const StandardMessage& message);
 
   mcap::Writer file_;
   const bool standard_messages_;
-  std::map<const comms::MessageSchema*, std::uint16_t> schemas_;
+  std::map<const messages::MessageSchema*, std::uint16_t> schemas_;
   std::map<std::string, std::uint16_t> standard_channels_;  // by topic
   std::map<std::string, StandardMessages> vehicles_;
   std::map<std::uint16_t, Source> sources_;  // by channel

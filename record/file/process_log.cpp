@@ -71,7 +71,7 @@ LogLevel level_of(const std::string& name) {
 std::vector<ProcessLogLine> process_log_lines(const fs::path& folder, std::int64_t near_ns) {
   std::vector<ProcessLogLine> lines;
   for (const fs::path& log : logs_in(folder)) {
-    std::istringstream texts(runtime::read_text_file(log.string()));
+    std::istringstream texts(io::read_text_file(log.string()));
     for (std::string text; std::getline(texts, text);) {
       if (auto line = line_in(text, near_ns)) lines.push_back(std::move(*line));
     }

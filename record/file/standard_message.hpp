@@ -11,13 +11,13 @@ namespace swiftlet::record {
 
 struct StandardMessage {
   std::string topic;
-  const comms::MessageSchema* schema = nullptr;
+  const messages::MessageSchema* schema = nullptr;
   mcap::Bytes payload;
 };
 
 struct StandardTopic {
   std::string topic;
-  const comms::MessageSchema* schema = nullptr;
+  const messages::MessageSchema* schema = nullptr;
   std::vector<std::string> sources;  // the vehicle's topics that it follows from: "estimate"
   bool is_log = false;               // each message counts; of others the newest says it all
 };

@@ -44,15 +44,15 @@ constexpr std::int64_t kPathLength_ns = 30 * math::kSecond_ns;
   "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n" SWIFTLET_SEPARATOR \
   "MSG: geometry_msgs/Point\nfloat64 x\nfloat64 y\nfloat64 z\n" SWIFTLET_QUATERNION
 
-constexpr comms::MessageSchema kPoseStamped{
+constexpr messages::MessageSchema kPoseStamped{
     "geometry_msgs/msg/PoseStamped",
     "std_msgs/Header header\ngeometry_msgs/Pose pose\n" SWIFTLET_HEADER SWIFTLET_POSE, -1};
-constexpr comms::MessageSchema kPath{
+constexpr messages::MessageSchema kPath{
     "nav_msgs/msg/Path",
     "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n" SWIFTLET_HEADER SWIFTLET_SEPARATOR
     "MSG: geometry_msgs/PoseStamped\nstd_msgs/Header header\ngeometry_msgs/Pose pose\n" SWIFTLET_POSE,
     -1};
-constexpr comms::MessageSchema kOdometry{
+constexpr messages::MessageSchema kOdometry{
     "nav_msgs/msg/Odometry",
     "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"
     "geometry_msgs/TwistWithCovariance twist\n" SWIFTLET_HEADER SWIFTLET_SEPARATOR
@@ -63,7 +63,7 @@ constexpr comms::MessageSchema kOdometry{
     "MSG: geometry_msgs/Twist\ngeometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 "
     "angular\n" SWIFTLET_VECTOR3,
     -1};
-constexpr comms::MessageSchema kTransforms{
+constexpr messages::MessageSchema kTransforms{
     "tf2_msgs/msg/TFMessage",
     "geometry_msgs/TransformStamped[] transforms\n" SWIFTLET_SEPARATOR
     "MSG: geometry_msgs/TransformStamped\n"
@@ -73,14 +73,14 @@ constexpr comms::MessageSchema kTransforms{
     "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n" SWIFTLET_VECTOR3
         SWIFTLET_QUATERNION,
     -1};
-constexpr comms::MessageSchema kImu{
+constexpr messages::MessageSchema kImu{
     "sensor_msgs/msg/Imu",
     "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\nfloat64[9] orientation_covariance\n"
     "geometry_msgs/Vector3 angular_velocity\nfloat64[9] angular_velocity_covariance\n"
     "geometry_msgs/Vector3 linear_acceleration\n"
     "float64[9] linear_acceleration_covariance\n" SWIFTLET_HEADER SWIFTLET_VECTOR3 SWIFTLET_QUATERNION,
     -1};
-constexpr comms::MessageSchema kBatteryState{
+constexpr messages::MessageSchema kBatteryState{
     "sensor_msgs/msg/BatteryState",
     "std_msgs/Header header\nfloat32 voltage\nfloat32 temperature\nfloat32 current\nfloat32 charge\n"
     "float32 capacity\nfloat32 design_capacity\nfloat32 percentage\nuint8 power_supply_status\n"
@@ -129,14 +129,14 @@ Quaterniond q_enu_from_flu(const Quaterniond& q_ned_from_frd) {
 StandardMessages::StandardMessages(std::string vehicle) : vehicle_(vehicle), events_(std::move(vehicle)) {}
 
 std::vector<StandardTopic> StandardMessages::ros_topics() const {
-  const std::string estimate = comms::topics::kEstimate.name;
+  const std::string estimate = messages::topics::kEstimate.name;
   return {{topic_of(kPoseTopic), &kPoseStamped, {estimate}},
           {topic_of(kOdometryTopic), &kOdometry, {estimate}},
           {topic_of(kPathTopic), &kPath, {estimate}},
           {kTransformTopic, &kTransforms, {estimate}},
-          {topic_of(kReferenceTopic), &kPoseStamped, {comms::topics::kReference.name}},
-          {topic_of(kImuTopic), &kImu, {comms::topics::kImu.name}},
-          {topic_of(kBatteryTopic), &kBatteryState, {comms::topics::kBattery.name}}};
+          {topic_of(kReferenceTopic), &kPoseStamped, {messages::topics::kReference.name}},
+          {topic_of(kImuTopic), &kImu, {messages::topics::kImu.name}},
+          {topic_of(kBatteryTopic), &kBatteryState, {messages::topics::kBattery.name}}};
 }
 
 std::vector<StandardTopic> StandardMessages::topics() const {
@@ -146,14 +146,14 @@ std::vector<StandardTopic> StandardMessages::topics() const {
 }
 
 std::vector<StandardMessage> StandardMessages::of(const std::string& topic, const mcap::Message& message) {
-  if (topic == comms::topics::kEstimate.name) return of_estimate(message);
-  if (topic == comms::topics::kReference.name) return of_reference(message);
-  if (topic == comms::topics::kImu.name) return of_imu(message);
-  if (topic == comms::topics::kBattery.name) return of_battery(message);
+  if (topic == messages::topics::kEstimate.name) return of_estimate(message);
+  if (topic == messages::topics::kReference.name) return of_reference(message);
+  if (topic == messages::topics::kImu.name) return of_imu(message);
+  if (topic == messages::topics::kBattery.name) return of_battery(message);
   return events_.of(topic, message);
 }
 
-StandardMessage StandardMessages::named(const char* name, const comms::MessageSchema& schema,
+StandardMessage StandardMessages::named(const char* name, const messages::MessageSchema& schema,
                                         mcap::Bytes payload) const {
   return {topic_of(name), &schema, std::move(payload)};
 }
@@ -178,7 +178,7 @@ StandardMessage StandardMessages::transform_message(const Pose& pose) const {
 
 // The pose in the map, the velocity in the vehicle's frame, as ROS has it.
 StandardMessage StandardMessages::odometry_message(const Pose& pose,
-                                                   const comms::msg::Estimate& estimate) const {
+                                                   const messages::msg::Estimate& estimate) const {
   const auto variance = [&estimate](std::size_t state) {
     const double deviation = estimate.standard_deviation()[state];
     return deviation * deviation;
@@ -214,8 +214,8 @@ StandardMessage StandardMessages::path_message(std::int64_t time_ns) const {
 }
 
 std::vector<StandardMessage> StandardMessages::of_estimate(const mcap::Message& message) {
-  comms::msg::Estimate estimate;
-  if (!comms::from_payload(message.payload.data, message.payload.size, estimate)) return {};
+  messages::msg::Estimate estimate;
+  if (!dds::from_payload(message.payload.data, message.payload.size, estimate)) return {};
   const std::int64_t time_ns = message.log_time_ns;
   const Pose pose{time_ns, enu_from_ned(vector(estimate.position_ned())),
                   q_enu_from_flu(quaternion(estimate.q_ned_from_frd()))};
@@ -231,15 +231,15 @@ std::vector<StandardMessage> StandardMessages::of_estimate(const mcap::Message& 
 }
 
 std::vector<StandardMessage> StandardMessages::of_reference(const mcap::Message& message) const {
-  comms::msg::Reference reference;
-  if (!comms::from_payload(message.payload.data, message.payload.size, reference)) return {};
+  messages::msg::Reference reference;
+  if (!dds::from_payload(message.payload.data, message.payload.size, reference)) return {};
   return {pose_message(kReferenceTopic, {message.log_time_ns, enu_from_ned(vector(reference.position_ned())),
                                          q_enu_from_flu(quaternion(reference.attitude_setpoint()))})};
 }
 
 std::vector<StandardMessage> StandardMessages::of_imu(const mcap::Message& message) const {
-  comms::msg::Imu imu;
-  if (!comms::from_payload(message.payload.data, message.payload.size, imu)) return {};
+  messages::msg::Imu imu;
+  if (!dds::from_payload(message.payload.data, message.payload.size, imu)) return {};
   CdrWriter out;
   put_header(out, message.log_time_ns, vehicle_);
   put_quaternion(out, Quaterniond::Identity());
@@ -252,8 +252,8 @@ std::vector<StandardMessage> StandardMessages::of_imu(const mcap::Message& messa
 }
 
 std::vector<StandardMessage> StandardMessages::of_battery(const mcap::Message& message) const {
-  comms::msg::Battery battery;
-  if (!comms::from_payload(message.payload.data, message.payload.size, battery)) return {};
+  messages::msg::Battery battery;
+  if (!dds::from_payload(message.payload.data, message.payload.size, battery)) return {};
   constexpr float kUnmeasured = std::numeric_limits<float>::quiet_NaN();
   constexpr std::uint8_t kDischarging = 2;
   constexpr std::uint8_t kUnknownHealth = 0;

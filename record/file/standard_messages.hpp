@@ -52,10 +52,10 @@ class StandardMessages {
   std::vector<StandardMessage> of_imu(const mcap::Message& message) const;
   std::vector<StandardMessage> of_battery(const mcap::Message& message) const;
   std::string topic_of(const char* name) const { return "/" + vehicle_ + "/" + name; }
-  StandardMessage named(const char* name, const comms::MessageSchema& schema, mcap::Bytes payload) const;
+  StandardMessage named(const char* name, const messages::MessageSchema& schema, mcap::Bytes payload) const;
   StandardMessage pose_message(const char* name, const Pose& pose) const;
   StandardMessage transform_message(const Pose& pose) const;
-  StandardMessage odometry_message(const Pose& pose, const comms::msg::Estimate& estimate) const;
+  StandardMessage odometry_message(const Pose& pose, const messages::msg::Estimate& estimate) const;
   StandardMessage path_message(std::int64_t time_ns) const;
   std::string vehicle_;
   EventLog events_;

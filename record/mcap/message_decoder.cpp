@@ -9,14 +9,14 @@
 namespace swiftlet::mcap {
 namespace {
 
-using runtime::ByteReader;
+using io::ByteReader;
 
 constexpr int kDeepest = 8;                 // messages within messages
 constexpr std::size_t kMostColumns = 4096;  // of one message
 constexpr std::size_t kEncapsulationBytes = 4;
 
 [[noreturn]] void refuse(const Schema& schema, int line, const std::string& what) {
-  throw runtime::ConfigError(schema.name, line, "", what);
+  throw io::ConfigError(schema.name, line, "", what);
 }
 
 // "geometry_msgs/msg/Point" and "geometry_msgs/Point" are the same.

@@ -50,9 +50,9 @@ class MessageDecoder {
   void check_types(const Schema& schema) const;
   void add_columns(const Schema& schema, const Members& members, const std::string& prefix);
   void add_column(const Schema& schema, std::string name, Column::Kind kind);
-  bool read(runtime::ByteReader& in, const std::uint8_t* origin, const Members& members,
+  bool read(io::ByteReader& in, const std::uint8_t* origin, const Members& members,
             std::vector<Value>* values) const;
-  bool read_one(runtime::ByteReader& in, const std::uint8_t* origin, const Member& member,
+  bool read_one(io::ByteReader& in, const std::uint8_t* origin, const Member& member,
                 std::vector<Value>* values) const;
   static Column::Kind kind_of(Type type);
 

@@ -18,7 +18,7 @@ namespace swiftlet::mcap {
 namespace {
 
 [[noreturn]] void fail_to_read(const std::string& path, int error) {
-  throw runtime::ConfigError(path, 0, "", "cannot be read: " + std::generic_category().message(error));
+  throw io::ConfigError(path, 0, "", "cannot be read: " + std::generic_category().message(error));
 }
 
 ByteView part(ByteView bytes, std::uint64_t offset) {
@@ -74,14 +74,14 @@ Reader::Reader(ByteView bytes, std::string name, Access access) : bytes_(bytes),
 }
 
 void Reader::fail(std::uint64_t offset, const std::string& what) const {
-  throw runtime::ConfigError(name_, 0, "", "byte " + std::to_string(offset) + ": " + what);
+  throw io::ConfigError(name_, 0, "", "byte " + std::to_string(offset) + ": " + what);
 }
 
 void Reader::damage(std::uint64_t offset, std::string what) { damages_.push_back({offset, std::move(what)}); }
 
 void Reader::read(Access access) {
   if (bytes_.size < kMagic.size() || !std::equal(kMagic.begin(), kMagic.end(), bytes_.data))
-    throw runtime::ConfigError(name_, 0, "", "is not an MCAP file");
+    throw io::ConfigError(name_, 0, "", "is not an MCAP file");
   const auto first = first_record(part(bytes_, kMagic.size()));
   const auto header =
       first && first->opcode == Opcode::kHeader ? to_header(first->content) : std::optional<Header>();
@@ -318,7 +318,7 @@ Attachment Reader::attachment(const AttachmentIndex& index) const {
   if (!found) fail(index.offset, "is not an attachment");
   const ByteView content = record->content;
   const std::uint8_t* const stored = content.data + content.size - 4;
-  const std::uint32_t crc = runtime::ByteReader(stored, 4, true).u32();
+  const std::uint32_t crc = io::ByteReader(stored, 4, true).u32();
   if (crc != 0 && crc != crc32({content.data, content.size - 4}))
     fail(index.offset, "the CRC of the attachment is wrong");
   return std::move(*found);

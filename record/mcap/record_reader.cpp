@@ -7,7 +7,7 @@
 namespace swiftlet::mcap {
 namespace {
 
-using runtime::ByteReader;
+using io::ByteReader;
 
 ByteReader fields_of(ByteView content) { return {content.data, content.size, true}; }
 

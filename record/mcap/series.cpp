@@ -86,7 +86,7 @@ std::size_t Series::index_of(const std::string& column, bool (*fits)(Column::Kin
   const auto found = std::find_if(columns_.begin(), columns_.end(),
                                   [&](const Column& one) { return one.name == column && fits(one.kind); });
   if (found == columns_.end())
-    throw runtime::ConfigError(file_, 0, topic_, std::string("has no ") + what + " " + column);
+    throw io::ConfigError(file_, 0, topic_, std::string("has no ") + what + " " + column);
   return static_cast<std::size_t>(found - columns_.begin());
 }
 
@@ -109,7 +109,7 @@ bool Series::has_as(const std::string& column, bool (*fits)(Column::Kind), const
   if (found == columns_.end()) return false;
   if (found->name == column && fits(found->kind)) return true;
   const char* const is = found->name != column ? "a sequence" : is_text(found->kind) ? "a text" : "a number";
-  throw runtime::ConfigError(file_, 0, topic_, column + " is " + is + ", must be " + what);
+  throw io::ConfigError(file_, 0, topic_, column + " is " + is + ", must be " + what);
 }
 
 const std::vector<double>* Series::find_numbers(const std::string& column) const {

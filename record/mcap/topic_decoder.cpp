@@ -37,24 +37,23 @@ TopicDecoder::TopicDecoder(const Reader& file, std::string topic)
     if (channel.topic != topic_) continue;
     const Schema* const schema = file.schema_of(channel);
     if (!is_decodable(file, channel)) {
-      throw runtime::ConfigError(file_, 0, topic_,
-                                 "is encoded as '" + channel.message_encoding + "' with a schema '" +
-                                     (schema == nullptr ? "" : schema->encoding) +
-                                     "', must be cdr and ros2msg");
+      throw io::ConfigError(file_, 0, topic_,
+                            "is encoded as '" + channel.message_encoding + "' with a schema '" +
+                                (schema == nullptr ? "" : schema->encoding) + "', must be cdr and ros2msg");
     }
     const MessageDecoder& decoder = decoders_.emplace(id, MessageDecoder(*schema)).first->second;
     if (!(decoder.columns() == columns()))
-      throw runtime::ConfigError(file_, 0, topic_, "was recorded with types that differ");
+      throw io::ConfigError(file_, 0, topic_, "was recorded with types that differ");
   }
   if (decoders_.empty())
-    throw runtime::ConfigError(file_, 0, topic_, "is not in the file, which has " + listed(topics));
+    throw io::ConfigError(file_, 0, topic_, "is not in the file, which has " + listed(topics));
 }
 
 void TopicDecoder::decode(const Message& message, std::vector<Value>& values) {
   ++decoded_;
   if (!decoders_.at(message.channel_id).decode(message.payload, values) || values.size() != columns().size())
-    throw runtime::ConfigError(file_, 0, topic_,
-                               "message " + std::to_string(decoded_) + " does not fit its schema");
+    throw io::ConfigError(file_, 0, topic_,
+                          "message " + std::to_string(decoded_) + " does not fit its schema");
 }
 
 }  // namespace swiftlet::mcap

@@ -32,7 +32,7 @@ void put_offset(RecordWriter& out, Opcode group, std::uint64_t start, std::uint6
 Writer::Writer(std::filesystem::path file, WriterSettings settings)
     : path_(std::move(file)), settings_(std::move(settings)), compressor_(settings_.compression) {
   file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file_ < 0) throw std::runtime_error(runtime::write_fault(path_, errno));
+  if (file_ < 0) throw std::runtime_error(io::write_fault(path_, errno));
   Bytes start(kMagic.begin(), kMagic.end());
   RecordWriter(start).record(Header{settings_.profile, settings_.library});
   put(start);
@@ -141,7 +141,7 @@ void Writer::close() {
   write_summary();
   const int closed = ::close(file_);
   file_ = -1;
-  if (closed != 0) throw std::runtime_error(runtime::write_fault(path_, errno));
+  if (closed != 0) throw std::runtime_error(io::write_fault(path_, errno));
 }
 
 void Writer::write_summary() {
@@ -203,7 +203,7 @@ void Writer::fail(int error) {
   [[maybe_unused]] const int cut = ::ftruncate(file_, static_cast<::off_t>(position_));
   ::close(file_);
   file_ = -1;
-  throw std::runtime_error(runtime::write_fault(path_, error));
+  throw std::runtime_error(io::write_fault(path_, error));
 }
 
 }  // namespace swiftlet::mcap

@@ -20,20 +20,21 @@ constexpr auto kFlushPeriod = 500ms;
 constexpr const char* kClocks = "swiftlet/clocks";
 
 bool is_motion(const std::string& topic) {
-  return topic == comms::topics::kImu.name || topic == comms::topics::kVehicleOdometry.name;
+  return topic == messages::topics::kImu.name || topic == messages::topics::kVehicleOdometry.name;
 }
 bool is_command(const std::string& topic) {
-  return topic == comms::topics::kActuatorCommand.name || topic == comms::topics::kRatesSetpoint.name ||
-         topic == comms::topics::kAttitudeSetpoint.name || topic == comms::topics::kTrajectorySetpoint.name;
+  return topic == messages::topics::kActuatorCommand.name || topic == messages::topics::kRatesSetpoint.name ||
+         topic == messages::topics::kAttitudeSetpoint.name ||
+         topic == messages::topics::kTrajectorySetpoint.name;
 }
-bool is_info(const std::string& topic) { return topic == comms::topics::kVehicleInfo.name; }
-bool is_pose(const std::string& topic) { return topic == comms::topics::kMocapPose.name; }
+bool is_info(const std::string& topic) { return topic == messages::topics::kVehicleInfo.name; }
+bool is_pose(const std::string& topic) { return topic == messages::topics::kMocapPose.name; }
 // Samples come for each sample of the IMU, in lockstep hundreds at once.
 bool is_fast(const std::string& topic) {
-  return is_motion(topic) || is_command(topic) || topic == comms::topics::kRotorSpeeds.name;
+  return is_motion(topic) || is_command(topic) || topic == messages::topics::kRotorSpeeds.name;
 }
 
-std::optional<std::int64_t> stamp_of(const comms::RawSample& sample, int offset) {
+std::optional<std::int64_t> stamp_of(const dds::RawSample& sample, int offset) {
   std::int64_t stamp_ns = 0;
   const auto at = static_cast<std::size_t>(offset);
   if (offset < 0 || at + sizeof(stamp_ns) > sample.size) return std::nullopt;
@@ -47,13 +48,13 @@ struct FlightRecorder::Vehicle {
   explicit Vehicle(std::string vehicle_name) : name(std::move(vehicle_name)) {}
 
   std::string name;
-  std::unique_ptr<comms::Node> node;
+  std::unique_ptr<dds::Node> node;
   std::atomic<std::int64_t> newest_stamp_ns{0};
   std::atomic<std::int64_t> motion_ns{-1};  // stamp of the newest sample of IMU or odometry
   std::atomic<std::int64_t> info_ns{-1};    // and of vehicle_info
   // Of an IMU sample: its arrival by the wall clock minus its stamp, the least of all.
   std::atomic<std::int64_t> least_age_ns{std::numeric_limits<std::int64_t>::max()};
-  std::vector<comms::Subscription> subscriptions;  // last: their callbacks use all members above
+  std::vector<dds::Subscription> subscriptions;  // last: their callbacks use all members above
 };
 
 struct FlightRecorder::Channel {
@@ -68,7 +69,7 @@ struct FlightRecorder::Channel {
   std::atomic<std::uint64_t> lost{0};
 };
 
-FlightRecorder::FlightRecorder(const comms::Participant& participant, std::filesystem::path file,
+FlightRecorder::FlightRecorder(const dds::Participant& participant, std::filesystem::path file,
                                RecorderSettings settings)
     : settings_(std::move(settings)),
       participant_(participant),
@@ -109,13 +110,13 @@ void FlightRecorder::add(const StandardMessage& message, std::int64_t time_ns) {
 void FlightRecorder::add_vehicle(const std::string& name) {
   vehicles_.push_back(std::make_unique<Vehicle>(name));
   Vehicle& vehicle = *vehicles_.back();
-  vehicle.node = std::make_unique<comms::Node>(participant_, name);
-  comms::for_each_topic([&](const auto& topic) { subscribe(vehicle, topic); });
+  vehicle.node = std::make_unique<dds::Node>(participant_, name);
+  messages::for_each_topic([&](const auto& topic) { subscribe(vehicle, topic); });
 }
 
 template <class T>
-void FlightRecorder::subscribe(Vehicle& vehicle, const comms::Topic<T>& topic) {
-  const comms::MessageSchema& schema = comms::schema_of<T>();
+void FlightRecorder::subscribe(Vehicle& vehicle, const messages::Topic<T>& topic) {
+  const messages::MessageSchema& schema = messages::schema_of<T>();
   const std::string name = "/" + vehicle.name + "/" + topic.name;
   std::uint16_t id = 0;
   use_file([&](MessageFile& file) { id = file.add_channel(vehicle.name, topic.name, schema); });
@@ -127,11 +128,11 @@ void FlightRecorder::subscribe(Vehicle& vehicle, const comms::Topic<T>& topic) {
     channel = channels_.back().get();
   }
   vehicle.subscriptions.push_back(vehicle.node->subscribe_raw<T>(
-      topic, [this, channel](const comms::RawSample& sample) { receive(*channel, sample); },
-      is_fast(topic.name) ? comms::Delivery::kOwn : comms::Delivery::kShared));
+      topic, [this, channel](const dds::RawSample& sample) { receive(*channel, sample); },
+      is_fast(topic.name) ? dds::Delivery::kOwn : dds::Delivery::kShared));
 }
 
-void FlightRecorder::receive(Channel& channel, const comms::RawSample& sample) {
+void FlightRecorder::receive(Channel& channel, const dds::RawSample& sample) {
   channel.received.fetch_add(1, std::memory_order_relaxed);
   channel.lost.fetch_add(channel.gaps.missing_before(sample.writer, sample.sequence_number),
                          std::memory_order_relaxed);

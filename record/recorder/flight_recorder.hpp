@@ -46,8 +46,7 @@ struct RecorderTotals {
 class FlightRecorder {
  public:
   // Throws std::runtime_error if the file cannot be created.
-  FlightRecorder(const comms::Participant& participant, std::filesystem::path file,
-                 RecorderSettings settings);
+  FlightRecorder(const dds::Participant& participant, std::filesystem::path file, RecorderSettings settings);
   ~FlightRecorder();  // ends the file as stop() does
   FlightRecorder(const FlightRecorder&) = delete;
   FlightRecorder& operator=(const FlightRecorder&) = delete;
@@ -73,15 +72,15 @@ class FlightRecorder {
   struct Channel;
 
   template <class T>
-  void subscribe(Vehicle& vehicle, const comms::Topic<T>& topic);
-  void receive(Channel& channel, const comms::RawSample& sample);
+  void subscribe(Vehicle& vehicle, const messages::Topic<T>& topic);
+  void receive(Channel& channel, const dds::RawSample& sample);
   void write_until_stopped();
   void write_counts();
   template <class Work>
   void use_file(const Work& work);
 
   const RecorderSettings settings_;
-  const comms::Participant participant_;
+  const dds::Participant participant_;
   SampleQueue queue_;
   mutable std::mutex mutex_;  // guards file_ and fault_; held while a batch is written
   MessageFile file_;

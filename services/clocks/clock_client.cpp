@@ -5,7 +5,7 @@
 
 #include "swiftlet/services/runtime/log.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::clocks {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -19,21 +19,21 @@ std::uint64_t random_id() {
 
 }  // namespace
 
-ClockClient::ClockClient(Node& node, std::function<std::int64_t()> own_ns, Reporting reporting)
+ClockClient::ClockClient(dds::Node& node, std::function<std::int64_t()> own_ns, Reporting reporting)
     : own_ns_(std::move(own_ns)),
       id_(random_id()),
-      requests_(node.publish(topics::kClockRequest)),
-      status_(reporting == Reporting::kPublished ? std::optional(node.publish(topics::kClockStatus))
+      requests_(node.publish(messages::topics::kClockRequest)),
+      status_(reporting == Reporting::kPublished ? std::optional(node.publish(messages::topics::kClockStatus))
                                                  : std::nullopt),
-      replies_(node.subscribe<msg::ClockReply>(topics::kClockReply,
-                                               [this](const msg::ClockReply& reply) { take(reply); })) {}
+      replies_(node.subscribe<messages::msg::ClockReply>(
+          messages::topics::kClockReply, [this](const messages::msg::ClockReply& reply) { take(reply); })) {}
 
 void ClockClient::ask_if_due() {
   latest_.take(known_);
   const Time now = Clock::now();
   if (now < due_) return;
   due_ = now + (known_.is_certain ? kPeriod : kFirstPeriod);
-  msg::ClockRequest request;
+  messages::msg::ClockRequest request;
   request.client(id_);
   request.sequence_number(++requests_sent_);
   request.sent_ns(own_ns_());
@@ -46,7 +46,7 @@ std::optional<std::int64_t> ClockClient::to_vehicle(std::int64_t own_ns) {
   return own_ns + known_.clock.offset_at(own_ns);
 }
 
-void ClockClient::take(const msg::ClockReply& reply) {
+void ClockClient::take(const messages::msg::ClockReply& reply) {
   const std::int64_t now_ns = own_ns_();
   const std::uint64_t number = reply.sequence_number();
   if (reply.client() != id_ || number <= last_answered_ || number > requests_sent_) return;
@@ -79,7 +79,7 @@ void ClockClient::publish_status(bool is_known, const ClockEstimate& clock, std:
   const Time now = Clock::now();
   if (now < status_due_) return;
   status_due_ = now + kStatusPeriod;
-  msg::ClockStatus status;
+  messages::msg::ClockStatus status;
   status.stamp_ns(now_ns + clock.offset_at(now_ns));
   status.sequence_number(++statuses_);
   status.offset_ns(-clock.offset_at(now_ns));
@@ -92,4 +92,4 @@ void ClockClient::publish_status(bool is_known, const ClockEstimate& clock, std:
   status_->publish(status);
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::clocks

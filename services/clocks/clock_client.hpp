@@ -11,7 +11,7 @@
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/runtime/latest_value.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::clocks {
 
 // For a process with a clock of its own: it asks the vehicle for its clock and filters the answers. Neither clock needs to
 // be right or steady.
@@ -26,7 +26,8 @@ class ClockClient {
   static constexpr std::chrono::milliseconds kFirstPeriod{10};  // while the vehicle's clock is unknown
 
   // own_ns: reads the own clock; each may have any origin. Called in several threads.
-  ClockClient(Node& node, std::function<std::int64_t()> own_ns, Reporting reporting = Reporting::kPublished);
+  ClockClient(dds::Node& node, std::function<std::int64_t()> own_ns,
+              Reporting reporting = Reporting::kPublished);
 
   // Call these two in one thread, for each measurement. Neither waits.
   void ask_if_due();
@@ -41,7 +42,7 @@ class ClockClient {
   };
 
   // In the thread that receives.
-  void take(const msg::ClockReply& reply);
+  void take(const messages::msg::ClockReply& reply);
   void log_changes(bool is_known, const ClockEstimate& clock, std::int64_t now_ns);
   void publish_status(bool is_known, const ClockEstimate& clock, std::int64_t now_ns);
 
@@ -62,9 +63,9 @@ class ClockClient {
   std::uint64_t statuses_ = 0;
   Time status_due_;
 
-  Publisher<msg::ClockRequest> requests_;
-  std::optional<Publisher<msg::ClockStatus>> status_;
-  Subscription replies_;  // last: its callback uses all members above
+  dds::Publisher<messages::msg::ClockRequest> requests_;
+  std::optional<dds::Publisher<messages::msg::ClockStatus>> status_;
+  dds::Subscription replies_;  // last: its callback uses all members above
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::clocks

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <initializer_list>
 
-namespace swiftlet::comms {
+namespace swiftlet::clocks {
 namespace {
 
 // Offsets of stamps up to it, and differences of such offsets, do not overflow. 146 years.
@@ -37,4 +37,4 @@ std::int64_t measured_ns(const ClockExchange& exchange) {
   return exchange.asked_ns + (exchange.arrived_ns - exchange.asked_ns) / 2;
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::clocks

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace swiftlet::comms {
+namespace swiftlet::clocks {
 
 // A question and its answer, RFC 5905, section 8: T1 to T4, in ns. Each clock may have any origin.
 struct ClockExchange {
@@ -26,4 +26,4 @@ std::int64_t offset_ns(const ClockExchange& exchange);
 // When it was measured, on the own clock: half way between T1 and T4.
 std::int64_t measured_ns(const ClockExchange& exchange);
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::clocks

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace swiftlet::comms {
+namespace swiftlet::clocks {
 namespace {
 
 // Standard deviation of the drift before anything is measured: crystals are within 100 ppm.
@@ -140,4 +140,4 @@ ClockEstimate ClockFilter::fit() const {
   return estimate;
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::clocks

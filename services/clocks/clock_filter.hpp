@@ -8,7 +8,7 @@
 
 #include "swiftlet/services/clocks/clock_exchange.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::clocks {
 
 // Another clock, as a line over the own clock.
 struct ClockEstimate {
@@ -75,4 +75,4 @@ class ClockFilter {
   std::optional<ClockEstimate> estimate_;
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::clocks

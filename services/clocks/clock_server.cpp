@@ -2,18 +2,19 @@
 
 #include <utility>
 
-namespace swiftlet::comms {
+namespace swiftlet::clocks {
 
-ClockServer::ClockServer(Node& node, std::function<std::optional<std::int64_t>()> now_ns)
+ClockServer::ClockServer(dds::Node& node, std::function<std::optional<std::int64_t>()> now_ns)
     : now_ns_(std::move(now_ns)),
-      replies_(node.publish(topics::kClockReply)),
-      requests_(node.subscribe<msg::ClockRequest>(
-          topics::kClockRequest, [this](const msg::ClockRequest& request) { answer(request); })) {}
+      replies_(node.publish(messages::topics::kClockReply)),
+      requests_(node.subscribe<messages::msg::ClockRequest>(
+          messages::topics::kClockRequest,
+          [this](const messages::msg::ClockRequest& request) { answer(request); })) {}
 
-void ClockServer::answer(const msg::ClockRequest& request) {
+void ClockServer::answer(const messages::msg::ClockRequest& request) {
   const std::optional<std::int64_t> received_ns = now_ns_();
   if (!received_ns) return;
-  msg::ClockReply reply;
+  messages::msg::ClockReply reply;
   reply.client(request.client());
   reply.sequence_number(request.sequence_number());
   reply.sent_ns(request.sent_ns());
@@ -22,4 +23,4 @@ void ClockServer::answer(const msg::ClockRequest& request) {
   replies_.publish(reply);
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::clocks

@@ -7,14 +7,14 @@
 namespace swiftlet::services {
 namespace {
 
-namespace topics = comms::topics;
+namespace topics = messages::topics;
 using plant::ControlLevel;
 
 std::size_t index(ControlLevel level) { return static_cast<std::size_t>(level); }
 
 }  // namespace
 
-CommandPublisher::CommandPublisher(comms::Node& node, int rotor_count)
+CommandPublisher::CommandPublisher(dds::Node& node, int rotor_count)
     : node_(node), rotor_count_(rotor_count), actuators_(node.publish(topics::kActuatorCommand)) {
   open_[index(ControlLevel::kActuators)] = true;
 }
@@ -39,16 +39,16 @@ void CommandPublisher::publish(const plant::VehicleCommand& command) {
 }
 
 void CommandPublisher::publish_as(const plant::ActuatorCommand& command) {
-  actuators_.publish(comms::to_message(command));
+  actuators_.publish(messages::to_message(command));
 }
 void CommandPublisher::publish_as(const plant::RatesSetpoint& setpoint) {
-  rates_.publish(comms::to_message(setpoint));
+  rates_.publish(messages::to_message(setpoint));
 }
 void CommandPublisher::publish_as(const plant::AttitudeSetpoint& setpoint) {
-  attitude_.publish(comms::to_message(setpoint));
+  attitude_.publish(messages::to_message(setpoint));
 }
 void CommandPublisher::publish_as(const plant::TrajectorySetpoint& setpoint) {
-  trajectory_.publish(comms::to_message(setpoint));
+  trajectory_.publish(messages::to_message(setpoint));
 }
 
 }  // namespace swiftlet::services

@@ -14,7 +14,7 @@ namespace swiftlet::services {
 class CommandPublisher {
  public:
   // Level actuators is open from the start.
-  CommandPublisher(comms::Node& node, int rotor_count);
+  CommandPublisher(dds::Node& node, int rotor_count);
 
   // Creates the topic of a level. Call from one thread.
   void open(plant::ControlLevel level);
@@ -31,14 +31,14 @@ class CommandPublisher {
   void publish_as(const plant::AttitudeSetpoint& setpoint);
   void publish_as(const plant::TrajectorySetpoint& setpoint);
 
-  comms::Node& node_;
+  dds::Node& node_;
   const int rotor_count_;
   std::array<std::atomic<bool>, plant::kControlLevelCount> open_{};
   std::atomic_flag in_use_ = ATOMIC_FLAG_INIT;
-  comms::Publisher<comms::msg::ActuatorCommand> actuators_;
-  comms::Publisher<comms::msg::RatesSetpoint> rates_;
-  comms::Publisher<comms::msg::AttitudeSetpoint> attitude_;
-  comms::Publisher<comms::msg::TrajectorySetpoint> trajectory_;
+  dds::Publisher<messages::msg::ActuatorCommand> actuators_;
+  dds::Publisher<messages::msg::RatesSetpoint> rates_;
+  dds::Publisher<messages::msg::AttitudeSetpoint> attitude_;
+  dds::Publisher<messages::msg::TrajectorySetpoint> trajectory_;
 };
 
 }  // namespace swiftlet::services

@@ -74,12 +74,12 @@ control::Outcome stopped_without_imu(double imu_age_s) {
   return outcome;
 }
 
-control::Outcome refusal(const comms::Fault& fault) { return control::refuse("%s", fault.text); }
+control::Outcome refusal(const messages::Fault& fault) { return control::refuse("%s", fault.text); }
 
 // Reads the message into `plan` and checks that it can be flown.
 template <class Message, class Plan>
 control::Outcome read(const Message& message, const control::Limits& limits, Plan& plan) {
-  const comms::Fault fault = comms::from_message(message, plan);
+  const messages::Fault fault = messages::from_message(message, plan);
   return fault ? refusal(fault) : control::check(plan, limits);
 }
 
@@ -95,18 +95,18 @@ CommandServer::CommandServer(InnerLoop& loop, const plant::Vehicle& vehicle,
       wake_(wake),
       gains_in_force_(designer_.initial()) {}
 
-void CommandServer::on_command(const comms::msg::Command& message) {
+void CommandServer::on_command(const messages::msg::Command& message) {
   if (!active()) return;
   const Key key{message.client(), message.id()};
   if (!claim(key)) return;
   auto pending = std::make_unique<PendingRequest>();
-  const comms::Fault fault = comms::from_message(message, pending->request);
+  const messages::Fault fault = messages::from_message(message, pending->request);
   if (fault) return refuse(key, static_cast<control::RequestKind>(message.kind()), refusal(fault));
   std::tie(pending->client, pending->id) = key;
   submit(std::move(pending));
 }
 
-void CommandServer::on_mission(const comms::msg::Mission& message) {
+void CommandServer::on_mission(const messages::msg::Mission& message) {
   if (!active()) return on_flown_mission(message);
   const Key key{message.client(), message.id()};
   if (!claim(key)) return;
@@ -126,7 +126,7 @@ control::Outcome CommandServer::check_rotors(const char* what,
   return control::check_rotors(what, vehicle_, limits_, low_battery_voltage_, segments);
 }
 
-void CommandServer::on_trajectory(const comms::msg::Trajectory& message) {
+void CommandServer::on_trajectory(const messages::msg::Trajectory& message) {
   if (!active()) return on_flown_trajectory(message);
   const Key key{message.client(), message.id()};
   if (!claim(key)) return;
@@ -141,7 +141,7 @@ void CommandServer::on_trajectory(const comms::msg::Trajectory& message) {
   submit(std::move(pending));
 }
 
-void CommandServer::on_control_settings(const comms::msg::ControlSettings& message) {
+void CommandServer::on_control_settings(const messages::msg::ControlSettings& message) {
   if (!active()) return;
   const Key key{message.client(), message.id()};
   if (!claim(key)) return;
@@ -153,7 +153,7 @@ void CommandServer::on_control_settings(const comms::msg::ControlSettings& messa
   }
   auto pending = std::make_unique<PendingRequest>();
   pending->gains = std::make_unique<control::GainChange>();
-  const comms::Fault fault = comms::from_message(message, asked);
+  const messages::Fault fault = messages::from_message(message, asked);
   const control::Outcome outcome =
       fault ? refusal(fault) : designer_.design(asked, in_force, *pending->gains);
   if (!outcome.accepted) return refuse(key, control::RequestKind::kSettings, outcome);
@@ -175,11 +175,11 @@ bool CommandServer::is_of_another(const control::Mission& mission) const {
   for (const auto& [key, pending] : pending_) {
     if (pending->mission && pending->mission->id == mission.id) known = pending->mission.get();
   }
-  return known != nullptr && comms::to_message(*known) != comms::to_message(mission);
+  return known != nullptr && messages::to_message(*known) != messages::to_message(mission);
 }
 
 // A mission may arrive on two topics, `mission` and `flown_mission`, and repeatedly on each.
-void CommandServer::on_flown_mission(const comms::msg::Mission& message) {
+void CommandServer::on_flown_mission(const messages::msg::Mission& message) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (missions_.find(message.id()) != nullptr) return;
@@ -190,7 +190,7 @@ void CommandServer::on_flown_mission(const comms::msg::Mission& message) {
   if (missions_.find(message.id()) == nullptr) missions_.put(std::move(mission));
 }
 
-void CommandServer::on_flown_trajectory(const comms::msg::Trajectory& message) {
+void CommandServer::on_flown_trajectory(const messages::msg::Trajectory& message) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (trajectories_.find(message.id()) != nullptr) return;
@@ -221,16 +221,16 @@ void CommandServer::follow(FailoverState failover_state) {
   trajectories_.tidy(loop_.adopted_state());
 }
 
-comms::msg::Mission CommandServer::mission(std::uint64_t id) {
+messages::msg::Mission CommandServer::mission(std::uint64_t id) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const control::Mission* const mission = missions_.find(id);
-  return mission != nullptr ? comms::to_message(*mission) : comms::msg::Mission();
+  return mission != nullptr ? messages::to_message(*mission) : messages::msg::Mission();
 }
 
-comms::msg::Trajectory CommandServer::trajectory(std::uint64_t id) {
+messages::msg::Trajectory CommandServer::trajectory(std::uint64_t id) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const control::Trajectory* const trajectory = trajectories_.find(id);
-  return trajectory != nullptr ? comms::to_message(*trajectory) : comms::msg::Trajectory();
+  return trajectory != nullptr ? messages::to_message(*trajectory) : messages::msg::Trajectory();
 }
 
 bool CommandServer::claim(const Key& key) {

@@ -44,11 +44,11 @@ class CommandServer {
 
   // Call from any thread that may lock a mutex; each message type from one thread at a time. Refuses
   // malformed and infeasible requests at once; the inner loop evaluates the others.
-  void on_command(const comms::msg::Command& message);
-  void on_mission(const comms::msg::Mission& message);
-  void on_trajectory(const comms::msg::Trajectory& message);
+  void on_command(const messages::msg::Command& message);
+  void on_mission(const messages::msg::Mission& message);
+  void on_trajectory(const messages::msg::Trajectory& message);
   // Designs the gains in the calling thread.
-  void on_control_settings(const comms::msg::ControlSettings& message);
+  void on_control_settings(const messages::msg::ControlSettings& message);
 
   // The stop request that waits and that the inner loop cannot evaluate, because IMU samples are missing
   // or not usable; nullopt if there is none. It is accepted; call collect() after it and command rotors off. The inner loop
@@ -70,13 +70,13 @@ class CommandServer {
 
   // A standby's input from the active controller: its mission, its trajectory, and its failover state with
   // the accepted requests. Call from any thread.
-  void on_flown_mission(const comms::msg::Mission& message);
-  void on_flown_trajectory(const comms::msg::Trajectory& message);
+  void on_flown_mission(const messages::msg::Mission& message);
+  void on_flown_trajectory(const messages::msg::Trajectory& message);
   void follow(FailoverState failover_state);
 
   // The stored mission or trajectory, to publish to other controllers; its id is 0 if it is not stored here.
-  comms::msg::Mission mission(std::uint64_t id);
-  comms::msg::Trajectory trajectory(std::uint64_t id);
+  messages::msg::Mission mission(std::uint64_t id);
+  messages::msg::Trajectory trajectory(std::uint64_t id);
 
  private:
   using Key = std::pair<std::uint64_t, std::uint64_t>;  // client, id

@@ -37,7 +37,7 @@ struct Options {
   int failover_priority = 0;
   std::optional<plant::ControlLevel> level;
   runtime::Clock clock = runtime::Clock::kRealtime;
-  comms::NodeSettings node;
+  dds::NodeSettings node;
   runtime::ProcessOptions process;
 };
 
@@ -61,18 +61,17 @@ void add_options(runtime::CommandLine app, Options& options) {
                                               "first of these that the vehicle accepts");
   runtime::add_clock_option(app, options.clock);
   options.node.name = "control";
-  comms::add_service_options(app, options.node);
+  dds::add_service_options(app, options.node);
   runtime::add_process_options(app, options.process);
 }
 
 void run(const Options& options) {
-  const std::vector<std::string> names = comms::vehicles_of_list(options.node.vehicle);
+  const std::vector<std::string> names = messages::vehicles_of_list(options.node.vehicle);
   ControllerSettings settings;
-  settings.vehicle =
-      runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
-  const std::string settings_file = runtime::configuration_file(runtime::kinds::kControl, options.control);
-  settings.control = runtime::load_control_settings(settings_file);
-  settings.fixed = runtime::load_fixed_settings(settings_file);
+  settings.vehicle = io::load_vehicle(io::configuration_file(io::kinds::kVehicle, options.vehicle));
+  const std::string settings_file = io::configuration_file(io::kinds::kControl, options.control);
+  settings.control = io::load_control_settings(settings_file);
+  settings.fixed = io::load_fixed_settings(settings_file);
   settings.failover_priority = options.failover_priority;
   settings.level = options.level;
   settings.clock = options.clock;
@@ -81,17 +80,17 @@ void run(const Options& options) {
   const runtime::Logging logging("control", options.process.log);
   settings.realtime = runtime::prepare_realtime(options.process.realtime, options.clock);
 
-  comms::NodeSettings network = options.node;
+  dds::NodeSettings network = options.node;
   network.hears_of_all = false;
   network.realtime_priority = settings.realtime.thread_priority();
-  const comms::Participant participant(network, names);
+  const dds::Participant participant(network, names);
   std::vector<std::unique_ptr<runtime::HostedVehicle>> vehicles;
   for (const std::string& name : names) {
     const std::string log_label = runtime::log_label_of(name, names.size());
     const runtime::LogLabel label(log_label);
     vehicles.push_back(std::make_unique<HostedControl>(participant, name, settings));
   }
-  comms::log_reach(network);
+  dds::log_reach(network);
   runtime::log_info("ready: {} with {} control, vehicle {}, domain {}, failover priority {}",
                     settings.vehicle.name, settings.control.name, fmt::join(names, ","), network.domain,
                     options.failover_priority);

@@ -12,9 +12,9 @@
 namespace swiftlet::services {
 namespace {
 
-namespace msg = comms::msg;
-namespace topics = comms::topics;
-using comms::Delivery;
+namespace msg = messages::msg;
+namespace topics = messages::topics;
+using dds::Delivery;
 using namespace std::chrono_literals;
 
 // Without IMU samples and without an active controller for this long, requests are answered: they are
@@ -37,7 +37,7 @@ std::uint64_t random_number() {
 }  // namespace
 
 ControlService::ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
-                               int failover_priority, comms::Node& node,
+                               int failover_priority, dds::Node& node,
                                const runtime::RealtimeSettings& realtime, runtime::Clock clock,
                                std::vector<control::FixedSetting> fixed,
                                std::optional<plant::ControlLevel> level)
@@ -63,7 +63,7 @@ ControlService::ControlService(const plant::Vehicle& vehicle, const control::Con
   subscribe(node, clock);
 }
 
-void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
+void ControlService::subscribe(dds::Node& node, runtime::Clock clock) {
   using Stream = LockstepGate::Stream;
   std::function<void(const msg::MocapPose&)> take_pose;
   std::function<void(const msg::Battery&)> take_battery;
@@ -92,7 +92,7 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
                                      note(pose_arrivals_, message);
                                      take_pose(message);
                                    },
-                                   delivery, comms::kSourceSilence)});
+                                   delivery, dds::kSourceSilence)});
   sensors_.push_back({"battery samples", node.subscribe<msg::Battery>(
                                              topics::kBattery,
                                              [this, take_battery](const auto& message) {
@@ -107,7 +107,7 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
                                             rotor_speed_thread_.enter(realtime_);
                                             take_rotor_speeds(message);
                                           },
-                                          delivery, comms::kSourceSilence)});
+                                          delivery, dds::kSourceSilence)});
   subscriptions_.push_back(node.subscribe<msg::VehicleInfo>(
       topics::kVehicleInfo, [this](const auto& message) { on_vehicle_info(message); }));
   subscriptions_.push_back(node.subscribe<msg::Setpoint>(
@@ -138,7 +138,7 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
 
 // The samples that are answered: of the IMU, or the vehicle's own estimates in place of them.
 template <class Message>
-void ControlService::subscribe_motion(comms::Node& node, const comms::Topic<Message>& topic,
+void ControlService::subscribe_motion(dds::Node& node, const messages::Topic<Message>& topic,
                                       const char* samples, AnsweredSamples::Kind kind) {
   const bool lockstep = clock_ == runtime::Clock::kLockstep;
   const auto take = [this, kind, lockstep](const Message& message) {
@@ -151,7 +151,7 @@ void ControlService::subscribe_motion(comms::Node& node, const comms::Topic<Mess
     }
   };
   const Delivery delivery = lockstep ? Delivery::kShared : Delivery::kSamples;
-  sensors_.push_back({samples, node.subscribe<Message>(topic, take, delivery, comms::kSourceSilence)});
+  sensors_.push_back({samples, node.subscribe<Message>(topic, take, delivery, dds::kSourceSilence)});
 }
 
 template <class Message>
@@ -162,10 +162,10 @@ void ControlService::note(Arrivals& arrivals, const Message& message) {
 // Returns a callback that passes valid samples to the inner loop and warns of invalid ones.
 template <class Message, class Sample>
 std::function<void(const Message&)> ControlService::deliver(runtime::LatestValue<Sample>& latest,
-                                                            comms::ThrottledWarning& faults) {
+                                                            dds::ThrottledWarning& faults) {
   return [&latest, &faults](const Message& message) {
     Sample sample;
-    const comms::Fault fault = comms::from_message(message, sample);
+    const messages::Fault fault = messages::from_message(message, sample);
     if (fault) return faults.note(fault);
     latest.put(sample);
   };
@@ -181,7 +181,7 @@ std::function<void(const Message&)> ControlService::deliver_to_worker(
 
 template <class Message, class Sample>
 std::function<void(const Message&)> ControlService::deliver_in_lockstep(runtime::LatestValue<Sample>& latest,
-                                                                        comms::ThrottledWarning& faults,
+                                                                        dds::ThrottledWarning& faults,
                                                                         LockstepGate::Stream stream) {
   return [this, stream, take = deliver<Message>(latest, faults)](const Message& message) {
     const std::lock_guard<std::mutex> lock(gate_mutex_);
@@ -208,8 +208,8 @@ void ControlService::on_sample(const VehicleSample& sample) {
 // The inner loop uses the other controllers' states from the next IMU sample on.
 void ControlService::on_controller_state(const msg::ControllerState& message) {
   if (message.controller() == controller_) return;
-  comms::ControllerReport other;
-  const comms::Fault fault = comms::from_message(message, other);
+  messages::ControllerReport other;
+  const messages::Fault fault = messages::from_message(message, other);
   if (fault) return controller_faults_.note(fault);
   const std::int64_t now_ns = runtime::monotonic_ns();
   if (other.active) {
@@ -273,7 +273,7 @@ void ControlService::on_sample_in_lockstep(const VehicleSample& sample) {
 // A heartbeat that finds the queue full is lost; the tool repeats it.
 void ControlService::on_ground_link(const msg::GroundLink& message) {
   control::GroundHeartbeat heartbeat;
-  const comms::Fault fault = comms::from_message(message, heartbeat);
+  const messages::Fault fault = messages::from_message(message, heartbeat);
   if (fault) return ground_link_faults_.note(fault);
   loop_.ground_heartbeats.push(heartbeat);
 }
@@ -296,7 +296,7 @@ void ControlService::report(std::int64_t stamp_ns) {
   ++report_.sequence;
   report_.term = plant::header_of(last_answer_).term;
   loop_.report(report_);
-  reports_.publish(comms::to_message(report_));
+  reports_.publish(messages::to_message(report_));
 }
 
 void ControlService::run(const std::atomic<bool>& stop) {
@@ -319,7 +319,7 @@ void ControlService::run(const std::atomic<bool>& stop) {
 }
 
 void ControlService::on_vehicle_info(const msg::VehicleInfo& message) {
-  const std::string foreign = comms::fault_of_wire_version(message.wire_version(), "the vehicle");
+  const std::string foreign = messages::fault_of_wire_version(message.wire_version(), "the vehicle");
   if (!foreign.empty()) return refuse_vehicle(foreign);
   if (refused_vehicle_) loop_.vehicle_refusal.put({});
   refused_vehicle_ = false;

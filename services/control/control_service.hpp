@@ -47,7 +47,7 @@ class ControlService {
   // commanded; nullopt: the lowest that vehicle_info says it accepts. In lockstep no sample is answered before
   // vehicle_info has come.
   ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
-                 int failover_priority, comms::Node& node, const runtime::RealtimeSettings& realtime,
+                 int failover_priority, dds::Node& node, const runtime::RealtimeSettings& realtime,
                  runtime::Clock clock, std::vector<control::FixedSetting> fixed = {},
                  std::optional<plant::ControlLevel> level = std::nullopt);
 
@@ -60,14 +60,14 @@ class ControlService {
   const Snapshot& last() const { return telemetry_.last(); }  // once run() has returned
 
  private:
-  void subscribe(comms::Node& node, runtime::Clock clock);
+  void subscribe(dds::Node& node, runtime::Clock clock);
   template <class Message>
-  void subscribe_motion(comms::Node& node, const comms::Topic<Message>& topic, const char* samples,
+  void subscribe_motion(dds::Node& node, const messages::Topic<Message>& topic, const char* samples,
                         AnsweredSamples::Kind kind);
   void on_sample(const VehicleSample& sample);
   void on_sample_in_lockstep(const VehicleSample& sample);
-  void on_ground_link(const comms::msg::GroundLink& message);
-  void on_controller_state(const comms::msg::ControllerState& message);
+  void on_ground_link(const messages::msg::GroundLink& message);
+  void on_controller_state(const messages::msg::ControllerState& message);
   Role take_role(const VehicleSample& sample);
   Role take_role_in_lockstep(const VehicleSample& sample);
   void answer(const VehicleSample& sample, Role role);
@@ -79,17 +79,17 @@ class ControlService {
   StreamAges stream_ages() const;
   std::string source_conflict() const;
   void publish_pending_stop(const StreamAges& ages);
-  void on_vehicle_info(const comms::msg::VehicleInfo& message);
+  void on_vehicle_info(const messages::msg::VehicleInfo& message);
   void refuse_vehicle(const std::string& why);
   void adopt_levels();
   template <class Message>
   std::function<void(const Message&)> deliver_to_worker(void (CommandServer::*take)(const Message&));
   template <class Message, class Sample>
   std::function<void(const Message&)> deliver(runtime::LatestValue<Sample>& latest,
-                                              comms::ThrottledWarning& faults);
+                                              dds::ThrottledWarning& faults);
   template <class Message, class Sample>
   std::function<void(const Message&)> deliver_in_lockstep(runtime::LatestValue<Sample>& latest,
-                                                          comms::ThrottledWarning& faults,
+                                                          dds::ThrottledWarning& faults,
                                                           LockstepGate::Stream stream);
 
   const std::uint64_t controller_;
@@ -102,8 +102,8 @@ class ControlService {
 
   // Used by the inner loop's thread only.
   Failover failover_;
-  comms::Publisher<comms::msg::ControllerState> reports_;
-  comms::ControllerReport report_;
+  dds::Publisher<messages::msg::ControllerState> reports_;
+  messages::ControllerReport report_;
   plant::VehicleCommand last_answer_;
   struct Answered {
     std::int64_t stamp_ns = -1;
@@ -134,19 +134,19 @@ class ControlService {
   std::mutex gate_mutex_;  // lockstep: guards the inner loop and its inputs
   LockstepGate gate_;
 
-  comms::ThrottledWarning pose_faults_{"mocap_pose"};
-  comms::ThrottledWarning battery_faults_{"battery"};
-  comms::ThrottledWarning rotor_speed_faults_{"rotor_speeds"};
-  comms::ThrottledWarning setpoint_faults_{"setpoint"};
-  comms::ThrottledWarning controller_faults_{"controller_state"};
-  comms::ThrottledWarning ground_link_faults_{"ground_link"};
+  dds::ThrottledWarning pose_faults_{"mocap_pose"};
+  dds::ThrottledWarning battery_faults_{"battery"};
+  dds::ThrottledWarning rotor_speed_faults_{"rotor_speeds"};
+  dds::ThrottledWarning setpoint_faults_{"setpoint"};
+  dds::ThrottledWarning controller_faults_{"controller_state"};
+  dds::ThrottledWarning ground_link_faults_{"ground_link"};
 
   struct Sensor {
     const char* samples;  // "IMU samples"
-    comms::Subscription subscription;
+    dds::Subscription subscription;
   };
   std::vector<Sensor> sensors_;
-  std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use all members above
+  std::vector<dds::Subscription> subscriptions_;  // last: their callbacks use all members above
 };
 
 }  // namespace swiftlet::services

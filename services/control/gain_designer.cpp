@@ -32,7 +32,7 @@ control::Outcome GainDesigner::check_fixed(const std::vector<control::FixedSetti
                                   [&](const control::FixedSetting& f) { return f.key == setting.key; });
     if (own == fixed_.end())
       return control::refuse("%s: the controller has no such setting", setting.key.c_str());
-    if (!runtime::same_setting(own->value, setting.value))
+    if (!io::same_setting(own->value, setting.value))
       return control::refuse("%s: cannot change in flight: is %s, the file has %s", setting.key.c_str(),
                              own->value.c_str(), setting.value.c_str());
   }

@@ -7,13 +7,13 @@
 
 namespace swiftlet::services {
 
-HostedControl::HostedControl(const comms::Participant& participant, const std::string& name,
+HostedControl::HostedControl(const dds::Participant& participant, const std::string& name,
                              const ControllerSettings& settings)
     : HostedVehicle(name),
       node_(participant, name, [this](const std::string& fault) { fail(fault); }),
       service_(settings.vehicle, settings.control, settings.failover_priority, node_, settings.realtime,
                settings.clock, settings.fixed, settings.level) {
-  comms::log_peers(node_);
+  dds::log_peers(node_);
 }
 
 void HostedControl::attend() {

@@ -28,7 +28,7 @@ struct ControllerSettings {
 class HostedControl final : public runtime::HostedVehicle {
  public:
   // Throws as ControlService does.
-  HostedControl(const comms::Participant& participant, const std::string& name,
+  HostedControl(const dds::Participant& participant, const std::string& name,
                 const ControllerSettings& settings);
 
   void run(const std::atomic<bool>& stop) override { service_.run(stop); }
@@ -36,7 +36,7 @@ class HostedControl final : public runtime::HostedVehicle {
   void log_end() override;
 
  private:
-  comms::Node node_;
+  dds::Node node_;
   ControlService service_;
 };
 

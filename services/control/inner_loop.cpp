@@ -158,7 +158,7 @@ void InnerLoop::answer_requests() {
   return_outcomes(clients, stamp_ns_);
 }
 
-void InnerLoop::report(comms::ControllerReport& report) const {
+void InnerLoop::report(messages::ControllerReport& report) const {
   report.active = role_ == Role::kActive;
   report.ready =
       (report.active && !detecting_airborne()) ||

@@ -112,7 +112,7 @@ class InnerLoop {
   static constexpr std::int64_t kReadyAfterNs = 1'250'000'000;
   // report_due(): this step must publish a controller_state. report() fills in its flight fields.
   bool report_due() const { return report_due_; }
-  void report(comms::ControllerReport& report) const;
+  void report(messages::ControllerReport& report) const;
 
   // Of the last command. Call from any thread.
   plant::ControlLevel level() const { return level_.load(std::memory_order_relaxed); }

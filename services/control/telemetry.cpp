@@ -9,7 +9,7 @@
 namespace swiftlet::services {
 namespace {
 
-namespace topics = comms::topics;
+namespace topics = messages::topics;
 
 constexpr std::int64_t kStatusPeriodNs = 100'000'000;
 constexpr std::int64_t kMissionPeriodNs = 500'000'000;
@@ -22,7 +22,7 @@ bool is_over(control::MissionState state) {
   return state == control::MissionState::kCompleted || state == control::MissionState::kAborted;
 }
 
-void show_stop(const control::RequestKey& key, comms::msg::ControlStatus& message) {
+void show_stop(const control::RequestKey& key, messages::msg::ControlStatus& message) {
   message.mode(static_cast<std::uint8_t>(control::Mode::kStopped));
   message.reason() = "emergency stop is active, but the vehicle is silent and cannot confirm it";
   auto& earlier = message.earlier_requests();
@@ -32,13 +32,13 @@ void show_stop(const control::RequestKey& key, comms::msg::ControlStatus& messag
   stop.key = key;
   stop.kind = control::RequestKind::kStop;
   stop.state = control::RequestState::kAccepted;
-  message.request() = comms::to_message(stop);
+  message.request() = messages::to_message(stop);
 }
 
 }  // namespace
 
 Telemetry::Telemetry(InnerLoop& loop, CommandServer& command_server,
-                     const control::FailsafeSettings& thresholds, comms::Node& node, std::uint64_t controller,
+                     const control::FailsafeSettings& thresholds, dds::Node& node, std::uint64_t controller,
                      const control::ObservedRotors& rotors)
     : loop_(loop),
       command_server_(command_server),
@@ -97,13 +97,13 @@ void Telemetry::change_role() {
 void Telemetry::publish_plan() {
   const std::uint64_t mission = last_.status.mission.id;
   if (mission != 0 && mission != published_mission_) {
-    const comms::msg::Mission message = command_server_.mission(mission);
+    const messages::msg::Mission message = command_server_.mission(mission);
     if (message.id() == mission) flown_missions_.publish(message);
     published_mission_ = mission;
   }
   const std::uint64_t trajectory = last_.status.mode == control::Mode::kTrajectory ? last_.trajectory_id : 0;
   if (trajectory != 0 && trajectory != published_trajectory_) {
-    const comms::msg::Trajectory message = command_server_.trajectory(trajectory);
+    const messages::msg::Trajectory message = command_server_.trajectory(trajectory);
     if (message.id() == trajectory) flown_trajectories_.publish(message);
     published_trajectory_ = trajectory;
   }
@@ -173,12 +173,12 @@ void Telemetry::log_imu_silence() {
 
 void Telemetry::publish_sampled(const Snapshot& snapshot) {
   ++sampled_count_;
-  comms::msg::Estimate estimate =
-      comms::to_message(snapshot.estimate, snapshot.estimate_deviation, snapshot.status.pose_age_s);
+  messages::msg::Estimate estimate =
+      messages::to_message(snapshot.estimate, snapshot.estimate_deviation, snapshot.status.pose_age_s);
   estimate.sequence_number(sampled_count_);
   estimates_.publish(estimate);
-  comms::msg::Reference reference =
-      comms::to_message(snapshot.reference, snapshot.setpoint, snapshot.status.mode);
+  messages::msg::Reference reference =
+      messages::to_message(snapshot.reference, snapshot.setpoint, snapshot.status.mode);
   reference.stamp_ns(snapshot.stamp_ns);
   reference.sequence_number(sampled_count_);
   references_.publish(reference);
@@ -190,7 +190,7 @@ const DelayMonitor::Report& Telemetry::update_delay() {
 
 void Telemetry::publish_status() {
   const control::Status& status = last_.status;
-  comms::msg::ControlStatus message = comms::to_message(status, last_.gains, thresholds_);
+  messages::msg::ControlStatus message = messages::to_message(status, last_.gains, thresholds_);
   message.stamp_ns(last_.stamp_ns);
   message.sequence_number(++status_count_);
   message.reason() = reason_text(status.reason);
@@ -221,9 +221,9 @@ void Telemetry::publish_status() {
   message.realtime_scheduling(realtime_);
   message.controller(controller_);
   const control::RequestStatuses& requests = last_.requests;
-  message.request() = comms::to_message(requests.back());
+  message.request() = messages::to_message(requests.back());
   for (std::size_t i = 0; i < message.earlier_requests().size(); ++i)
-    message.earlier_requests()[i] = comms::to_message(requests[requests.size() - 2 - i]);
+    message.earlier_requests()[i] = messages::to_message(requests[requests.size() - 2 - i]);
   if (unconfirmed_stop_) show_stop(*unconfirmed_stop_, message);
   statuses_.publish(message);
   saturated_ = false;
@@ -231,7 +231,7 @@ void Telemetry::publish_status() {
 }
 
 void Telemetry::publish_mission() {
-  comms::msg::MissionStatus message = comms::to_message(last_.status.mission);
+  messages::msg::MissionStatus message = messages::to_message(last_.status.mission);
   message.stamp_ns(last_.stamp_ns);
   message.sequence_number(++mission_count_);
   message.reason_code(mission_end_code_);
@@ -242,7 +242,7 @@ void Telemetry::publish_mission() {
 
 void Telemetry::answer_requests(const std::vector<RequestResult>& answers) {
   for (const RequestResult& answer : answers) {
-    comms::msg::CommandAck ack;
+    messages::msg::CommandAck ack;
     ack.client(answer.client);
     ack.id(answer.id);
     ack.accepted(answer.outcome.accepted);

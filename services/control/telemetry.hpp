@@ -21,7 +21,7 @@ class Telemetry {
   // thresholds: published in control_status. controller: the random number of this controller. rotors: of the
   // loops whose delay margin is published.
   Telemetry(InnerLoop& loop, CommandServer& command_server, const control::FailsafeSettings& thresholds,
-            comms::Node& node, std::uint64_t controller, const control::ObservedRotors& rotors);
+            dds::Node& node, std::uint64_t controller, const control::ObservedRotors& rotors);
 
   // Publishes what is new or due. Call periodically from one thread.
   void publish_due();
@@ -56,7 +56,7 @@ class Telemetry {
   InnerLoop& loop_;
   CommandServer& command_server_;
   const control::FailsafeSettings thresholds_;
-  comms::Node& node_;
+  dds::Node& node_;
   const std::uint64_t controller_;
   bool realtime_ = false;
   bool watches_imu_ = false;
@@ -80,13 +80,13 @@ class Telemetry {
   std::uint64_t published_mission_ = 0;  // id of the last flown_mission
   std::uint64_t published_trajectory_ = 0;
 
-  comms::Publisher<comms::msg::Estimate> estimates_;
-  comms::Publisher<comms::msg::Reference> references_;
-  comms::Publisher<comms::msg::ControlStatus> statuses_;
-  comms::Publisher<comms::msg::MissionStatus> missions_;
-  comms::Publisher<comms::msg::Mission> flown_missions_;
-  comms::Publisher<comms::msg::Trajectory> flown_trajectories_;
-  comms::Publisher<comms::msg::CommandAck> acks_;
+  dds::Publisher<messages::msg::Estimate> estimates_;
+  dds::Publisher<messages::msg::Reference> references_;
+  dds::Publisher<messages::msg::ControlStatus> statuses_;
+  dds::Publisher<messages::msg::MissionStatus> missions_;
+  dds::Publisher<messages::msg::Mission> flown_missions_;
+  dds::Publisher<messages::msg::Trajectory> flown_trajectories_;
+  dds::Publisher<messages::msg::CommandAck> acks_;
 };
 
 }  // namespace swiftlet::services

@@ -10,20 +10,22 @@ namespace {
 template <class Sample, class Message>
 VehicleSample converted(const Message& message) {
   Sample sample;
-  if (comms::from_message(message, sample)) {
+  if (messages::from_message(message, sample)) {
     sample.stamp_ns = message.stamp_ns();
     sample.sequence = message.sequence_number();
     sample.body_rates_frd.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
-  return {sample, comms::from_message(message.obeyed()), message.lockstep().mocap_pose(),
+  return {sample, messages::from_message(message.obeyed()), message.lockstep().mocap_pose(),
           message.lockstep().battery(), message.lockstep().rotor_speeds()};
 }
 
 }  // namespace
 
-VehicleSample vehicle_sample(const comms::msg::Imu& message) { return converted<plant::ImuSample>(message); }
+VehicleSample vehicle_sample(const messages::msg::Imu& message) {
+  return converted<plant::ImuSample>(message);
+}
 
-VehicleSample vehicle_sample(const comms::msg::VehicleOdometry& message) {
+VehicleSample vehicle_sample(const messages::msg::VehicleOdometry& message) {
   return converted<plant::OdometrySample>(message);
 }
 

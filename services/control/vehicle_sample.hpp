@@ -27,8 +27,8 @@ struct VehicleSample {
 };
 
 // A message that is not valid becomes a sample that is not finite: the controller counts those and acts on them.
-VehicleSample vehicle_sample(const comms::msg::Imu& message);
-VehicleSample vehicle_sample(const comms::msg::VehicleOdometry& message);
+VehicleSample vehicle_sample(const messages::msg::Imu& message);
+VehicleSample vehicle_sample(const messages::msg::VehicleOdometry& message);
 
 // Of a vehicle that sends IMU samples and estimates of its own, only those that were heard first are answered, until they have
 // been silent for kSilenceNs. Call from any thread.
@@ -56,7 +56,7 @@ class AnsweredSamples {
     const std::int64_t refused_ns = refused_ns_.load(std::memory_order_relaxed);
     if (refused_ns == 0 || now_ns - refused_ns > kSilenceNs) return nullptr;
     const bool answers_imu = kind_.load(std::memory_order_relaxed) == static_cast<std::uint8_t>(Kind::kImu);
-    return answers_imu ? comms::topics::kVehicleOdometry.name : comms::topics::kImu.name;
+    return answers_imu ? messages::topics::kVehicleOdometry.name : messages::topics::kImu.name;
   }
 
   static constexpr std::int64_t kSilenceNs = 1'000'000'000;

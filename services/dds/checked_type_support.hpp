@@ -11,7 +11,7 @@
 #include "swiftlet/services/dds/throttled_warning.hpp"
 #include "swiftlet/services/messages/wire_version.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 // What a reader takes a sample into: the message, or its payload with the encapsulation header, unchecked.
 template <class T>
@@ -31,10 +31,10 @@ class CheckedTypeSupport final : public PubSubType {
 
   bool deserialize(PayloadArgument payload, void* data) override {
     Sample& sample = *static_cast<Sample*>(data);
-    const rtps::SerializedPayload_t& bytes = content_of(payload);
-    if constexpr (StatesWireVersion<typename PubSubType::type>::value) {
-      const auto version = wire_version_of(bytes.data, bytes.length);
-      if (version && *version != kWireVersion) return take_foreign(*version, sample);
+    const fastrtps::SerializedPayload_t& bytes = content_of(payload);
+    if constexpr (messages::StatesWireVersion<typename PubSubType::type>::value) {
+      const auto version = messages::wire_version_of(bytes.data, bytes.length);
+      if (version && *version != messages::kWireVersion) return take_foreign(*version, sample);
     }
     if (sample.raw) {
       sample.payload.assign(bytes.data, bytes.data + bytes.length);
@@ -52,7 +52,7 @@ class CheckedTypeSupport final : public PubSubType {
  private:
   bool take_foreign(std::uint32_t version, Sample& sample) {
     if (sample.raw) {
-      note(fault_of_wire_version(version, "its sender").c_str());
+      note(messages::fault_of_wire_version(version, "its sender").c_str());
       return false;
     }
     sample.message = {};
@@ -61,7 +61,7 @@ class CheckedTypeSupport final : public PubSubType {
   }
 
   void note(const char* what) {
-    Fault fault;
+    messages::Fault fault;
     std::snprintf(fault.text, sizeof fault.text, "the payload is not a message of this type: %s", what);
     const std::lock_guard<std::mutex> lock(mutex_);
     log_.note(fault);
@@ -71,4 +71,4 @@ class CheckedTypeSupport final : public PubSubType {
   ThrottledWarning log_{type_name(*this)};
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

@@ -9,19 +9,19 @@
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 namespace {
 
-namespace dds = eprosima::fastdds::dds;
+namespace fastdds = eprosima::fastdds::dds;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 
 // The name of the participant profile: of the first, or of that with is_default_profile="true".
 std::string participant_profile(const std::string& file) {
   tinyxml2::XMLDocument document;
-  const std::string text = runtime::read_text_file(file);
+  const std::string text = io::read_text_file(file);
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
-    throw runtime::ConfigError(file, document.ErrorLineNum(), "",
-                               std::string("is no valid XML: ") + document.ErrorName());
+    throw io::ConfigError(file, document.ErrorLineNum(), "",
+                          std::string("is no valid XML: ") + document.ErrorName());
   const tinyxml2::XMLElement* profiles = document.RootElement();
   if (profiles != nullptr && std::string_view(profiles->Name()) != "profiles")
     profiles = profiles->FirstChildElement("profiles");
@@ -32,8 +32,8 @@ std::string participant_profile(const std::string& file) {
     if (name == nullptr || it->BoolAttribute("is_default_profile")) name = it->Attribute("profile_name");
   }
   if (name == nullptr)
-    throw runtime::ConfigError(file, 0, "",
-                               "must be <dds> with <profiles> and in it a <participant profile_name=...>");
+    throw io::ConfigError(file, 0, "",
+                          "must be <dds> with <profiles> and in it a <participant profile_name=...>");
   return name;
 }
 
@@ -41,11 +41,11 @@ std::string participant_profile(const std::string& file) {
 
 DdsProfile load_dds_profile(const std::string& file) {
   const std::string name = participant_profile(file);
-  auto* const factory = dds::DomainParticipantFactory::get_instance();
-  dds::DomainParticipantQos of_file;
+  auto* const factory = fastdds::DomainParticipantFactory::get_instance();
+  fastdds::DomainParticipantQos of_file;
   if (!succeeded(factory->load_XML_profiles_file(file)) ||
       !succeeded(factory->get_participant_qos_from_profile(name, of_file)))
-    throw runtime::ConfigError(file, 0, "", "is refused by Fast DDS: see its error above");
+    throw io::ConfigError(file, 0, "", "is refused by Fast DDS: see its error above");
   DdsProfile profile;
   profile.participant.allocation(of_file.allocation());
   profile.participant.properties(of_file.properties());
@@ -53,7 +53,7 @@ DdsProfile load_dds_profile(const std::string& file) {
   if (!transports.empty()) {
     const auto* const udp = dynamic_cast<const UDPv4TransportDescriptor*>(transports.front().get());
     if (udp == nullptr)
-      throw runtime::ConfigError(file, 0, "<userTransports>", "must name a transport of type UDPv4");
+      throw io::ConfigError(file, 0, "<userTransports>", "must name a transport of type UDPv4");
     profile.udp = *udp;
   }
   // The sizes of the participant are those of its transport, unless that has its own.
@@ -65,4 +65,4 @@ DdsProfile load_dds_profile(const std::string& file) {
   return profile;
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

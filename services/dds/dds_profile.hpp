@@ -7,7 +7,7 @@
 
 #include "swiftlet/services/dds/fast_dds.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 struct DdsProfile {
   eprosima::fastdds::dds::DomainParticipantQos participant;
@@ -16,8 +16,8 @@ struct DdsProfile {
 };
 
 // Of the participant profile of a file, the first one, or that with is_default_profile="true": its allocation, properties, sizes of
-// socket buffers, and its first transport, which must be UDPv4. Swiftlet sets the rest itself. Throws runtime::ConfigError with file
+// socket buffers, and its first transport, which must be UDPv4. Swiftlet sets the rest itself. Throws io::ConfigError with file
 // and line; what Fast DDS refuses, it says on stderr. Not thread-safe.
 DdsProfile load_dds_profile(const std::string& file);
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

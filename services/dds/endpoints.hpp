@@ -20,7 +20,6 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 
 #include "swiftlet/services/dds/checked_type_support.hpp"
-#include "swiftlet/services/dds/datagram/rtps_ids.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/participant.hpp"
@@ -28,11 +27,12 @@
 #include "swiftlet/services/dds/qos/duration.hpp"
 #include "swiftlet/services/dds/qos/profiles.hpp"
 #include "swiftlet/services/dds/single_source.hpp"
+#include "swiftlet/services/rtps/rtps_ids.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/log_label.hpp"
 #include "swiftlet/services/runtime/realtime.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 // The generated type support of a message: specialize it for each.
 template <class T>
@@ -46,22 +46,22 @@ struct RosTypeHash {
 
 namespace detail {
 
-namespace dds = eprosima::fastdds::dds;
+namespace fastdds = eprosima::fastdds::dds;
 
 // A process as the sender of samples. Fast DDS begins the identifiers of all participants of a process, also
 // of one that rejoined the domain, with the same octets.
 struct SenderId {
   static constexpr std::size_t kProcessOctets = 8;
 
-  rtps::GuidPrefix_t participant;
+  fastrtps::GuidPrefix_t participant;
 
   bool operator==(const SenderId& other) const {
     return std::equal(participant.value, participant.value + kProcessOctets, other.participant.value);
   }
 };
 
-inline std::uint64_t number_of(const rtps::GUID_t& guid) {
-  return fnv(guid.entityId.value, 4, fnv(guid.guidPrefix.value, 12));
+inline std::uint64_t number_of(const fastrtps::GUID_t& guid) {
+  return rtps::fnv(guid.entityId.value, 4, rtps::fnv(guid.guidPrefix.value, 12));
 }
 
 // As names in ROS 2: one that begins with / is absolute, any other is in the namespace of the vehicle.
@@ -70,16 +70,16 @@ inline std::string wire_name(const std::string& vehicle, const std::string& name
 }
 
 template <class T>
-dds::Topic* topic_in(ParticipantSession& session, const std::string& vehicle, const char* name) {
+fastdds::Topic* topic_in(ParticipantSession& session, const std::string& vehicle, const char* name) {
   return session.topic(wire_name(vehicle, name),
-                       dds::TypeSupport(new CheckedTypeSupport<typename PubSubTypeOf<T>::type>()));
+                       fastdds::TypeSupport(new CheckedTypeSupport<typename PubSubTypeOf<T>::type>()));
 }
 
 // Endpoints share the participant, so that they may be destroyed in any order.
 template <class Impl, class T>
 class DdsWriter final : public Writer, private Endpoint {
  public:
-  DdsWriter(std::shared_ptr<Impl> node, std::string vehicle, const Topic<T>& topic)
+  DdsWriter(std::shared_ptr<Impl> node, std::string vehicle, const messages::Topic<T>& topic)
       : node_(std::move(node)),
         vehicle_(std::move(vehicle)),
         topic_(topic),
@@ -96,41 +96,41 @@ class DdsWriter final : public Writer, private Endpoint {
       const std::lock_guard<std::mutex> lock(last_mutex_);
       last_ = *static_cast<const T*>(sample);
     }
-    const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
+    const typename GuardedPointer<fastdds::DataWriter>::Use writer(writer_);
     if (!writer) return false;
     if (!is_reliable(topic_.qos) && !is_heard(*writer)) return true;
-    if (topic_.qos == Qos::kRequest && ++unacknowledged_ > kKeptRequests)
-      unacknowledged_ = wait_until_received(kReliableWriteTimeout) ? 1 : kKeptRequests;
-    return comms::write(*writer, sample);
+    if (topic_.qos == messages::Qos::kRequest && ++unacknowledged_ > messages::kKeptRequests)
+      unacknowledged_ = wait_until_received(messages::kReliableWriteTimeout) ? 1 : messages::kKeptRequests;
+    return dds::write(*writer, sample);
   }
 
   bool wait_until_received(std::chrono::milliseconds timeout) override {
     const runtime::RealtimeScope scope = node_->realtime();
-    const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
+    const typename GuardedPointer<fastdds::DataWriter>::Use writer(writer_);
     return writer && succeeded(writer->wait_for_acknowledgments(duration(timeout)));
   }
 
   int matched() const override { return readers().current_count; }
   std::uint64_t changes() const override {
-    const dds::PublicationMatchedStatus now = readers();
+    const fastdds::PublicationMatchedStatus now = readers();
     return changes_before_ + static_cast<std::uint64_t>(2 * now.total_count - now.current_count);
   }
 
  private:
   void join(ParticipantSession& session) override {
-    dds::DataWriterQos qos = writer_qos(topic_.qos);
+    fastdds::DataWriterQos qos = writer_qos(topic_.qos);
     state_type_hash(qos, RosTypeHash<T>::value());
-    dds::DataWriter* const writer =
+    fastdds::DataWriter* const writer =
         session.publisher->create_datawriter(topic_in<T>(session, vehicle_, topic_.name), qos);
     if (writer == nullptr) throw std::runtime_error(std::string("cannot publish ") + topic_.name);
     const std::lock_guard<std::mutex> lock(last_mutex_);
-    if (last_) comms::write(*writer, &*last_);
+    if (last_) dds::write(*writer, &*last_);
     writer_.give(writer);
   }
   void leave(ParticipantSession& session) override {
-    dds::DataWriter* const writer = writer_.take();
+    fastdds::DataWriter* const writer = writer_.take();
     if (writer == nullptr) return;
-    dds::PublicationMatchedStatus last;
+    fastdds::PublicationMatchedStatus last;
     writer->get_publication_matched_status(last);
     changes_before_ += 2 * static_cast<std::uint64_t>(last.total_count);  // all readers unmatched
     // The destructor of a writer of Fast DDS 2.9 releases samples that its thread for heartbeats still reads if a peer has
@@ -139,24 +139,24 @@ class DdsWriter final : public Writer, private Endpoint {
     session.publisher->delete_datawriter(writer);
   }
   // By another participant.
-  bool is_heard(dds::DataWriter& writer) const {
-    dds::PublicationMatchedStatus status;
+  bool is_heard(fastdds::DataWriter& writer) const {
+    fastdds::PublicationMatchedStatus status;
     writer.get_publication_matched_status(status);
     return status.current_count > own_readers_->load(std::memory_order_relaxed);
   }
-  dds::PublicationMatchedStatus readers() const {
+  fastdds::PublicationMatchedStatus readers() const {
     const runtime::RealtimeScope scope = node_->realtime();
-    const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
-    dds::PublicationMatchedStatus status;
+    const typename GuardedPointer<fastdds::DataWriter>::Use writer(writer_);
+    fastdds::PublicationMatchedStatus status;
     if (writer) writer->get_publication_matched_status(status);
     return status;
   }
 
   std::shared_ptr<Impl> node_;
   const std::string vehicle_;
-  const Topic<T> topic_;
+  const messages::Topic<T> topic_;
   const std::shared_ptr<std::atomic<int>> own_readers_;
-  GuardedPointer<dds::DataWriter> writer_;
+  GuardedPointer<fastdds::DataWriter> writer_;
   std::atomic<std::uint64_t> changes_before_{0};  // in ended sessions
   int unacknowledged_ = 0;                        // at most; requests, with the one that is being written
   std::mutex last_mutex_;
@@ -164,14 +164,14 @@ class DdsWriter final : public Writer, private Endpoint {
 };
 
 template <class Impl, class T>
-class DdsReader final : public Reader, private Endpoint, private dds::DataReaderListener {
+class DdsReader final : public Reader, private Endpoint, private fastdds::DataReaderListener {
  public:
   using Callback = std::function<void(const T&)>;
   using RawCallback = std::function<void(const RawSample&)>;
 
   // Of the two callbacks, one is given.
-  DdsReader(std::shared_ptr<Impl> node, std::string vehicle, const Topic<T>& topic, Callback callback,
-            RawCallback raw_callback, Delivery delivery,
+  DdsReader(std::shared_ptr<Impl> node, std::string vehicle, const messages::Topic<T>& topic,
+            Callback callback, RawCallback raw_callback, Delivery delivery,
             std::optional<std::chrono::milliseconds> source_silence,
             std::function<void(const std::string&)> on_fault)
       : node_(std::move(node)),
@@ -193,8 +193,8 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
 
   int matched() const override {
     const runtime::RealtimeScope scope = node_->realtime();
-    const typename GuardedPointer<dds::DataReader>::Use reader(reader_);
-    dds::SubscriptionMatchedStatus status;
+    const typename GuardedPointer<fastdds::DataReader>::Use reader(reader_);
+    fastdds::SubscriptionMatchedStatus status;
     if (reader) reader->get_subscription_matched_status(status);
     return status.current_count;
   }
@@ -220,18 +220,18 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
   void join(ParticipantSession& session) override {
     open(true);
     own_participant_ = session.participant->guid().guidPrefix;
-    dds::DataReaderQos qos = reader_qos(topic_.qos);
+    fastdds::DataReaderQos qos = reader_qos(topic_.qos);
     state_type_hash(qos, RosTypeHash<T>::value());
     session.receive_in(delivery_, qos);
-    dds::DataReader* const reader = session.subscriber->create_datareader(
-        topic_in<T>(session, vehicle_, topic_.name), qos, this, dds::StatusMask::data_available());
+    fastdds::DataReader* const reader = session.subscriber->create_datareader(
+        topic_in<T>(session, vehicle_, topic_.name), qos, this, fastdds::StatusMask::data_available());
     if (reader == nullptr) throw std::runtime_error(std::string("cannot subscribe to ") + topic_.name);
     session.note_receiver(delivery_, *reader);
     ++*own_readers_;
     reader_.give(reader);
   }
   void leave(ParticipantSession& session) override {
-    dds::DataReader* const reader = reader_.take();
+    fastdds::DataReader* const reader = reader_.take();
     if (reader == nullptr) return;
     open(false);
     --*own_readers_;
@@ -243,10 +243,10 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
     open_ = open;
   }
 
-  void on_data_available(dds::DataReader* reader) override {
+  void on_data_available(fastdds::DataReader* reader) override {
     const std::lock_guard<std::mutex> lock(mutex_);
     const runtime::LogLabel label(log_label_);
-    dds::SampleInfo info;
+    fastdds::SampleInfo info;
     while (open_ && !faulty_ && succeeded(reader->take_next_sample(&sample_, &info))) {
       if (!info.valid_data) continue;
       if (info.sample_identity.writer_guid().guidPrefix == own_participant_) continue;
@@ -255,7 +255,7 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
     }
   }
 
-  void deliver(const dds::SampleInfo& info) {
+  void deliver(const fastdds::SampleInfo& info) {
     if (!on_fault_) return call_or_end(info);
     try {
       call(info);
@@ -266,9 +266,9 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
   }
 
   // Ends the process if the callback throws: the transport below would take its exception for one of Fast DDS.
-  void call_or_end(const dds::SampleInfo& info) noexcept { call(info); }
+  void call_or_end(const fastdds::SampleInfo& info) noexcept { call(info); }
 
-  void call(const dds::SampleInfo& info) {
+  void call(const fastdds::SampleInfo& info) {
     if (callback_) return callback_(sample_.message);
     raw_callback_({sample_.payload.data(), sample_.payload.size(), info.source_timestamp.to_ns(),
                    info.sample_identity.sequence_number().to64long(),
@@ -276,7 +276,7 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
   }
 
   // Never waits: what a reader of the conflict misses, the next ignored sample reports.
-  bool is_from_source(const dds::SampleInfo& info) {
+  bool is_from_source(const fastdds::SampleInfo& info) {
     const SenderId sender{info.sample_identity.writer_guid().guidPrefix};
     const auto now = std::chrono::steady_clock::now();
     if (source_->accepts(sender, now)) return true;
@@ -287,12 +287,12 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
 
   std::shared_ptr<Impl> node_;
   const std::string vehicle_;
-  const Topic<T> topic_;
+  const messages::Topic<T> topic_;
   const std::shared_ptr<std::atomic<int>> own_readers_;
   const Delivery delivery_;
   const std::string log_label_;  // of the thread that subscribed
   const std::function<void(const std::string&)> on_fault_;
-  GuardedPointer<dds::DataReader> reader_;
+  GuardedPointer<fastdds::DataReader> reader_;
   mutable std::mutex conflict_mutex_;
   std::optional<Conflict> conflict_;
   std::mutex mutex_;  // guards all below; held while a callback runs
@@ -300,7 +300,7 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
   RawCallback raw_callback_;
   std::optional<SingleSource<SenderId>> source_;
   ReceivedSample<T> sample_;
-  rtps::GuidPrefix_t own_participant_;
+  fastrtps::GuidPrefix_t own_participant_;
   bool open_ = false;
   bool faulty_ = false;  // the callback threw an exception
 };
@@ -308,25 +308,25 @@ class DdsReader final : public Reader, private Endpoint, private dds::DataReader
 }  // namespace detail
 
 template <class T>
-Publisher<T> Node::publish(const Topic<T>& topic) {
+Publisher<T> Node::publish(const messages::Topic<T>& topic) {
   return Publisher<T>(
       std::make_unique<detail::DdsWriter<Participant::Impl, T>>(participant_.impl_, vehicle_, topic));
 }
 
 template <class T>
-Subscription Node::subscribe(const Topic<T>& topic, std::function<void(const T&)> callback, Delivery delivery,
-                             std::optional<std::chrono::milliseconds> source_silence) {
+Subscription Node::subscribe(const messages::Topic<T>& topic, std::function<void(const T&)> callback,
+                             Delivery delivery, std::optional<std::chrono::milliseconds> source_silence) {
   return Subscription(std::make_unique<detail::DdsReader<Participant::Impl, T>>(
       participant_.impl_, vehicle_, topic, std::move(callback), nullptr, delivery, source_silence,
       on_fault_));
 }
 
 template <class T>
-Subscription Node::subscribe_raw(const Topic<T>& topic, std::function<void(const RawSample&)> callback,
-                                 Delivery delivery) {
+Subscription Node::subscribe_raw(const messages::Topic<T>& topic,
+                                 std::function<void(const RawSample&)> callback, Delivery delivery) {
   return Subscription(std::make_unique<detail::DdsReader<Participant::Impl, T>>(
-      participant_.impl_, vehicle_, Topic<T>{topic.name, topic.qos}, nullptr, std::move(callback), delivery,
-      std::nullopt, on_fault_));
+      participant_.impl_, vehicle_, messages::Topic<T>{topic.name, topic.qos}, nullptr, std::move(callback),
+      delivery, std::nullopt, on_fault_));
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

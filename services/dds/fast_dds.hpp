@@ -50,28 +50,28 @@
 
 #include "swiftlet/services/dds/qos/qos_conflicts.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 #if SWIFTLET_FAST_DDS_3
-namespace rtps = eprosima::fastdds::rtps;
+namespace fastrtps = eprosima::fastdds::rtps;
 #else
-namespace rtps = eprosima::fastrtps::rtps;
+namespace fastrtps = eprosima::fastrtps::rtps;
 #endif
 
 // ---- results and types
 
 #if SWIFTLET_FAST_DDS_3
 using ReturnCode = eprosima::fastdds::dds::ReturnCode_t;
-using PayloadArgument = rtps::SerializedPayload_t&;  // of TopicDataType::deserialize()
-inline const rtps::SerializedPayload_t& content_of(PayloadArgument payload) { return payload; }
+using PayloadArgument = fastrtps::SerializedPayload_t&;  // of TopicDataType::deserialize()
+inline const fastrtps::SerializedPayload_t& content_of(PayloadArgument payload) { return payload; }
 inline bool succeeded(ReturnCode code) { return code == eprosima::fastdds::dds::RETCODE_OK; }
 inline const char* type_name(const eprosima::fastdds::dds::TopicDataType& type) {
   return type.get_name().c_str();
 }
 #else
 using ReturnCode = eprosima::fastrtps::types::ReturnCode_t;
-using PayloadArgument = rtps::SerializedPayload_t*;
-inline const rtps::SerializedPayload_t& content_of(PayloadArgument payload) { return *payload; }
+using PayloadArgument = fastrtps::SerializedPayload_t*;
+inline const fastrtps::SerializedPayload_t& content_of(PayloadArgument payload) { return *payload; }
 inline bool succeeded(ReturnCode code) { return code == ReturnCode::RETCODE_OK; }
 inline const char* type_name(const eprosima::fastdds::dds::TopicDataType& type) { return type.getName(); }
 #endif
@@ -94,14 +94,14 @@ inline std::uint32_t serialized_size(eprosima::fastdds::dds::TopicDataType& type
 #endif
 }
 inline bool serialize(eprosima::fastdds::dds::TopicDataType& type, void* message,
-                      rtps::SerializedPayload_t& payload) {
+                      fastrtps::SerializedPayload_t& payload) {
 #if SWIFTLET_FAST_DDS_3
   return type.serialize(message, payload, eprosima::fastdds::dds::XCDR_DATA_REPRESENTATION);
 #else
   return type.serialize(message, &payload);
 #endif
 }
-inline bool deserialize(eprosima::fastdds::dds::TopicDataType& type, rtps::SerializedPayload_t& payload,
+inline bool deserialize(eprosima::fastdds::dds::TopicDataType& type, fastrtps::SerializedPayload_t& payload,
                         void* message) {
 #if SWIFTLET_FAST_DDS_3
   return type.deserialize(payload, message);
@@ -133,28 +133,30 @@ class PayloadType : public eprosima::fastdds::dds::TopicDataType {
   virtual void destroy(void* message) = 0;
   virtual std::uint32_t size(const void* message) const = 0;  // of its payload, bytes
   // Writes or reads the payload; false if it does not fit, or is not taken.
-  virtual bool fill(const void* message, rtps::SerializedPayload_t& payload) = 0;
-  virtual bool take(const rtps::SerializedPayload_t& payload, void* message) = 0;
+  virtual bool fill(const void* message, fastrtps::SerializedPayload_t& payload) = 0;
+  virtual bool take(const fastrtps::SerializedPayload_t& payload, void* message) = 0;
 
  private:
 #if SWIFTLET_FAST_DDS_3
   using Representation = eprosima::fastdds::dds::DataRepresentationId_t;
-  bool serialize(const void* message, rtps::SerializedPayload_t& payload, Representation) final {
+  bool serialize(const void* message, fastrtps::SerializedPayload_t& payload, Representation) final {
     return fill(message, payload);
   }
   std::uint32_t calculate_serialized_size(const void* message, Representation) final { return size(message); }
   void* create_data() final { return create(); }
   void delete_data(void* message) final { destroy(message); }
-  bool compute_key(rtps::SerializedPayload_t&, rtps::InstanceHandle_t&, bool) final { return false; }
-  bool compute_key(const void*, rtps::InstanceHandle_t&, bool) final { return false; }
+  bool compute_key(fastrtps::SerializedPayload_t&, fastrtps::InstanceHandle_t&, bool) final { return false; }
+  bool compute_key(const void*, fastrtps::InstanceHandle_t&, bool) final { return false; }
 #else
-  bool serialize(void* message, rtps::SerializedPayload_t* payload) final { return fill(message, *payload); }
+  bool serialize(void* message, fastrtps::SerializedPayload_t* payload) final {
+    return fill(message, *payload);
+  }
   std::function<std::uint32_t()> getSerializedSizeProvider(void* message) final {
     return [this, message] { return size(message); };
   }
   void* createData() final { return create(); }
   void deleteData(void* message) final { destroy(message); }
-  bool getKey(void*, rtps::InstanceHandle_t*, bool) final { return false; }
+  bool getKey(void*, fastrtps::InstanceHandle_t*, bool) final { return false; }
 #endif
 };
 
@@ -181,15 +183,16 @@ inline void switch_off_intraprocess_delivery() {
 }
 
 // number: of the server in the list of ROS 2, by which 2.9 knows it; 3 knows it by its addresses.
-inline void add_discovery_server(rtps::DiscoverySettings& discovery, int number,
-                                 const std::vector<rtps::Locator_t>& addresses) {
+inline void add_discovery_server(fastrtps::DiscoverySettings& discovery, int number,
+                                 const std::vector<fastrtps::Locator_t>& addresses) {
 #if SWIFTLET_FAST_DDS_3
   static_cast<void>(number);
-  for (const rtps::Locator_t& address : addresses) discovery.m_DiscoveryServers.push_back(address);
+  for (const fastrtps::Locator_t& address : addresses) discovery.m_DiscoveryServers.push_back(address);
 #else
   eprosima::fastdds::rtps::RemoteServerAttributes server;
   eprosima::fastdds::rtps::get_server_client_default_guidPrefix(number, server.guidPrefix);
-  for (const rtps::Locator_t& address : addresses) server.metatrafficUnicastLocatorList.push_back(address);
+  for (const fastrtps::Locator_t& address : addresses)
+    server.metatrafficUnicastLocatorList.push_back(address);
   discovery.m_DiscoveryServers.push_back(server);
 #endif
 }
@@ -243,24 +246,25 @@ inline EndpointQos endpoint_qos(const eprosima::fastdds::dds::DataReaderQos& qos
 class DiscoveryListener : public eprosima::fastdds::dds::DomainParticipantListener {
  protected:
   // A participant was discovered, or has changed its user data.
-  virtual void on_participant(const rtps::GUID_t& guid, const std::string& name,
+  virtual void on_participant(const fastrtps::GUID_t& guid, const std::string& name,
                               const std::vector<std::uint8_t>& user_data) = 0;
-  virtual void on_participant_gone(const rtps::GUID_t& guid, bool said_goodbye) = 0;
+  virtual void on_participant_gone(const fastrtps::GUID_t& guid, bool said_goodbye) = 0;
   // With security, before or after on_participant(): whether it is who it says.
-  virtual void on_authentication(const rtps::GUID_t&, bool /*authenticated*/) {}
-  virtual void on_writer(const rtps::GUID_t&, const std::string& /*topic*/, const EndpointQos&) {}
-  virtual void on_writer_gone(const rtps::GUID_t&) {}
-  virtual void on_reader(const rtps::GUID_t&, const std::string& /*topic*/, const EndpointQos&) {}
-  virtual void on_reader_gone(const rtps::GUID_t&) {}
+  virtual void on_authentication(const fastrtps::GUID_t&, bool /*authenticated*/) {}
+  virtual void on_writer(const fastrtps::GUID_t&, const std::string& /*topic*/, const EndpointQos&) {}
+  virtual void on_writer_gone(const fastrtps::GUID_t&) {}
+  virtual void on_reader(const fastrtps::GUID_t&, const std::string& /*topic*/, const EndpointQos&) {}
+  virtual void on_reader_gone(const fastrtps::GUID_t&) {}
 
  private:
   using Participant = eprosima::fastdds::dds::DomainParticipant;
-  static bool is_own(const Participant* own, const rtps::GUID_t& guid) {
+  static bool is_own(const Participant* own, const fastrtps::GUID_t& guid) {
     return guid.guidPrefix == own->guid().guidPrefix;
   }
 
-  void onParticipantAuthentication(Participant*, rtps::ParticipantAuthenticationInfo&& info) final {
-    on_authentication(info.guid, info.status == rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
+  void onParticipantAuthentication(Participant*, fastrtps::ParticipantAuthenticationInfo&& info) final {
+    on_authentication(info.guid,
+                      info.status == fastrtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
   }
 
 #if SWIFTLET_FAST_DDS_3
@@ -275,25 +279,25 @@ class DiscoveryListener : public eprosima::fastdds::dds::DomainParticipantListen
             info.disable_positive_acks.enabled};
   }
 
-  void on_participant_discovery(Participant*, rtps::ParticipantDiscoveryStatus status,
-                                const rtps::ParticipantBuiltinTopicData& info, bool&) final {
-    using Status = rtps::ParticipantDiscoveryStatus;
+  void on_participant_discovery(Participant*, fastrtps::ParticipantDiscoveryStatus status,
+                                const fastrtps::ParticipantBuiltinTopicData& info, bool&) final {
+    using Status = fastrtps::ParticipantDiscoveryStatus;
     if (status == Status::DISCOVERED_PARTICIPANT || status == Status::CHANGED_QOS_PARTICIPANT)
       on_participant(info.guid, info.participant_name.c_str(), info.user_data.data_vec());
     if (status == Status::REMOVED_PARTICIPANT || status == Status::DROPPED_PARTICIPANT)
       on_participant_gone(info.guid, status == Status::REMOVED_PARTICIPANT);
   }
-  void on_data_writer_discovery(Participant* own, rtps::WriterDiscoveryStatus status,
-                                const rtps::PublicationBuiltinTopicData& info, bool&) final {
+  void on_data_writer_discovery(Participant* own, fastrtps::WriterDiscoveryStatus status,
+                                const fastrtps::PublicationBuiltinTopicData& info, bool&) final {
     if (is_own(own, info.guid)) return;
-    using Status = rtps::WriterDiscoveryStatus;
+    using Status = fastrtps::WriterDiscoveryStatus;
     if (status == Status::DISCOVERED_WRITER) on_writer(info.guid, info.topic_name.c_str(), qos_of(info));
     if (status == Status::REMOVED_WRITER) on_writer_gone(info.guid);
   }
-  void on_data_reader_discovery(Participant* own, rtps::ReaderDiscoveryStatus status,
-                                const rtps::SubscriptionBuiltinTopicData& info, bool&) final {
+  void on_data_reader_discovery(Participant* own, fastrtps::ReaderDiscoveryStatus status,
+                                const fastrtps::SubscriptionBuiltinTopicData& info, bool&) final {
     if (is_own(own, info.guid)) return;
-    using Status = rtps::ReaderDiscoveryStatus;
+    using Status = fastrtps::ReaderDiscoveryStatus;
     if (status == Status::DISCOVERED_READER) on_reader(info.guid, info.topic_name.c_str(), qos_of(info));
     if (status == Status::REMOVED_READER) on_reader_gone(info.guid);
   }
@@ -313,26 +317,26 @@ class DiscoveryListener : public eprosima::fastdds::dds::DomainParticipantListen
             qos.m_disablePositiveACKs.enabled};
   }
 
-  void on_participant_discovery(Participant*, rtps::ParticipantDiscoveryInfo&& found) final {
-    using Info = rtps::ParticipantDiscoveryInfo;
+  void on_participant_discovery(Participant*, fastrtps::ParticipantDiscoveryInfo&& found) final {
+    using Info = fastrtps::ParticipantDiscoveryInfo;
     const auto& info = found.info;
     if (found.status == Info::DISCOVERED_PARTICIPANT || found.status == Info::CHANGED_QOS_PARTICIPANT)
       on_participant(info.m_guid, info.m_participantName.c_str(), info.m_userData.dataVec());
     if (found.status == Info::REMOVED_PARTICIPANT || found.status == Info::DROPPED_PARTICIPANT)
       on_participant_gone(info.m_guid, found.status == Info::REMOVED_PARTICIPANT);
   }
-  void on_publisher_discovery(Participant* own, rtps::WriterDiscoveryInfo&& found) final {
+  void on_publisher_discovery(Participant* own, fastrtps::WriterDiscoveryInfo&& found) final {
     const auto& info = found.info;
     if (is_own(own, info.guid())) return;
-    using Info = rtps::WriterDiscoveryInfo;
+    using Info = fastrtps::WriterDiscoveryInfo;
     if (found.status == Info::DISCOVERED_WRITER)
       on_writer(info.guid(), info.topicName().c_str(), qos_of(info.m_qos));
     if (found.status == Info::REMOVED_WRITER) on_writer_gone(info.guid());
   }
-  void on_subscriber_discovery(Participant* own, rtps::ReaderDiscoveryInfo&& found) final {
+  void on_subscriber_discovery(Participant* own, fastrtps::ReaderDiscoveryInfo&& found) final {
     const auto& info = found.info;
     if (is_own(own, info.guid())) return;
-    using Info = rtps::ReaderDiscoveryInfo;
+    using Info = fastrtps::ReaderDiscoveryInfo;
     if (found.status == Info::DISCOVERED_READER)
       on_reader(info.guid(), info.topicName().c_str(), qos_of(info.m_qos));
     if (found.status == Info::REMOVED_READER) on_reader_gone(info.guid());
@@ -345,29 +349,29 @@ class DiscoveryListener : public eprosima::fastdds::dds::DomainParticipantListen
 // A datagram that is to be sent, in one piece (2.9) or several (3).
 struct OutgoingDatagram {
 #if SWIFTLET_FAST_DDS_3
-  const std::vector<rtps::NetworkBuffer>& pieces;
+  const std::vector<fastrtps::NetworkBuffer>& pieces;
 #else
-  const rtps::octet* bytes;
+  const fastrtps::octet* bytes;
 #endif
   std::uint32_t size;
 
   struct Piece {
-    const rtps::octet* bytes;
+    const fastrtps::octet* bytes;
     std::uint32_t size;
   };
   Piece first_piece() const {
 #if SWIFTLET_FAST_DDS_3
     if (pieces.empty()) return {nullptr, 0};
-    return {static_cast<const rtps::octet*>(pieces.front().buffer), pieces.front().size};
+    return {static_cast<const fastrtps::octet*>(pieces.front().buffer), pieces.front().size};
 #else
     return {bytes, size};
 #endif
   }
-  void copy_to(std::vector<rtps::octet>& copy) const {
+  void copy_to(std::vector<fastrtps::octet>& copy) const {
 #if SWIFTLET_FAST_DDS_3
     copy.clear();
-    for (const rtps::NetworkBuffer& piece : pieces) {
-      const auto* const begin = static_cast<const rtps::octet*>(piece.buffer);
+    for (const fastrtps::NetworkBuffer& piece : pieces) {
+      const auto* const begin = static_cast<const fastrtps::octet*>(piece.buffer);
       copy.insert(copy.end(), begin, begin + piece.size);
     }
 #else
@@ -378,12 +382,12 @@ struct OutgoingDatagram {
 
 // Where a datagram is sent, and until when.
 struct Destination {
-  rtps::LocatorsIterator* begin;
-  rtps::LocatorsIterator* end;
+  fastrtps::LocatorsIterator* begin;
+  fastrtps::LocatorsIterator* end;
   const std::chrono::steady_clock::time_point& deadline;
 };
 
-inline bool send(rtps::SenderResource& channel, const OutgoingDatagram& datagram, const Destination& to) {
+inline bool send(fastrtps::SenderResource& channel, const OutgoingDatagram& datagram, const Destination& to) {
 #if SWIFTLET_FAST_DDS_3
   return channel.send(datagram.pieces, datagram.size, to.begin, to.end, to.deadline);
 #else
@@ -391,11 +395,11 @@ inline bool send(rtps::SenderResource& channel, const OutgoingDatagram& datagram
 #endif
 }
 
-inline bool send(rtps::SenderResource& channel, const std::vector<rtps::octet>& bytes,
+inline bool send(fastrtps::SenderResource& channel, const std::vector<fastrtps::octet>& bytes,
                  const Destination& to) {
   const auto size = static_cast<std::uint32_t>(bytes.size());
 #if SWIFTLET_FAST_DDS_3
-  thread_local std::vector<rtps::NetworkBuffer> pieces(1);
+  thread_local std::vector<fastrtps::NetworkBuffer> pieces(1);
   pieces.front() = {bytes.data(), size};
   return send(channel, OutgoingDatagram{pieces, size}, to);
 #else
@@ -404,35 +408,35 @@ inline bool send(rtps::SenderResource& channel, const std::vector<rtps::octet>& 
 }
 
 // A channel that a transport puts before a channel of the transport below it.
-class OutputChannel : public rtps::SenderResource {
+class OutputChannel : public fastrtps::SenderResource {
  public:
-  void add_locators_to_list(rtps::LocatorList_t& locators) const override {
+  void add_locators_to_list(fastrtps::LocatorList_t& locators) const override {
     below_->add_locators_to_list(locators);
   }
-  std::unique_ptr<rtps::SenderResource> take() { return std::move(below_); }
+  std::unique_ptr<fastrtps::SenderResource> take() { return std::move(below_); }
 
  protected:
-  explicit OutputChannel(std::unique_ptr<rtps::SenderResource> below)
+  explicit OutputChannel(std::unique_ptr<fastrtps::SenderResource> below)
       : SenderResource(below->kind()), below_(std::move(below)) {
 #if SWIFTLET_FAST_DDS_3
-    send_buffers_lambda_ = [this](const std::vector<rtps::NetworkBuffer>& pieces, std::uint32_t size,
-                                  rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
+    send_buffers_lambda_ = [this](const std::vector<fastrtps::NetworkBuffer>& pieces, std::uint32_t size,
+                                  fastrtps::LocatorsIterator* begin, fastrtps::LocatorsIterator* end,
                                   const std::chrono::steady_clock::time_point& deadline) {
       return send_datagram({pieces, size}, {begin, end, deadline});
     };
 #else
-    send_lambda_ = [this](const rtps::octet* bytes, std::uint32_t size, rtps::LocatorsIterator* begin,
-                          rtps::LocatorsIterator* end,
+    send_lambda_ = [this](const fastrtps::octet* bytes, std::uint32_t size, fastrtps::LocatorsIterator* begin,
+                          fastrtps::LocatorsIterator* end,
                           const std::chrono::steady_clock::time_point& deadline) {
       return send_datagram({bytes, size}, {begin, end, deadline});
     };
 #endif
   }
   virtual bool send_datagram(const OutgoingDatagram& datagram, const Destination& to) = 0;
-  rtps::SenderResource& below() { return *below_; }
+  fastrtps::SenderResource& below() { return *below_; }
 
  private:
-  std::unique_ptr<rtps::SenderResource> below_;
+  std::unique_ptr<fastrtps::SenderResource> below_;
 };
 
 // A transport before another one, which sends through an OutputChannel.
@@ -447,33 +451,33 @@ class ChainedTransport : public eprosima::fastdds::rtps::ChainingTransport {
 
   using ChainingTransport::transform_remote_locator;
 #if SWIFTLET_FAST_DDS_3
-  bool transform_remote_locator(const rtps::Locator_t& announced, rtps::Locator_t& used,
+  bool transform_remote_locator(const fastrtps::Locator_t& announced, fastrtps::Locator_t& used,
                                 bool allows_localhost_there, bool allows_localhost_here) const final {
     return leads_here(announced, used) || low_level_transport_->transform_remote_locator(
                                               announced, used, allows_localhost_there, allows_localhost_here);
   }
 #else
-  bool transform_remote_locator(const rtps::Locator_t& announced, rtps::Locator_t& used) const final {
+  bool transform_remote_locator(const fastrtps::Locator_t& announced, fastrtps::Locator_t& used) const final {
     return leads_here(announced, used) || low_level_transport_->transform_remote_locator(announced, used);
   }
 #endif
   // Whether a process with this address is reached by another one, which is set then.
-  virtual bool leads_here(const rtps::Locator_t& announced, rtps::Locator_t& used) const = 0;
+  virtual bool leads_here(const fastrtps::Locator_t& announced, fastrtps::Locator_t& used) const = 0;
 
   // For the channels of ChainingTransport; OutputChannel does without.
 #if SWIFTLET_FAST_DDS_3
-  bool send(rtps::SenderResource* below, const std::vector<rtps::NetworkBuffer>& pieces, std::uint32_t size,
-            rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
+  bool send(fastrtps::SenderResource* below, const std::vector<fastrtps::NetworkBuffer>& pieces,
+            std::uint32_t size, fastrtps::LocatorsIterator* begin, fastrtps::LocatorsIterator* end,
             const std::chrono::steady_clock::time_point& deadline) final {
     return below->send(pieces, size, begin, end, deadline);
   }
 #else
-  bool send(rtps::SenderResource* below, const rtps::octet* bytes, std::uint32_t size,
-            rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
+  bool send(fastrtps::SenderResource* below, const fastrtps::octet* bytes, std::uint32_t size,
+            fastrtps::LocatorsIterator* begin, fastrtps::LocatorsIterator* end,
             const std::chrono::steady_clock::time_point& deadline) final {
     return below->send(bytes, size, begin, end, deadline);
   }
 #endif
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

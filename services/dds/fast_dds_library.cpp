@@ -12,21 +12,21 @@
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/runtime/token_bucket.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
-namespace dds = eprosima::fastdds::dds;
+namespace fastdds = eprosima::fastdds::dds;
 
 namespace {
 
 // Called by the thread of the log.
-class Consumer final : public dds::StdoutErrConsumer {
+class Consumer final : public fastdds::StdoutErrConsumer {
  public:
-  void Consume(const dds::Log::Entry& entry) override {
-    if (entry.kind == dds::Log::Kind::Error || is_told(entry)) StdoutErrConsumer::Consume(entry);
+  void Consume(const fastdds::Log::Entry& entry) override {
+    if (entry.kind == fastdds::Log::Kind::Error || is_told(entry)) StdoutErrConsumer::Consume(entry);
   }
 
  private:
-  bool is_told(const dds::Log::Entry& warning) {
+  bool is_told(const fastdds::Log::Entry& warning) {
     const auto now = std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
     return std::string_view(warning.context.category) == "SECURITY_AUTHENTICATION" && warnings_.take(now);
   }
@@ -38,20 +38,20 @@ class Consumer final : public dds::StdoutErrConsumer {
 
 void set_up_fast_dds(bool tells_refusals) {
   static const bool done = [] {
-    dds::Log::ClearConsumers();
-    dds::Log::RegisterConsumer(std::make_unique<Consumer>());
-    dds::Log::SetVerbosity(dds::Log::Kind::Error);
+    fastdds::Log::ClearConsumers();
+    fastdds::Log::RegisterConsumer(std::make_unique<Consumer>());
+    fastdds::Log::SetVerbosity(fastdds::Log::Kind::Error);
     // Otherwise Fast DDS makes a client of a server of each participant that uses multicast, peers or the loopback
     // interface. The options have read the variable.
     unsetenv("ROS_DISCOVERY_SERVER");
     // The default files of Fast DDS, so that what follows holds also if they say otherwise.
-    dds::DomainParticipantFactory::get_instance()->load_profiles();
+    fastdds::DomainParticipantFactory::get_instance()->load_profiles();
     // Two nodes in one process communicate as two processes do: publish() never runs a callback.
     switch_off_intraprocess_delivery();
     return true;
   }();
   static_cast<void>(done);
-  if (tells_refusals) dds::Log::SetVerbosity(dds::Log::Kind::Warning);
+  if (tells_refusals) fastdds::Log::SetVerbosity(fastdds::Log::Kind::Warning);
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

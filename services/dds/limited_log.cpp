@@ -4,7 +4,7 @@
 
 #include "swiftlet/services/runtime/log.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 void LimitedLog::warn(const std::string& line, Time now) {
   for (auto it = written_.begin(); it != written_.end();)
@@ -13,4 +13,4 @@ void LimitedLog::warn(const std::string& line, Time now) {
   runtime::log_warning("{}", line);
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 // Writes each line once in a time, and few lines. Not thread-safe.
 class LimitedLog {
@@ -22,4 +22,4 @@ class LimitedLog {
   std::map<std::string, Time> written_;
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

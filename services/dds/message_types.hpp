@@ -40,16 +40,16 @@
   X(SimulationClock) X(Trajectory) X(TrajectorySetpoint) X(VehicleInfo) X(VehicleOdometry)
 // clang-format on
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 template <class T>
 struct PubSubTypeOf;
-#define SWIFTLET_PUB_SUB_TYPE(Name)     \
-  template <>                           \
-  struct PubSubTypeOf<msg::Name> {      \
-    using type = msg::Name##PubSubType; \
+#define SWIFTLET_PUB_SUB_TYPE(Name)               \
+  template <>                                     \
+  struct PubSubTypeOf<messages::msg::Name> {      \
+    using type = messages::msg::Name##PubSubType; \
   };
 SWIFTLET_FOR_EACH_MESSAGE(SWIFTLET_PUB_SUB_TYPE)
 #undef SWIFTLET_PUB_SUB_TYPE
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

@@ -12,12 +12,12 @@
 #include "swiftlet/services/messages/schemas.hpp"
 #include "swiftlet/services/messages/vehicle_names.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
-#define SWIFTLET_TYPE_HASH(Name)                                            \
-  template <>                                                               \
-  struct RosTypeHash<msg::Name> {                                           \
-    static const char* value() { return schema_of<msg::Name>().type_hash; } \
+#define SWIFTLET_TYPE_HASH(Name)                                                                \
+  template <>                                                                                   \
+  struct RosTypeHash<messages::msg::Name> {                                                     \
+    static const char* value() { return messages::schema_of<messages::msg::Name>().type_hash; } \
   };
 SWIFTLET_FOR_EACH_MESSAGE(SWIFTLET_TYPE_HASH)
 #undef SWIFTLET_TYPE_HASH
@@ -25,7 +25,7 @@ SWIFTLET_FOR_EACH_MESSAGE(SWIFTLET_TYPE_HASH)
 namespace {
 
 const std::string& checked(const std::string& vehicle) {
-  const std::string fault = fault_of_vehicle_name(vehicle);
+  const std::string fault = messages::fault_of_vehicle_name(vehicle);
   if (!fault.empty()) throw std::runtime_error("vehicle name is '" + vehicle + "', " + fault);
   return vehicle;
 }
@@ -40,7 +40,7 @@ std::string ProcessIdentity::to_string() const {
 Participant::Participant(const NodeSettings& settings) : impl_(std::make_shared<Impl>(settings, "")) {}
 
 Participant::Participant(const NodeSettings& settings, const std::vector<std::string>& vehicles)
-    : impl_(std::make_shared<Impl>(settings, runtime::joined(vehicles, ","))) {}
+    : impl_(std::make_shared<Impl>(settings, io::joined(vehicles, ","))) {}
 
 Node::Node(const NodeSettings& settings)
     : participant_(std::make_shared<Participant::Impl>(settings, checked(settings.vehicle))),
@@ -81,13 +81,14 @@ void Node::on_peer(std::function<void(const PeerEvent&)> callback) {
 
 void Node::rejoin() { participant_.impl_->rejoin(); }
 
-#define SWIFTLET_INSTANTIATE(Name)                                                                          \
-  template Publisher<msg::Name> Node::publish(const Topic<msg::Name>&);                                     \
-  template Subscription Node::subscribe(const Topic<msg::Name>&, std::function<void(const msg::Name&)>,     \
-                                        Delivery, std::optional<std::chrono::milliseconds>);                \
-  template Subscription Node::subscribe_raw(const Topic<msg::Name>&, std::function<void(const RawSample&)>, \
-                                            Delivery);
+#define SWIFTLET_INSTANTIATE(Name)                                                                    \
+  template Publisher<messages::msg::Name> Node::publish(const messages::Topic<messages::msg::Name>&); \
+  template Subscription Node::subscribe(const messages::Topic<messages::msg::Name>&,                  \
+                                        std::function<void(const messages::msg::Name&)>, Delivery,    \
+                                        std::optional<std::chrono::milliseconds>);                    \
+  template Subscription Node::subscribe_raw(const messages::Topic<messages::msg::Name>&,              \
+                                            std::function<void(const RawSample&)>, Delivery);
 SWIFTLET_FOR_EACH_MESSAGE(SWIFTLET_INSTANTIATE)
 #undef SWIFTLET_INSTANTIATE
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

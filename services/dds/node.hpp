@@ -14,7 +14,7 @@
 
 #include "swiftlet/services/messages/topics.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 // How a process finds the processes of other hosts.
 struct NetworkSettings {
@@ -54,7 +54,7 @@ struct NodeSettings {
   // Folder with the keys of DDS Security (io/security/security_folder.hpp). Empty: no security.
   std::string security{};
   // Period of its announcements: kFixturePeriod for vehicle and motion capture.
-  std::chrono::milliseconds announcement_period = kLivelinessPeriod;
+  std::chrono::milliseconds announcement_period = messages::kLivelinessPeriod;
   // SCHED_FIFO priority of all threads that hold locks of the middleware, 0: ordinary. A real-time thread that publishes or
   // receives waits for such locks: one priority for all lets nothing else delay who holds them.
   int realtime_priority = 0;
@@ -227,19 +227,19 @@ class Node {
 
   // Throws std::runtime_error.
   template <class T>
-  Publisher<T> publish(const Topic<T>& topic);
+  Publisher<T> publish(const messages::Topic<T>& topic);
 
   // The callback runs in the thread that received the sample, once per sample, never concurrently. It must
   // not block. What this participant publishes itself is not delivered. source_silence: if given, the samples of only one process are delivered, that which was heard
   // first, until it has been silent for this time. Throws std::runtime_error.
   template <class T>
-  Subscription subscribe(const Topic<T>& topic, std::function<void(const T&)> callback,
+  Subscription subscribe(const messages::Topic<T>& topic, std::function<void(const T&)> callback,
                          Delivery delivery = Delivery::kShared,
                          std::optional<std::chrono::milliseconds> source_silence = std::nullopt);
 
   // As subscribe(), for recorders.
   template <class T>
-  Subscription subscribe_raw(const Topic<T>& topic, std::function<void(const RawSample&)> callback,
+  Subscription subscribe_raw(const messages::Topic<T>& topic, std::function<void(const RawSample&)> callback,
                              Delivery delivery = Delivery::kShared);
 
   std::vector<std::string> topics_seen() const { return participant_.topics_seen(); }
@@ -265,4 +265,4 @@ class Node {
   const bool shares_participant_ = false;
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

@@ -18,12 +18,12 @@
 #include "swiftlet/services/dds/security/security_qos.hpp"
 #include "swiftlet/services/messages/vehicle_names.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 namespace {
 
 // ---- the network file
 
-using runtime::ConfigNode;
+using io::ConfigNode;
 
 constexpr std::size_t kMaxPeers = 64;  // each costs an announcement to 17 ports and more
 constexpr std::size_t kMaxInterfaces = 16;
@@ -46,10 +46,10 @@ void read_discovery(const ConfigNode& root, NodeSettings& settings) {
   if (!peers && !servers) return;
   settings.network.peers.clear();
   settings.network.discovery_servers.clear();
-  if (peers) settings.network.peers = texts(*peers, kMaxPeers, runtime::fault_of_host_address);
+  if (peers) settings.network.peers = texts(*peers, kMaxPeers, io::fault_of_host_address);
   if (servers)
     settings.network.discovery_servers =
-        runtime::joined(texts(*servers, runtime::kMaxDiscoveryServers, runtime::fault_of_host_address), ";");
+        io::joined(texts(*servers, io::kMaxDiscoveryServers, io::fault_of_host_address), ";");
 }
 
 std::string path_beside(const ConfigNode& file) {
@@ -60,11 +60,11 @@ void read(const ConfigNode& root, NodeSettings& settings) {
   read_discovery(root, settings);
   if (const auto open = root.find("open_network")) settings.open_network = open->boolean();
   if (const auto interfaces = root.find("interfaces"))
-    settings.network.interfaces = texts(*interfaces, kMaxInterfaces, runtime::fault_of_interface);
+    settings.network.interfaces = texts(*interfaces, kMaxInterfaces, io::fault_of_interface);
   if (const auto profile = root.find("dds_profile")) settings.network.dds_profile = path_beside(*profile);
   if (const auto key = root.find("network_key")) {
     settings.network_key_file = path_beside(*key);
-    runtime::read_network_keys(settings.network_key_file);  // throws for an invalid one
+    io::read_network_keys(settings.network_key_file);  // throws for an invalid one
   }
   if (const auto folder = root.find("security")) {
     settings.security = path_beside(*folder);
@@ -77,7 +77,7 @@ void read(const ConfigNode& root, NodeSettings& settings) {
 
 std::string fault_of_key_file(const std::string& file) {
   try {
-    runtime::read_network_keys(file);
+    io::read_network_keys(file);
     return {};
   } catch (const std::runtime_error& error) {
     return error.what();
@@ -95,7 +95,7 @@ void apply_environment(NodeSettings& settings) {
   settings.network.peers.clear();
   settings.network.discovery_servers = environment("ROS_DISCOVERY_SERVER");
   if (!settings.network.discovery_servers.empty()) return;
-  for (const std::string& peer : runtime::split_text(environment("ROS_STATIC_PEERS"), ';')) {
+  for (const std::string& peer : io::split_text(environment("ROS_STATIC_PEERS"), ';')) {
     if (!peer.empty()) settings.network.peers.push_back(peer);
   }
 }
@@ -103,9 +103,9 @@ void apply_environment(NodeSettings& settings) {
 // Applies the file.
 std::string fault_of_network_file(const std::string& file, NodeSettings& settings) {
   try {
-    apply_network_file(runtime::read_text_file(file), file, settings);
+    apply_network_file(io::read_text_file(file), file, settings);
     return "";
-  } catch (const runtime::ConfigError& error) {
+  } catch (const io::ConfigError& error) {
     return error.what();
   }
 }
@@ -126,20 +126,20 @@ void add_network_options(runtime::CommandLine app, NodeSettings& settings) {
                      "Find the processes of this host without multicast; once for each other host; default: "
                      "$ROS_STATIC_PEERS");
   peer.repeated()
-      .check(runtime::fault_of_host_address, "HOST[:PORT]")
+      .check(io::fault_of_host_address, "HOST[:PORT]")
       .excludes(localhost_only)
       .when_given([&settings] { settings.network.discovery_servers.clear(); });
   app.add_option("--discovery-server", settings.network.discovery_servers,
                  "Find the other processes by `swiftlet discovery-server` at this address (port 11811 unless "
                  "given), without multicast; default: $ROS_DISCOVERY_SERVER")
-      .check(runtime::fault_of_discovery_servers, "HOST[:PORT]")
+      .check(io::fault_of_discovery_servers, "HOST[:PORT]")
       .excludes(localhost_only)
       .excludes(peer)
       .when_given([&settings] { settings.network.peers.clear(); });
   app.add_option("--interface", settings.network.interfaces,
                  "Use this network interface, and that of the loopback, only; may be repeated")
       .repeated()
-      .check(runtime::fault_of_interface, "NAME|ADDRESS")
+      .check(io::fault_of_interface, "NAME|ADDRESS")
       .excludes(localhost_only);
 }
 
@@ -156,7 +156,7 @@ void add_profile_option(runtime::CommandLine app, NodeSettings& settings) {
 }  // namespace
 
 void apply_network_file(std::string_view text, const std::string& file_name, NodeSettings& settings) {
-  const ConfigNode root = runtime::parse_config(text, file_name);
+  const ConfigNode root = io::parse_config(text, file_name);
   NodeSettings changed = settings;
   root.read_known([&] { read(root, changed); });
   settings = changed;
@@ -193,7 +193,7 @@ void add_node_options(runtime::CommandLine app, NodeSettings& settings, const Na
 }
 
 void add_service_options(runtime::CommandLine app, NodeSettings& settings) {
-  add_node_options(app, settings, {fault_of_vehicle_list, "NAME[,NAME...]"});
+  add_node_options(app, settings, {messages::fault_of_vehicle_list, "NAME[,NAME...]"});
   runtime::Option name = app.option("--vehicle-name");
   name.describe(name.description() + "; several as kl1,kl2 or kl1..kl4");
 }
@@ -205,4 +205,4 @@ void add_network_key_option(runtime::CommandLine app, std::string& file) {
       .check(fault_of_key_file, "FILE");
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

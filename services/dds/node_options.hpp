@@ -9,11 +9,11 @@
 #include "swiftlet/services/messages/vehicle_names.hpp"
 #include "swiftlet/services/runtime/command_line.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 // The check of --vehicle-name, as for runtime::Option::check().
 struct NameCheck {
-  std::function<std::string(const std::string&)> fault_of = fault_of_vehicle_name;
+  std::function<std::string(const std::string&)> fault_of = messages::fault_of_vehicle_name;
   std::string value_name = "NAME";
 };
 
@@ -36,10 +36,10 @@ void add_service_options(runtime::CommandLine app, NodeSettings& settings);
 //   security: lab                       # likewise
 //   open_network: true
 // Sets what the file has; other settings stay, but for servers if it has peers, and the other way round. file_name appears in
-// messages, and its folder is that of relative paths. Throws runtime::ConfigError.
+// messages, and its folder is that of relative paths. Throws io::ConfigError.
 void apply_network_file(std::string_view text, const std::string& file_name, NodeSettings& settings);
 
 // --network-key alone.
 void add_network_key_option(runtime::CommandLine app, std::string& file);
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

@@ -16,10 +16,10 @@
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 namespace {
 
-namespace dds = eprosima::fastdds::dds;
+namespace fastdds = eprosima::fastdds::dds;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kCheckPeriod{250};
@@ -37,13 +37,13 @@ void check(const NodeSettings& settings) {
                              : !network.interfaces.empty() ? "an interface (--interface)"
                                                            : nullptr;
   if (settings.on_loopback() && wanted != nullptr)
-    throw runtime::ConfigError(std::string(wanted) +
-                               " is given, but the process stays on the loopback interface without "
-                               "--network-key FILE, --security DIR or --open-network");
+    throw io::ConfigError(std::string(wanted) +
+                          " is given, but the process stays on the loopback interface without "
+                          "--network-key FILE, --security DIR or --open-network");
 }
 
-Announcement announcement_of(const NodeSettings& settings, const std::string& vehicles) {
-  Announcement announcement;
+rtps::Announcement announcement_of(const NodeSettings& settings, const std::string& vehicles) {
+  rtps::Announcement announcement;
   announcement.vehicles = vehicles;
   char host[HOST_NAME_MAX + 1] = {};
   ::gethostname(host, HOST_NAME_MAX);
@@ -60,19 +60,19 @@ double random_share() {
   return std::uniform_real_distribution<double>(0.0, 1.0)(random);
 }
 
-std::string named(const std::string& name, const rtps::GuidPrefix_t& participant) {
+std::string named(const std::string& name, const fastrtps::GuidPrefix_t& participant) {
   std::ostringstream text;
   text << "'" << name << "' (" << participant << ")";
   return text.str();
 }
 
-rtps::GUID_t participant_guid(const rtps::GuidPrefix_t& participant) {
-  return {participant, rtps::c_EntityId_RTPSParticipant};
+fastrtps::GUID_t participant_guid(const fastrtps::GuidPrefix_t& participant) {
+  return {participant, fastrtps::c_EntityId_RTPSParticipant};
 }
 
 // Anybody may announce itself under any name: logs and terminals get no control characters of it.
 std::string in_one_line(const std::string& name) {
-  std::string line = runtime::printable(name);
+  std::string line = io::printable(name);
   std::replace(line.begin(), line.end(), '\n', '?');
   return line;
 }
@@ -85,8 +85,8 @@ Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& ve
       announcement_(announcement_of(node_settings, vehicles)),
       patience_(random_share()) {
   check(settings);
-  guard_->set_own_interfaces(runtime::interfaces_up());
-  guard_->ignore_apart_from(to_user_data(announcement_));
+  guard_->set_own_interfaces(io::interfaces_up());
+  guard_->ignore_apart_from(rtps::to_user_data(announcement_));
   if (settings.network.discovery_servers.empty()) introduced_at_ = Clock::now();
   const runtime::RealtimeScope scope = realtime();
   session_ = std::make_unique<ParticipantSession>(settings, announcement_, guard_, this);
@@ -110,12 +110,12 @@ void Participant::Impl::serve(const std::string& vehicle) {
   const runtime::RealtimeScope scope = realtime();
   const std::lock_guard<std::mutex> lock(session_mutex_);
   ++nodes_of_[vehicle];
-  if (lists(announcement_.vehicles, vehicle)) return;
+  if (rtps::lists(announcement_.vehicles, vehicle)) return;
   {
     const std::lock_guard<std::mutex> peers_lock(peers_mutex_);
     announcement_.vehicles += (announcement_.vehicles.empty() ? "" : ",") + vehicle;
   }
-  guard_->ignore_apart_from(to_user_data(announcement_));
+  guard_->ignore_apart_from(rtps::to_user_data(announcement_));
   announcement_changed_ = true;
   announce_when_due();
 }
@@ -126,11 +126,11 @@ void Participant::Impl::stop_serving(const std::string& vehicle) {
   if (--nodes_of_[vehicle] > 0) return;
   {
     const std::lock_guard<std::mutex> peers_lock(peers_mutex_);
-    std::vector<std::string> vehicles = split_names(announcement_.vehicles);
+    std::vector<std::string> vehicles = rtps::split_names(announcement_.vehicles);
     vehicles.erase(std::remove(vehicles.begin(), vehicles.end(), vehicle), vehicles.end());
-    announcement_.vehicles = runtime::joined(vehicles, ",");
+    announcement_.vehicles = io::joined(vehicles, ",");
   }
-  guard_->ignore_apart_from(to_user_data(announcement_));
+  guard_->ignore_apart_from(rtps::to_user_data(announcement_));
   announcement_changed_ = true;
 }
 
@@ -141,10 +141,10 @@ void Participant::Impl::announce_when_due() {
 }
 
 void Participant::Impl::follow_addresses() {
-  for (const MovedHosts::Move& move : guard_->take_moves())
+  for (const rtps::MovedHosts::Move& move : guard_->take_moves())
     runtime::log_warning("what is for {} is sent to {} now, from where its host is heard",
-                         runtime::to_string(move.announced), runtime::to_string(move.heard_at));
-  const std::vector<runtime::Interface> own = runtime::interfaces_up();
+                         io::to_string(move.announced), io::to_string(move.heard_at));
+  const std::vector<io::Interface> own = io::interfaces_up();
   guard_->set_own_interfaces(own);
   if (settings.on_loopback()) return;
   const auto change = addresses_.change(own, settings.network);
@@ -261,7 +261,7 @@ std::vector<std::string> Participant::Impl::qos_conflicts_seen() const {
   return sentences;
 }
 
-ProcessIdentity Participant::Impl::identity_of(const GuidPrefix& participant) const {
+ProcessIdentity Participant::Impl::identity_of(const fastrtps::GuidPrefix_t& participant) const {
   const runtime::RealtimeScope scope = realtime();
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   const Peer* const peer = peer_of(participant);
@@ -276,15 +276,15 @@ void Participant::Impl::listen(const Node* node, const std::string& vehicle,
   if (!callback) return;
   const PeerListener& listener = peer_listeners_[node] = {vehicle, std::move(callback)};
   for (const auto& [guid, peer] : peers_) {
-    if (lists(peer.announced.vehicles, vehicle)) tell(listener, {peer.name, true, false});
+    if (rtps::lists(peer.announced.vehicles, vehicle)) tell(listener, {peer.name, true, false});
   }
 }
 
 void Participant::Impl::on_participant(const Guid& guid, const std::string& name,
                                        const std::vector<std::uint8_t>& user_data) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
-  if (!introduced_at_ && is_discovery_server(bytes_of(guid.guidPrefix))) introduced_at_ = Clock::now();
-  Peer peer{in_one_line(name), from_user_data(user_data)};
+  if (!introduced_at_ && rtps::is_discovery_server(bytes_of(guid.guidPrefix))) introduced_at_ = Clock::now();
+  Peer peer{in_one_line(name), rtps::from_user_data(user_data)};
   peer.announced.host = in_one_line(peer.announced.host);
   if (settings.security.empty() || peers_.count(guid) > 0) return update_peer(guid, peer);
   strangers_[guid] = peer;
@@ -323,8 +323,8 @@ void Participant::Impl::update_peer(const Guid& guid, Peer peer) {
   }
   const Peer before = std::exchange(known->second, peer);
   for (const auto& [node, listener] : peer_listeners_) {
-    const bool serves = lists(peer.announced.vehicles, listener.vehicle);
-    if (serves != lists(before.announced.vehicles, listener.vehicle))
+    const bool serves = rtps::lists(peer.announced.vehicles, listener.vehicle);
+    if (serves != rtps::lists(before.announced.vehicles, listener.vehicle))
       tell(listener, {peer.name, serves, !serves});
   }
   yield_source_to(peer);
@@ -342,11 +342,13 @@ void Participant::Impl::drop_peer(const Guid& guid, bool said_goodbye) {
   lost_.erase(guid.guidPrefix);
   if (!is_own(gone)) return;
   if (!said_goodbye) {
-    if (lost_.size() >= kMostParticipants) lost_.clear();  // of those that were started again, as other peers
+    if (lost_.size() >= rtps::kMostParticipants)
+      lost_.clear();  // of those that were started again, as other peers
     lost_[guid.guidPrefix] = gone.endpoints.known | gone.endpoints.before;
   }
   for (const auto& [node, listener] : peer_listeners_) {
-    if (lists(gone.announced.vehicles, listener.vehicle)) tell(listener, {gone.name, false, said_goodbye});
+    if (rtps::lists(gone.announced.vehicles, listener.vehicle))
+      tell(listener, {gone.name, false, said_goodbye});
   }
 }
 
@@ -383,23 +385,23 @@ const Participant::Impl::Peer* Participant::Impl::peer_of(const GuidPrefix& part
 }
 
 std::string Participant::Impl::shared_vehicle(const Peer& peer) const {
-  for (const std::string& vehicle : split_names(announcement_.vehicles)) {
-    if (lists(peer.announced.vehicles, vehicle)) return vehicle;
+  for (const std::string& vehicle : rtps::split_names(announcement_.vehicles)) {
+    if (rtps::lists(peer.announced.vehicles, vehicle)) return vehicle;
   }
   return {};
 }
 
 // ---- incompatible QoS
 
-void Participant::Impl::on_requested_incompatible_qos(dds::DataReader* reader,
-                                                      const dds::RequestedIncompatibleQosStatus&) {
+void Participant::Impl::on_requested_incompatible_qos(fastdds::DataReader* reader,
+                                                      const fastdds::RequestedIncompatibleQosStatus&) {
   const EndpointQos requested = endpoint_qos(reader->get_qos());
   log_conflicts(reader->get_topicdescription()->get_name(), writers_, "is not received",
                 [&](const EndpointQos& offered) { return conflicts(offered, requested); });
 }
 
-void Participant::Impl::on_offered_incompatible_qos(dds::DataWriter* writer,
-                                                    const dds::OfferedIncompatibleQosStatus&) {
+void Participant::Impl::on_offered_incompatible_qos(fastdds::DataWriter* writer,
+                                                    const fastdds::OfferedIncompatibleQosStatus&) {
   const EndpointQos offered = endpoint_qos(writer->get_qos());
   log_conflicts(writer->get_topic()->get_name(), readers_, "does not receive from this process",
                 [&](const EndpointQos& requested) { return conflicts(offered, requested); });
@@ -449,7 +451,7 @@ std::optional<std::string> Participant::Impl::other_source(const std::vector<std
     if (same && is_own(peer) && yields(announcement_, peer.announced))
       return in_use_by(shared_vehicle(peer), peer.announced.source_of, peer);
   }
-  for (const std::string& vehicle : split_names(announcement_.vehicles)) {
+  for (const std::string& vehicle : rtps::split_names(announcement_.vehicles)) {
     for (const std::string& topic : excluded) {
       if (auto other = unannounced_source(vehicle, topic)) return other;
     }
@@ -471,7 +473,7 @@ std::optional<std::string> Participant::Impl::unannounced_source(const std::stri
 void Participant::Impl::yield_source_to(const Peer& peer) {
   if (!announcement_.is_established || !on_lost_source_ || !is_on_probation()) return;
   if (peer.announced.source_of != announcement_.source_of || !is_own(peer)) return;
-  if (!peer.announced.is_established || !yields(announcement_, peer.announced)) return;
+  if (!peer.announced.is_established || !rtps::yields(announcement_, peer.announced)) return;
   on_lost_source_(in_use_by(shared_vehicle(peer), peer.announced.source_of, peer));
   on_lost_source_ = nullptr;
 }
@@ -483,4 +485,4 @@ std::string Participant::Impl::in_use_by(const std::string& vehicle, const std::
          source.identity().to_string() + what;
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

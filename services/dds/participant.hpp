@@ -1,4 +1,4 @@
-// The inside of comms::Participant: the session in the domain, the endpoints that survive a rejoin, and the other
+// The inside of dds::Participant: the session in the domain, the endpoints that survive a rejoin, and the other
 // processes that were discovered.
 #pragma once
 
@@ -15,18 +15,18 @@
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
 
-#include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 #include "swiftlet/services/dds/discovery/address_watch.hpp"
-#include "swiftlet/services/dds/discovery/announcement.hpp"
 #include "swiftlet/services/dds/discovery/rediscovery.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/limited_log.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/participant_session.hpp"
 #include "swiftlet/services/dds/periodic_task.hpp"
+#include "swiftlet/services/rtps/announcement.hpp"
+#include "swiftlet/services/rtps/datagram_guard.hpp"
 #include "swiftlet/services/runtime/realtime.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 struct Participant::Impl final : public DiscoveryListener {
   // vehicles: a list, "kl1,kl2"; may be empty
@@ -51,7 +51,7 @@ struct Participant::Impl final : public DiscoveryListener {
   std::vector<std::string> topics_seen() const;
   std::vector<ProcessIdentity> processes_seen() const;
   std::vector<std::string> qos_conflicts_seen() const;
-  ProcessIdentity identity_of(const rtps::GuidPrefix_t& participant) const;
+  ProcessIdentity identity_of(const fastrtps::GuidPrefix_t& participant) const;
   // node: key of the callback; an empty callback removes it. Calls it at once for known peers of the vehicle.
   void listen(const Node* node, const std::string& vehicle, std::function<void(const PeerEvent&)> callback);
 
@@ -61,11 +61,11 @@ struct Participant::Impl final : public DiscoveryListener {
   const NodeSettings settings;
 
  private:
-  using Guid = rtps::GUID_t;
-  using GuidPrefix = rtps::GuidPrefix_t;
+  using Guid = fastrtps::GUID_t;
+  using GuidPrefix = fastrtps::GuidPrefix_t;
   struct Peer {
     std::string name;
-    Announcement announced;
+    rtps::Announcement announced;
     PeerEndpoints endpoints{};
 
     ProcessIdentity identity() const { return {name, announced.host, announced.pid}; }
@@ -124,7 +124,7 @@ struct Participant::Impl final : public DiscoveryListener {
   void yield_source_to(const Peer& peer);
   std::string in_use_by(const std::string& vehicle, const std::string& topic, const Peer& source) const;
 
-  const std::shared_ptr<DatagramGuard> guard_;
+  const std::shared_ptr<rtps::DatagramGuard> guard_;
   std::mutex session_mutex_;  // guards session_, announcement_changed_, endpoints_, nodes_of_, own_readers_
   std::unique_ptr<ParticipantSession> session_;
   bool announcement_changed_ = false;  // since session_ announced it
@@ -132,8 +132,8 @@ struct Participant::Impl final : public DiscoveryListener {
   std::map<std::string, int> nodes_of_;  // number of the nodes that serve a vehicle
   std::map<std::string, std::shared_ptr<std::atomic<int>>> own_readers_;  // by wire name
 
-  mutable std::mutex peers_mutex_;  // guards all below; locked after session_mutex_
-  Announcement announcement_;       // of this process; changed with both mutexes locked
+  mutable std::mutex peers_mutex_;   // guards all below; locked after session_mutex_
+  rtps::Announcement announcement_;  // of this process; changed with both mutexes locked
   std::chrono::steady_clock::time_point established_at_;
   // When it could first hear of others: with a discovery server when it heard of that.
   std::optional<std::chrono::steady_clock::time_point> introduced_at_;
@@ -153,4 +153,4 @@ struct Participant::Impl final : public DiscoveryListener {
   std::optional<PeriodicTask> periodic_task_;
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

@@ -7,21 +7,21 @@
 
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 
-#include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/rtps/datagram_guard.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 constexpr const char* kAnyAddress = "0.0.0.0";
 
-rtps::Locator_t udp_locator(const std::string& ipv4, std::uint32_t port);
+fastrtps::Locator_t udp_locator(const std::string& ipv4, std::uint32_t port);
 
 // announced_ports: number of ports to which it announces itself without multicast (discovery_ports.hpp).
 // guard: checks the datagrams that it receives. Throws std::runtime_error for an unknown host or interface, and
-// runtime::ConfigError for an invalid profile, malformed servers and peers.
-eprosima::fastdds::dds::DomainParticipantQos participant_qos(const NodeSettings& settings,
-                                                             std::uint32_t announced_ports,
-                                                             const std::shared_ptr<DatagramGuard>& guard);
+// io::ConfigError for an invalid profile, malformed servers and peers.
+eprosima::fastdds::dds::DomainParticipantQos participant_qos(
+    const NodeSettings& settings, std::uint32_t announced_ports,
+    const std::shared_ptr<rtps::DatagramGuard>& guard);
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

@@ -14,27 +14,28 @@
 #include "swiftlet/services/dds/participant_qos.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 namespace {
 
-namespace dds = eprosima::fastdds::dds;
+namespace fastdds = eprosima::fastdds::dds;
 
-void end(dds::DomainParticipant* participant) {
+void end(fastdds::DomainParticipant* participant) {
   participant->set_listener(nullptr);
   participant->delete_contained_entities();
-  dds::DomainParticipantFactory::get_instance()->delete_participant(participant);
+  fastdds::DomainParticipantFactory::get_instance()->delete_participant(participant);
 }
 
-dds::DomainParticipant* create_participant(const NodeSettings& settings, const Announcement& announcement,
-                                           const std::shared_ptr<DatagramGuard>& guard,
-                                           dds::DomainParticipantListener* listener,
-                                           std::uint32_t announced) {
-  dds::DomainParticipantQos qos = participant_qos(settings, announced, guard);
-  qos.user_data().data_vec(to_user_data(announcement));
+fastdds::DomainParticipant* create_participant(const NodeSettings& settings,
+                                               const rtps::Announcement& announcement,
+                                               const std::shared_ptr<rtps::DatagramGuard>& guard,
+                                               fastdds::DomainParticipantListener* listener,
+                                               std::uint32_t announced) {
+  fastdds::DomainParticipantQos qos = participant_qos(settings, announced, guard);
+  qos.user_data().data_vec(rtps::to_user_data(announcement));
   guard->listen(false);
-  auto* const participant = dds::DomainParticipantFactory::get_instance()->create_participant(
+  auto* const participant = fastdds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(settings.domain), qos, listener,
-      dds::StatusMask::requested_incompatible_qos() << dds::StatusMask::offered_incompatible_qos());
+      fastdds::StatusMask::requested_incompatible_qos() << fastdds::StatusMask::offered_incompatible_qos());
   guard->listen(true);
   return participant;
 }
@@ -42,24 +43,24 @@ dds::DomainParticipant* create_participant(const NodeSettings& settings, const A
 // Empty: all addresses of this host.
 std::string listening_address(const NodeSettings& settings) {
   if (settings.on_loopback()) return "127.0.0.1";
-  const std::vector<std::string> addresses = runtime::addresses_of_interfaces(settings.network.interfaces);
+  const std::vector<std::string> addresses = io::addresses_of_interfaces(settings.network.interfaces);
   return addresses.empty() ? "" : addresses.front();
 }
 
 // Serialized by a mutex, because Fast DDS 2.9 calls getpwuid(), which is not thread-safe. Fast DDS reports neither the port at
 // which it listens nor that it found none: the transport does, to the guard.
-dds::DomainParticipant* join(const NodeSettings& settings, const Announcement& announcement,
-                             const std::shared_ptr<DatagramGuard>& guard,
-                             dds::DomainParticipantListener* listener) {
+fastdds::DomainParticipant* join(const NodeSettings& settings, const rtps::Announcement& announcement,
+                                 const std::shared_ptr<rtps::DatagramGuard>& guard,
+                                 fastdds::DomainParticipantListener* listener) {
   static std::mutex mutex;
   const std::lock_guard<std::mutex> lock(mutex);
   const DiscoveryPorts ports = discovery_ports(settings.domain);
   const std::uint32_t expected = free_discovery_port(settings.domain, listening_address(settings));
-  guard->expect_participants(expected + 1, Now::read());  // as ports are taken in their order
+  guard->expect_participants(expected + 1, rtps::Now::read());  // as ports are taken in their order
   const bool announces_to_ports = settings.on_loopback() || !settings.network.peers.empty();
   for (const std::uint32_t announced : {announced_ports(ports, expected), ports.count}) {
     guard->set_discovery_port(0);
-    dds::DomainParticipant* const participant =
+    fastdds::DomainParticipant* const participant =
         create_participant(settings, announcement, guard, listener, announced);
     if (participant == nullptr) return nullptr;
     // Other processes may have taken ports meanwhile. If the own port is then too high to announce itself to
@@ -73,20 +74,20 @@ dds::DomainParticipant* join(const NodeSettings& settings, const Announcement& a
 
 }  // namespace
 
-GuidPrefix bytes_of(const rtps::GuidPrefix_t& participant) {
-  GuidPrefix bytes;
+rtps::GuidPrefix bytes_of(const fastrtps::GuidPrefix_t& participant) {
+  rtps::GuidPrefix bytes;
   std::copy_n(participant.value, bytes.size(), bytes.begin());
   return bytes;
 }
 
-std::shared_ptr<DatagramGuard> guard_of(const NodeSettings& settings) {
-  return std::make_shared<DatagramGuard>(
+std::shared_ptr<rtps::DatagramGuard> guard_of(const NodeSettings& settings) {
+  return std::make_shared<rtps::DatagramGuard>(
       settings.network_key_file, !settings.network.discovery_servers.empty(), !settings.security.empty());
 }
 
-ParticipantSession::ParticipantSession(const NodeSettings& settings, const Announcement& announcement,
-                                       const std::shared_ptr<DatagramGuard>& guard,
-                                       dds::DomainParticipantListener* listener)
+ParticipantSession::ParticipantSession(const NodeSettings& settings, const rtps::Announcement& announcement,
+                                       const std::shared_ptr<rtps::DatagramGuard>& guard,
+                                       fastdds::DomainParticipantListener* listener)
     : guard_(guard),
       spacing_(settings.network.discovery_servers.empty() ? std::chrono::milliseconds(0)
                                                           : kAnnouncementSpacing) {
@@ -100,8 +101,8 @@ ParticipantSession::ParticipantSession(const NodeSettings& settings, const Annou
   guard->set_participant(bytes_of(participant->guid().guidPrefix));
   // Fast DDS 3 remembers the addresses of the host from the first participant of the process on; this lets it read them again.
   set_qos(participant->get_qos());
-  publisher = participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
-  subscriber = participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
+  publisher = participant->create_publisher(fastdds::PUBLISHER_QOS_DEFAULT);
+  subscriber = participant->create_subscriber(fastdds::SUBSCRIBER_QOS_DEFAULT);
   if (publisher == nullptr || subscriber == nullptr) {
     end(participant);
     throw std::runtime_error("cannot set up publishing in DDS domain " + std::to_string(settings.domain));
@@ -111,45 +112,45 @@ ParticipantSession::ParticipantSession(const NodeSettings& settings, const Annou
 
 ParticipantSession::~ParticipantSession() { end(participant); }
 
-void ParticipantSession::announce(const Announcement& announcement) {
-  dds::DomainParticipantQos qos = participant->get_qos();
-  qos.user_data().data_vec(to_user_data(announcement));
+void ParticipantSession::announce(const rtps::Announcement& announcement) {
+  fastdds::DomainParticipantQos qos = participant->get_qos();
+  qos.user_data().data_vec(rtps::to_user_data(announcement));
   set_qos(qos);
   next_announcement_ = std::chrono::steady_clock::now() + spacing_;
 }
 
-void ParticipantSession::set_qos(const dds::DomainParticipantQos& qos) {
+void ParticipantSession::set_qos(const fastdds::DomainParticipantQos& qos) {
   const std::lock_guard<std::mutex> lock(guard_->changes_mutex());
   if (!succeeded(participant->set_qos(qos)))
     runtime::log_error("the middleware refuses to announce a change of this process to the others");
 }
 
-dds::Topic* ParticipantSession::topic(const std::string& wire_name, const dds::TypeSupport& type) {
-  dds::Topic*& found = topics_[wire_name];
+fastdds::Topic* ParticipantSession::topic(const std::string& wire_name, const fastdds::TypeSupport& type) {
+  fastdds::Topic*& found = topics_[wire_name];
   if (found == nullptr && succeeded(participant->register_type(type)))
-    found = participant->create_topic(wire_name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
+    found = participant->create_topic(wire_name, type.get_type_name(), fastdds::TOPIC_QOS_DEFAULT);
   if (found == nullptr) throw std::runtime_error("cannot create DDS topic " + wire_name);
   return found;
 }
 
 // kShared: the socket of the participant. kOwn: a further one. The first reader of any other delivery opens one, which Fast DDS keeps until the
 // participant ends; those that follow name its addresses.
-void ParticipantSession::receive_in(Delivery delivery, dds::DataReaderQos& qos) const {
+void ParticipantSession::receive_in(Delivery delivery, fastdds::DataReaderQos& qos) const {
   if (delivery == Delivery::kShared) return;
-  const rtps::LocatorList_t& opened = receivers_[static_cast<std::size_t>(delivery)];
+  const fastrtps::LocatorList_t& opened = receivers_[static_cast<std::size_t>(delivery)];
   if (opened.empty()) {
     qos.properties().properties().emplace_back("fastdds.unique_network_flows", "");
   } else {
-    for (const rtps::Locator_t& address : opened) qos.endpoint().unicast_locator_list.push_back(address);
+    for (const fastrtps::Locator_t& address : opened) qos.endpoint().unicast_locator_list.push_back(address);
   }
 }
 
-void ParticipantSession::note_receiver(Delivery delivery, const dds::DataReader& reader) {
-  rtps::LocatorList_t& opened = receivers_[static_cast<std::size_t>(delivery)];
+void ParticipantSession::note_receiver(Delivery delivery, const fastdds::DataReader& reader) {
+  fastrtps::LocatorList_t& opened = receivers_[static_cast<std::size_t>(delivery)];
   if (delivery == Delivery::kShared || delivery == Delivery::kOwn || !opened.empty()) return;
   eprosima::fastdds::rtps::LocatorList addresses;
   if (!succeeded(reader.get_listening_locators(addresses))) return;
-  for (const rtps::Locator_t& address : addresses) opened.push_back(address);
+  for (const fastrtps::Locator_t& address : addresses) opened.push_back(address);
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

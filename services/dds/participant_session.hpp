@@ -18,17 +18,17 @@
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
 
-#include "swiftlet/services/dds/datagram/datagram_guard.hpp"
-#include "swiftlet/services/dds/discovery/announcement.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/rtps/announcement.hpp"
+#include "swiftlet/services/rtps/datagram_guard.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
-GuidPrefix bytes_of(const rtps::GuidPrefix_t& participant);
+rtps::GuidPrefix bytes_of(const fastrtps::GuidPrefix_t& participant);
 
-// What checks the datagrams of a session with these settings. Throws runtime::ConfigError for a bad key file.
-std::shared_ptr<DatagramGuard> guard_of(const NodeSettings& settings);
+// What checks the datagrams of a session with these settings. Throws io::ConfigError for a bad key file.
+std::shared_ptr<rtps::DatagramGuard> guard_of(const NodeSettings& settings);
 
 // Between two changes that a participant announces to a discovery server, and before it leaves: the server of Fast DDS, up to 3.6
 // at least, frees an announcement of which it takes the next one before it has sent it on, then sends it all the same, and fails
@@ -40,8 +40,8 @@ constexpr std::chrono::milliseconds kAnnouncementSpacing{200};
 class ParticipantSession {
  public:
   // Throws std::runtime_error if the participant cannot be created.
-  ParticipantSession(const NodeSettings& settings, const Announcement& announcement,
-                     const std::shared_ptr<DatagramGuard>& guard,
+  ParticipantSession(const NodeSettings& settings, const rtps::Announcement& announcement,
+                     const std::shared_ptr<rtps::DatagramGuard>& guard,
                      eprosima::fastdds::dds::DomainParticipantListener* listener);
   ~ParticipantSession();
   ParticipantSession(const ParticipantSession&) = delete;
@@ -57,7 +57,7 @@ class ParticipantSession {
   void note_receiver(Delivery delivery, const eprosima::fastdds::dds::DataReader& reader);
 
   // Announces a change to the peers. Does not wait until next_announcement().
-  void announce(const Announcement& announcement);
+  void announce(const rtps::Announcement& announcement);
   // When the next change may be announced: with a discovery server kAnnouncementSpacing after the last one.
   std::chrono::steady_clock::time_point next_announcement() const { return next_announcement_; }
 
@@ -68,11 +68,11 @@ class ParticipantSession {
  private:
   void set_qos(const eprosima::fastdds::dds::DomainParticipantQos& qos);
 
-  const std::shared_ptr<DatagramGuard> guard_;
+  const std::shared_ptr<rtps::DatagramGuard> guard_;
   const std::chrono::milliseconds spacing_;
   std::chrono::steady_clock::time_point next_announcement_{};
   std::map<std::string, eprosima::fastdds::dds::Topic*> topics_;
-  std::array<rtps::LocatorList_t, kDeliveryCount> receivers_;  // by Delivery; empty: none yet
+  std::array<fastrtps::LocatorList_t, kDeliveryCount> receivers_;  // by Delivery; empty: none yet
 };
 
 // A writer or reader that outlives a session.
@@ -118,4 +118,4 @@ class GuardedPointer {
   std::atomic<T*> target_{nullptr};
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

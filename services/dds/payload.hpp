@@ -7,7 +7,7 @@
 
 #include "swiftlet/services/messages/topics.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 // For each message of a topic. Allocates.
 template <class T>
@@ -17,4 +17,4 @@ std::vector<std::uint8_t> to_payload(const T& message);
 template <class T>
 bool from_payload(const std::uint8_t* payload, std::size_t size, T& message);
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

@@ -8,7 +8,7 @@
 #include <thread>
 #include <utility>
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 class PeriodicTask {
  public:
@@ -45,4 +45,4 @@ class PeriodicTask {
   std::thread thread_;
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

@@ -7,7 +7,7 @@
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/log_label.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 std::string search_text(const NodeSettings& settings) {
   if (settings.on_loopback())
@@ -17,11 +17,11 @@ std::string search_text(const NodeSettings& settings) {
   const NetworkSettings& network = settings.network;
   std::string text;
   if (!network.peers.empty()) {
-    text = " at the peers " + runtime::joined(network.peers, ", ");
+    text = " at the peers " + io::joined(network.peers, ", ");
   } else if (!network.discovery_servers.empty()) {
     text = " by the discovery server " + network.discovery_servers;
   }
-  if (!network.interfaces.empty()) text += " on " + runtime::joined(network.interfaces, ", ");
+  if (!network.interfaces.empty()) text += " on " + io::joined(network.interfaces, ", ");
   return text;
 }
 
@@ -29,10 +29,10 @@ void log_reach(const NodeSettings& settings) {
   if (settings.localhost_only || !settings.network_key_file.empty() || !settings.security.empty()) return;
   if (settings.open_network) {
     std::vector<std::string> others;
-    for (const runtime::Interface& it : runtime::interfaces_up())
+    for (const io::Interface& it : io::interfaces_up())
       if (!it.is_loopback) others.push_back(it.name);
     runtime::log_warning("--open-network: who is in the network of {} can command these vehicles",
-                         others.empty() ? "the loopback interface" : runtime::joined(others, ", "));
+                         others.empty() ? "the loopback interface" : io::joined(others, ", "));
   } else {
     runtime::log_info("on this host only: --network-key FILE or --security DIR opens the network");
   }
@@ -51,4 +51,4 @@ void log_peers(Node& node) {
   });
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

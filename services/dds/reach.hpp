@@ -5,7 +5,7 @@
 
 #include "swiftlet/services/dds/node.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 // " on the loopback interface" with what opens the network, " at the peers lab1, lab2", " by the discovery server
 // lab1:11811", " on eth0"; empty if nothing limits the search.
@@ -17,4 +17,4 @@ void log_reach(const NodeSettings& settings);
 // Logs discovered and lost peers of the node, whose on_peer() callback it sets.
 void log_peers(Node& node);
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <optional>
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 // Accepts the samples of the source that was heard first, until it has been silent for a time. Then the next
 // source that is heard takes its place. Not thread-safe. Does not allocate.
@@ -31,4 +31,4 @@ class SingleSource {
   Time heard_{};
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

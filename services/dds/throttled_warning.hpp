@@ -7,13 +7,13 @@
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 // Not thread-safe.
 class ThrottledWarning {
  public:
   explicit ThrottledWarning(const char* topic) : topic_(topic) {}
-  void note(const Fault& fault) {
+  void note(const messages::Fault& fault) {
     ++refused_;
     const auto now = std::chrono::steady_clock::now();
     if (now < next_) return;
@@ -29,4 +29,4 @@ class ThrottledWarning {
   std::chrono::steady_clock::time_point next_{};
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

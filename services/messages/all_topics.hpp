@@ -3,7 +3,7 @@
 
 #include "swiftlet/services/messages/topics.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::messages {
 
 // Calls use(topic) with each Topic<T>.
 template <class Use>
@@ -39,4 +39,4 @@ void for_each_topic(const Use& use) {
   use(topics::kCommandAck);
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::messages

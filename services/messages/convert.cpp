@@ -6,7 +6,7 @@
 #include "swiftlet/control/attitude/attitude_error.hpp"
 #include "swiftlet/services/messages/wire.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::messages {
 namespace {
 
 using namespace wire;
@@ -528,4 +528,4 @@ msg::RequestStatus to_message(const control::RequestStatus& in) {
   return out;
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::messages

@@ -20,7 +20,7 @@
 #include "swiftlet/plant/model/vehicle_command.hpp"
 #include "swiftlet/services/messages/topics.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::messages {
 
 // The fault of an invalid message: a sentence with field, value and limit; empty for a valid one. No heap.
 struct Fault {
@@ -95,4 +95,4 @@ msg::MissionStatus to_message(const control::MissionProgress& in);
 // RequestStatus::ended_by, and likewise in ControllerState.
 std::uint8_t kind_of_end(const control::RequestStatus& in);
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::messages

@@ -2,7 +2,7 @@
 #include "swiftlet/services/messages/convert_gains.hpp"
 #include "swiftlet/services/messages/wire.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::messages {
 namespace {
 
 using namespace wire;
@@ -323,4 +323,4 @@ msg::ControllerState to_message(const ControllerReport& in) {
   return out;
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::messages

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace swiftlet::comms {
+namespace swiftlet::messages {
 
 using namespace wire;
 
@@ -112,4 +112,4 @@ msg::ControlSettings to_message(const control::SettingsRequest& in) {
   return out;
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::messages

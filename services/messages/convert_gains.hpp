@@ -4,10 +4,10 @@
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/messages/wire.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::messages {
 
 // Adds the fault of a gain that is not finite. name: of the field, in the sentence.
 void check_gains(const char* name, const msg::ControlGains& gains, wire::Check& check);
 control::ControlGains from_message(const msg::ControlGains& in);
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::messages

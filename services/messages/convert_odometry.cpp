@@ -4,7 +4,7 @@
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/messages/wire.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::messages {
 
 using namespace wire;
 
@@ -72,4 +72,4 @@ msg::VehicleOdometry to_message(const plant::OdometrySample& in) {
   return out;
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::messages

@@ -3,7 +3,7 @@
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/messages/wire_version.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::messages {
 
 msg::ControlStatus to_message(const control::Status& in, const control::ControlGains& gains,
                               const control::FailsafeSettings& thresholds) {
@@ -41,4 +41,4 @@ msg::MissionStatus to_message(const control::MissionProgress& in) {
   return out;
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::messages

@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-namespace swiftlet::comms {
+namespace swiftlet::messages {
 
 enum class Qos {
   kStream,        // best effort, keep last 1, volatile, preallocated
@@ -31,4 +31,4 @@ constexpr std::chrono::milliseconds kFixturePeriod{100};
 constexpr int kFirstAnnouncements = 20;
 constexpr std::chrono::milliseconds kFirstAnnouncementPeriod{25};
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::messages

@@ -1,7 +1,7 @@
 // The message types as ROS 2 message definitions, for recorded flights. Generated from the IDL files by idl/ros2msg.py.
 #pragma once
 
-namespace swiftlet::comms {
+namespace swiftlet::messages {
 
 struct MessageSchema {
   const char* name;        // "swiftlet_msgs/msg/Imu"
@@ -14,4 +14,4 @@ struct MessageSchema {
 template <class T>
 const MessageSchema& schema_of();
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::messages

@@ -6,7 +6,7 @@
 
 #include "swiftlet/services/messages/topic_roles.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::messages {
 namespace {
 
 constexpr std::time_t kDay_s = 24 * 3600;
@@ -86,4 +86,4 @@ std::string permissions_document(const std::string& role, const std::string& sub
                      written.empty() ? "" : criterion("publish", written), criterion("subscribe", read));
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::messages

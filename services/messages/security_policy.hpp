@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace swiftlet::comms {
+namespace swiftlet::messages {
 
 // Only authenticated participants with permissions join. Every datagram is encrypted, but for the announcements by which
 // participants find each other, and their handshakes.
@@ -15,4 +15,4 @@ std::string governance_document();
 std::string permissions_document(const std::string& role, const std::string& subject,
                                  const std::vector<std::string>& vehicles);
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::messages

@@ -1,7 +1,7 @@
 // Which part of the system writes each topic, for the permissions of DDS Security. Every part may read every topic.
 #pragma once
 
-namespace swiftlet::comms {
+namespace swiftlet::messages {
 
 // Parts of the system, as identities of DDS Security.
 namespace roles {
@@ -51,4 +51,4 @@ inline constexpr WrittenTopic kWrittenTopics[] = {
     {"control_settings", roles::kGround},
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::messages

@@ -32,7 +32,7 @@
 
 #include "swiftlet/services/messages/qos.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::messages {
 
 namespace msg = swiftlet_msgs::msg;
 
@@ -75,4 +75,4 @@ inline constexpr Topic<msg::Trajectory> kFlownTrajectory{"flown_trajectory", Qos
 inline constexpr Topic<msg::CommandAck> kCommandAck{"command_ack", Qos::kReply};
 }  // namespace topics
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::messages

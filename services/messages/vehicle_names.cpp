@@ -7,7 +7,7 @@
 
 #include "swiftlet/io/text.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::messages {
 namespace {
 
 constexpr std::size_t kMaxLength = 64;
@@ -54,7 +54,7 @@ std::string append(const std::string& part, std::vector<std::string>& names) {
 }
 
 std::string expand(const std::string& list, std::vector<std::string>& names) {
-  for (const std::string& part : runtime::split_text(list, ',')) {
+  for (const std::string& part : io::split_text(list, ',')) {
     if (std::string fault = append(part, names); !fault.empty()) return fault;
   }
   if (names.size() > kMostListedVehicles)
@@ -88,4 +88,4 @@ std::vector<std::string> vehicles_of_list(const std::string& list) {
   return names;
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::messages

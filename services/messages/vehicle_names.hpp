@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace swiftlet::comms {
+namespace swiftlet::messages {
 
 // What is wrong with the name of a vehicle: "must be ..."; "" for a valid one. ROS 2 refuses names that begin with a digit,
 // reserves __, and hides what begins with _.
@@ -21,4 +21,4 @@ std::string fault_of_vehicle_list(const std::string& list);
 // The names of a list, in its order. Leading zeros of a range are kept. Throws std::invalid_argument with the fault.
 std::vector<std::string> vehicles_of_list(const std::string& list);
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::messages

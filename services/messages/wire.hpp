@@ -15,7 +15,7 @@
 #include "swiftlet/plant/model/samples.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 
-namespace swiftlet::comms::wire {
+namespace swiftlet::messages::wire {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -122,4 +122,4 @@ inline void copy_rotors(int count, const PerRotor& from, PerRotor& to) {
   std::copy_n(from.begin(), count, to.begin());
 }
 
-}  // namespace swiftlet::comms::wire
+}  // namespace swiftlet::messages::wire

@@ -10,7 +10,7 @@
 
 #include "swiftlet_msgs/msg/VehicleInfo.h"
 
-namespace swiftlet::comms {
+namespace swiftlet::messages {
 
 constexpr std::uint32_t kWireVersion = swiftlet_msgs::msg::VehicleInfo_Constants::WIRE_VERSION;
 
@@ -43,4 +43,4 @@ inline std::string fault_of_wire_version(std::uint32_t version, const char* who)
          own;
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::messages

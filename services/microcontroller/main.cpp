@@ -42,7 +42,7 @@ struct Options {
   double speed = 1.0;
   double command_timeout_s = 0.1;
   double patience_s = 0.0;
-  comms::NodeSettings node;
+  dds::NodeSettings node;
   runtime::ProcessOptions process;
 };
 
@@ -85,17 +85,16 @@ void add_options(runtime::CommandLine app, Options& options) {
                  "IMU rate, Hz, 500 or 1000; default: as in the simulation file")
       .one_of({"500", "1000"});
   options.node.name = "microcontroller";
-  comms::add_node_options(app, options.node);
+  dds::add_node_options(app, options.node);
   runtime::add_process_options(app, options.process);
 }
 
 // Throws as the loaders do, and std::invalid_argument.
 MicrocontrollerSettings load(const Options& options) {
   MicrocontrollerSettings settings;
-  settings.vehicle =
-      runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
-  settings.simulation = runtime::load_simulation_settings(
-      runtime::configuration_file(runtime::kinds::kSimulation, options.simulation));
+  settings.vehicle = io::load_vehicle(io::configuration_file(io::kinds::kVehicle, options.vehicle));
+  settings.simulation =
+      io::load_simulation_settings(io::configuration_file(io::kinds::kSimulation, options.simulation));
   if (options.imu_rate != 0) settings.simulation.imu.rate_hz = options.imu_rate;
   if (settings.simulation.radio.on())
     throw std::invalid_argument(options.simulation + ": radio: swiftlet-plant alone simulates one");
@@ -129,17 +128,17 @@ void run(const Options& options) {
   const runtime::Logging logging("microcontroller", options.process.log);
   settings.realtime = runtime::prepare_realtime(options.process.realtime, runtime::Clock::kRealtime);
 
-  comms::NodeSettings network = options.node;
+  dds::NodeSettings network = options.node;
   network.hears_of_all = false;
-  network.announcement_period = comms::kFixturePeriod;
+  network.announcement_period = messages::kFixturePeriod;
   network.realtime_priority = settings.realtime.thread_priority();
-  network.source_of = comms::topics::kGroundTruth.name;
-  comms::Participant participant(network, {network.vehicle});
-  const comms::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
+  network.source_of = messages::topics::kGroundTruth.name;
+  dds::Participant participant(network, {network.vehicle});
+  const dds::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
   std::vector<std::unique_ptr<runtime::HostedVehicle>> vehicles;
   vehicles.push_back(
       std::make_unique<Microcontroller>(participant, network.vehicle, settings, std::move(port)));
-  comms::log_reach(network);
+  dds::log_reach(network);
   runtime::log_info(
       "ready: {}, link {}, IMU at {:g} Hz, command time-out {:g} s; ground_truth of {} in domain {}",
       settings.vehicle.name, options.pty.empty() ? options.udp : options.pty, settings.simulation.imu.rate_hz,

@@ -15,7 +15,7 @@ std::int64_t MicrocontrollerClock::us_at(std::int64_t room_ns) const {
   return (std::llround(offset_s * 1e9) + room_ns + gained_ns) / 1000;
 }
 
-Microcontroller::Microcontroller(const comms::Participant& participant, const std::string& vehicle,
+Microcontroller::Microcontroller(const dds::Participant& participant, const std::string& vehicle,
                                  const MicrocontrollerSettings& settings, std::unique_ptr<Port> port)
     : HostedVehicle(vehicle),
       realtime_(settings.realtime),
@@ -29,7 +29,7 @@ Microcontroller::Microcontroller(const comms::Participant& participant, const st
       firmware_(settings.firmware,
                 [this](const std::uint8_t* bytes, std::size_t size) { port_->write(bytes, size); }),
       node_(participant, vehicle, [this](const std::string& fault) { fail(fault); }),
-      ground_truth_(node_.publish(comms::topics::kGroundTruth)) {}
+      ground_truth_(node_.publish(messages::topics::kGroundTruth)) {}
 
 void Microcontroller::run(const std::atomic<bool>& stop) {
   if (realtime_.enabled) runtime::make_this_thread_realtime(realtime_);
@@ -94,7 +94,7 @@ void Microcontroller::send_samples() {
   if (simulation_.rotor_speeds()) firmware_.send(*simulation_.rotor_speeds(), stamp_us);
   if (simulation_.battery()) firmware_.send(*simulation_.battery(), stamp_us);
   if (!simulation_.imu_due()) return;
-  comms::msg::GroundTruth truth = comms::to_message(simulation_.truth());
+  messages::msg::GroundTruth truth = messages::to_message(simulation_.truth());
   truth.stamp_ns(stamp_us * 1000);  // as the vehicle's samples, so that they can be compared
   truth.sequence_number(++truths_);
   ground_truth_.publish(truth);

@@ -44,7 +44,7 @@ struct MicrocontrollerSettings {
 
 class Microcontroller final : public runtime::HostedVehicle {
  public:
-  Microcontroller(const comms::Participant& participant, const std::string& vehicle,
+  Microcontroller(const dds::Participant& participant, const std::string& vehicle,
                   const MicrocontrollerSettings& settings, std::unique_ptr<Port> port);
 
   // In real time, or scaled. If it falls behind by more than an IMU period, the room and with it the microcontroller's clock stand
@@ -85,8 +85,8 @@ class Microcontroller final : public runtime::HostedVehicle {
   std::int64_t origin_ns_ = 0;  // monotonic time at which the room's is 0
   std::int64_t stood_still_ns_ = 0;
 
-  comms::Node node_;
-  comms::Publisher<comms::msg::GroundTruth> ground_truth_;
+  dds::Node node_;
+  dds::Publisher<messages::msg::GroundTruth> ground_truth_;
   std::uint64_t truths_ = 0;
   runtime::LatestValue<Report> reports_;
   Report last_;

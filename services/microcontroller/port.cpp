@@ -140,14 +140,14 @@ std::unique_ptr<Port> open_pseudo_terminal(const fs::path& link) {
 }
 
 std::unique_ptr<Port> open_udp_port(const std::string& address) {
-  const std::string fault = runtime::fault_of_host_address(address);
+  const std::string fault = io::fault_of_host_address(address);
   if (!fault.empty()) throw std::invalid_argument("--udp: " + fault);
-  const runtime::HostAddress parsed = runtime::parse_host_address(address);
+  const io::HostAddress parsed = io::parse_host_address(address);
   if (parsed.port == 0) throw std::invalid_argument("--udp: " + address + " has no port, must be HOST:PORT");
   sockaddr_in own{};
   own.sin_family = AF_INET;
   own.sin_port = htons(parsed.port);
-  ::inet_pton(AF_INET, runtime::ipv4_addresses_of(parsed.host).front().c_str(), &own.sin_addr);
+  ::inet_pton(AF_INET, io::ipv4_addresses_of(parsed.host).front().c_str(), &own.sin_addr);
   return std::make_unique<UdpPort>(address, own);
 }
 

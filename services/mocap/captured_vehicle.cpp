@@ -13,16 +13,16 @@ constexpr std::int64_t kPatienceNs = 2'000'000'000;  // until a body that is mis
 
 }  // namespace
 
-CapturedVehicle::CapturedVehicle(const comms::Participant& participant, const mocap::VehicleBody& body,
+CapturedVehicle::CapturedVehicle(const dds::Participant& participant, const mocap::VehicleBody& body,
                                  const mocap::RoomFrame& room_frame, FrameThread& frames)
     : HostedVehicle(body.vehicle),
       body_(body),
       room_frame_(room_frame),
       frames_(frames),
       node_(participant, body.vehicle, [this](const std::string& fault) { fail(fault); }),
-      poses_(node_.publish(comms::topics::kMocapPose)),
+      poses_(node_.publish(messages::topics::kMocapPose)),
       clock_(node_, runtime::monotonic_ns) {
-  comms::log_peers(node_);
+  dds::log_peers(node_);
   frames_.add(*this);
 }
 
@@ -51,7 +51,7 @@ void CapturedVehicle::take(const mocap::SourceFrame& frame, const mocap::Source&
   sample->stamp_ns = *stamp_ns;
   sample->sequence = ++sequence_;
   if (!sample->tracked) ++untracked_;
-  poses_.publish(comms::to_message(*sample));
+  poses_.publish(messages::to_message(*sample));
 }
 
 void CapturedVehicle::find_body(const mocap::Source& source) {
@@ -60,7 +60,7 @@ void CapturedVehicle::find_body(const mocap::Source& source) {
   index_ = mocap::find_body(source.bodies(), body_);
   if (!index_ || !was_missing) return;
   const mocap::Body& body = source.bodies()[*index_];
-  runtime::log_info("{} is body '{}' with number {}", name(), runtime::printable(body.name), body.id);
+  runtime::log_info("{} is body '{}' with number {}", name(), io::printable(body.name), body.id);
 }
 
 void CapturedVehicle::warn_if_missing(const mocap::SourceFrame& frame, const mocap::Source& source) {
@@ -73,7 +73,7 @@ void CapturedVehicle::warn_if_missing(const mocap::SourceFrame& frame, const moc
   if (has_warned_ || frame.arrived_ns - *missing_since_ns_ < kPatienceNs) return;
   has_warned_ = true;
   runtime::log_warning("the motion capture has no {}; it has {}", body_.body_text(),
-                       runtime::printable(mocap::to_string(source.bodies())));
+                       io::printable(mocap::to_string(source.bodies())));
 }
 
 std::optional<plant::PoseSample> CapturedVehicle::sample_of(const mocap::SourceFrame& frame) const {

@@ -20,7 +20,7 @@ namespace swiftlet::services {
 // Works in the thread that receives the frames.
 class CapturedVehicle final : public runtime::HostedVehicle, public FrameTaker {
  public:
-  CapturedVehicle(const comms::Participant& participant, const mocap::VehicleBody& body,
+  CapturedVehicle(const dds::Participant& participant, const mocap::VehicleBody& body,
                   const mocap::RoomFrame& room_frame, FrameThread& frames);
   ~CapturedVehicle() override;
 
@@ -47,9 +47,9 @@ class CapturedVehicle final : public runtime::HostedVehicle, public FrameTaker {
   std::uint64_t sequence_ = 0;
   std::uint64_t untracked_ = 0;
   std::uint64_t withheld_ = 0;
-  comms::Node node_;
-  comms::Publisher<comms::msg::MocapPose> poses_;
-  comms::ClockClient clock_;
+  dds::Node node_;
+  dds::Publisher<messages::msg::MocapPose> poses_;
+  clocks::ClockClient clock_;
 };
 
 }  // namespace swiftlet::services

@@ -41,7 +41,7 @@ struct Options {
   mocap::SourceOptions source;
   std::string simulation = "default";
   MotionCaptureSettings capture;
-  comms::NodeSettings node;
+  dds::NodeSettings node;
   runtime::ProcessOptions process;
 };
 
@@ -59,7 +59,7 @@ void add_options(runtime::CommandLine app, Options& options) {
                  "do; the stamps are then translated to the vehicle's clock")
       .show_default("vehicle");
   options.node.name = "mocap";
-  comms::add_service_options(app, options.node);
+  dds::add_service_options(app, options.node);
   runtime::add_process_options(app, options.process);
 }
 
@@ -83,29 +83,29 @@ void check_simulation(const Options& options) {
     throw std::invalid_argument("--frame-clock host: not with --clock lockstep");
 }
 
-comms::NodeSettings network_of(const Options& options, const runtime::RealtimeSettings& realtime) {
-  comms::NodeSettings network = options.node;
-  network.announcement_period = comms::kFixturePeriod;
+dds::NodeSettings network_of(const Options& options, const runtime::RealtimeSettings& realtime) {
+  dds::NodeSettings network = options.node;
+  network.announcement_period = messages::kFixturePeriod;
   network.hears_of_all = false;
   network.realtime_priority = realtime.thread_priority();
-  network.source_of = comms::topics::kMocapPose.name;
+  network.source_of = messages::topics::kMocapPose.name;
   return network;
 }
 
 void simulate(const Options& options) {
-  const std::vector<std::string> names = comms::vehicles_of_list(options.node.vehicle);
+  const std::vector<std::string> names = messages::vehicles_of_list(options.node.vehicle);
   check_simulation(options);
   MotionCaptureSettings settings = options.capture;
-  settings.simulation = runtime::load_simulation_settings(
-      runtime::configuration_file(runtime::kinds::kSimulation, options.simulation));
+  settings.simulation =
+      io::load_simulation_settings(io::configuration_file(io::kinds::kSimulation, options.simulation));
 
   runtime::StopSignal stop;
   const runtime::Logging logging("mocap", options.process.log);
   settings.realtime = runtime::prepare_realtime(options.process.realtime, settings.clock);
 
-  const comms::NodeSettings network = network_of(options, settings.realtime);
-  comms::Participant participant(network, names);
-  const comms::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
+  const dds::NodeSettings network = network_of(options, settings.realtime);
+  dds::Participant participant(network, names);
+  const dds::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
   std::vector<std::unique_ptr<runtime::HostedVehicle>> vehicles;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string log_label = runtime::log_label_of(names[i], names.size());
@@ -113,7 +113,7 @@ void simulate(const Options& options) {
     vehicles.push_back(std::make_unique<MotionCaptureSimulator>(participant, names[i], settings));
     ++settings.seed;
   }
-  comms::log_reach(network);
+  dds::log_reach(network);
   runtime::log_info("ready: vehicle {}, domain {}, frames {}, seed {}", fmt::join(names, ","), network.domain,
                     frame_rate(settings.simulation.mocap), options.capture.seed);
   runtime::host(std::move(vehicles), stop, kPollPeriod);
@@ -140,7 +140,7 @@ void log_end(const mocap::Source& source) {
 }
 
 void capture(const Options& options) {
-  const std::vector<std::string> names = comms::vehicles_of_list(options.node.vehicle);
+  const std::vector<std::string> names = messages::vehicles_of_list(options.node.vehicle);
   check_capture(options);
   const mocap::Room room = mocap::room_of(options.source, names);
 
@@ -150,14 +150,14 @@ void capture(const Options& options) {
       runtime::prepare_realtime(options.process.realtime, runtime::Clock::kRealtime);
   FrameThread frames(mocap::open_source(room), realtime, [&stop] { stop.request(); });
 
-  const comms::NodeSettings network = network_of(options, realtime);
-  comms::Participant participant(network, names);
-  const comms::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
+  const dds::NodeSettings network = network_of(options, realtime);
+  dds::Participant participant(network, names);
+  const dds::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
   std::vector<std::unique_ptr<runtime::HostedVehicle>> vehicles;
   for (const std::string& name : names)
     vehicles.push_back(std::make_unique<CapturedVehicle>(participant, *mocap::find(room, name),
                                                          mocap::RoomFrame(room), frames));
-  comms::log_reach(network);
+  dds::log_reach(network);
   runtime::log_info("ready: vehicle {}, domain {}, source {}", fmt::join(names, ","), network.domain,
                     mocap::to_string(room.source));
   frames.start();

@@ -6,7 +6,7 @@
 
 namespace swiftlet::services {
 
-MotionCaptureSimulator::MotionCaptureSimulator(const comms::Participant& participant,
+MotionCaptureSimulator::MotionCaptureSimulator(const dds::Participant& participant,
                                                const std::string& vehicle,
                                                const MotionCaptureSettings& settings)
     : HostedVehicle(vehicle),
@@ -15,12 +15,12 @@ MotionCaptureSimulator::MotionCaptureSimulator(const comms::Participant& partici
       path_(settings.simulation, settings.seed),
       realtime_(settings.realtime),
       clock_(settings.clock),
-      poses_(node_.publish(comms::topics::kMocapPose)) {
+      poses_(node_.publish(messages::topics::kMocapPose)) {
   if (settings.frame_clock == FrameClock::kHost) host_clock_.emplace(node_, runtime::system_ns);
-  comms::log_peers(node_);
-  truth_ = node_.subscribe<comms::msg::GroundTruth>(
-      comms::topics::kGroundTruth, [this](const auto& message) { on_truth(message); },
-      comms::Delivery::kSamples, comms::kSourceSilence);
+  dds::log_peers(node_);
+  truth_ = node_.subscribe<messages::msg::GroundTruth>(
+      messages::topics::kGroundTruth, [this](const auto& message) { on_truth(message); },
+      dds::Delivery::kSamples, dds::kSourceSilence);
 }
 
 void MotionCaptureSimulator::log_end() {
@@ -30,12 +30,12 @@ void MotionCaptureSimulator::log_end() {
       withheld == 0 ? "" : fmt::format(", {} withheld: the vehicle's clock was unknown", withheld));
 }
 
-void MotionCaptureSimulator::on_truth(const comms::msg::GroundTruth& message) {
+void MotionCaptureSimulator::on_truth(const messages::msg::GroundTruth& message) {
   const std::int64_t arrived_ns = runtime::system_ns();
   thread_.enter(realtime_);
   if (host_clock_) host_clock_->ask_if_due();
   plant::TruthSample truth;
-  const comms::Fault fault = comms::from_message(message, truth);
+  const messages::Fault fault = messages::from_message(message, truth);
   if (fault) {
     if (!logged_fault_) runtime::log_warning("ground truth refused: {}", fault.text);
     logged_fault_ = true;
@@ -52,7 +52,7 @@ void MotionCaptureSimulator::on_truth(const comms::msg::GroundTruth& message) {
     withheld_.fetch_add(1, std::memory_order_relaxed);
     return;
   }
-  last_pose_ = comms::to_message(*pose);
+  last_pose_ = messages::to_message(*pose);
   poses_.publish(last_pose_);
   frames_.fetch_add(1, std::memory_order_relaxed);
   if (!pose->tracked) untracked_.fetch_add(1, std::memory_order_relaxed);
@@ -94,7 +94,7 @@ void MotionCaptureSimulator::answer_again(std::int64_t stamp_ns) {
 
 // A pose with sequence 0: the truth up to this stamp has arrived and its frames have been published.
 void MotionCaptureSimulator::publish_heartbeat(std::int64_t stamp_ns) {
-  comms::msg::MocapPose heartbeat;
+  messages::msg::MocapPose heartbeat;
   heartbeat.stamp_ns(stamp_ns);
   poses_.publish(heartbeat);
 }

@@ -36,37 +36,37 @@ struct MotionCaptureSettings {
 // made.
 class MotionCaptureSimulator final : public runtime::HostedVehicle {
  public:
-  MotionCaptureSimulator(const comms::Participant& participant, const std::string& vehicle,
+  MotionCaptureSimulator(const dds::Participant& participant, const std::string& vehicle,
                          const MotionCaptureSettings& settings);
 
   void run(const std::atomic<bool>&) override {}
   void log_end() override;
 
  private:
-  void on_truth(const comms::msg::GroundTruth& message);
+  void on_truth(const messages::msg::GroundTruth& message);
   // Gives a frame the stamp that a camera with the host's clock gives it, translated. Returns false if that is unknown.
   bool stamp_by_host(plant::PoseSample& pose, std::int64_t truth_stamp_ns, std::int64_t arrived_ns);
   bool is_next(const plant::TruthSample& truth);
   void answer_again(std::int64_t stamp_ns);
   void publish_heartbeat(std::int64_t stamp_ns);
 
-  comms::Node node_;
+  dds::Node node_;
   plant::Mocap mocap_;
   plant::MocapPath path_;
   runtime::RealtimeSettings realtime_;
   runtime::Clock clock_;
   std::uint64_t truth_sequence_ = 0;
-  comms::msg::MocapPose last_pose_;  // sequence 0 before the first frame
-  bool made_frame_ = false;          // of the newest truth
+  messages::msg::MocapPose last_pose_;  // sequence 0 before the first frame
+  bool made_frame_ = false;             // of the newest truth
   bool heartbeat_is_next_ = false;
   runtime::RealtimeThread thread_;
   bool logged_fault_ = false;
   std::atomic<std::uint64_t> frames_{0};
   std::atomic<std::uint64_t> untracked_{0};
   std::atomic<std::uint64_t> withheld_{0};
-  comms::Publisher<comms::msg::MocapPose> poses_;
-  std::optional<comms::ClockClient> host_clock_;
-  comms::Subscription truth_;  // last: its callback uses all members above
+  dds::Publisher<messages::msg::MocapPose> poses_;
+  std::optional<clocks::ClockClient> host_clock_;
+  dds::Subscription truth_;  // last: its callback uses all members above
 };
 
 }  // namespace swiftlet::services

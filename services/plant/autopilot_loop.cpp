@@ -28,7 +28,7 @@ std::int64_t unix_ns(runtime::Clock clock, std::int64_t stamp_ns) {
 
 AutopilotLoop::AutopilotLoop(SimulatedVehicle& vehicle, const plant::Vehicle& parameters,
                              const plant::SimulationSettings& simulation, std::uint64_t seed,
-                             const AutopilotLoopSettings& settings, comms::Node& node)
+                             const AutopilotLoopSettings& settings, dds::Node& node)
     : vehicle_(vehicle),
       settings_(settings),
       mapping_(settings.autopilot.controls, settings.autopilot.control_at_zero,

@@ -43,7 +43,7 @@ class AutopilotLoop {
   // The vehicle must outlive the loop. Throws as MavlinkAutopilot, RotorMapping and FlightTrace do.
   AutopilotLoop(SimulatedVehicle& vehicle, const plant::Vehicle& parameters,
                 const plant::SimulationSettings& simulation, std::uint64_t seed,
-                const AutopilotLoopSettings& settings, comms::Node& node);
+                const AutopilotLoopSettings& settings, dds::Node& node);
 
   // Runs until `stop`. In lockstep, time stands until the first message of an autopilot.
   void run(const std::atomic<bool>& stop);
@@ -88,8 +88,8 @@ class AutopilotLoop {
   std::optional<record::FlightTrace> trace_;
   std::atomic<std::int64_t> origin_ns_{
       0};  // computer's clock at stamp 0, at the present pace; 0: time stands
-  std::optional<comms::ClockClient> clock_client_;  // truth_only
-  std::optional<comms::ClockServer>
+  std::optional<clocks::ClockClient> clock_client_;  // truth_only
+  std::optional<clocks::ClockServer>
       clock_server_;  // otherwise. Last two: their callbacks use all members above
 };
 

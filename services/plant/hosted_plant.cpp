@@ -18,14 +18,14 @@ AutopilotLoopSettings autopilot_loop_settings(const PlantSettings& settings) {
 
 }  // namespace
 
-HostedPlant::HostedPlant(const comms::Participant& participant, const std::string& name,
+HostedPlant::HostedPlant(const dds::Participant& participant, const std::string& name,
                          const PlantSettings& settings, RealtimeLoop& loop)
     : HostedVehicle(name),
       node_(participant, name, [this](const std::string& fault) { fail(fault); }),
       simulated_(settings.vehicle, settings.simulation, settings.seed, settings.initial, node_,
                  settings.autopilot && settings.autopilot->truth_only),
       realtime_loop_(loop) {
-  comms::log_peers(node_);
+  dds::log_peers(node_);
   if (!settings.autopilot || !settings.autopilot->truth_only)
     reporter_.emplace(node_, settings.vehicle, settings.simulation,
                       settings.autopilot ? settings.autopilot->description() : "");

@@ -35,7 +35,7 @@ struct PlantSettings {
 class HostedPlant final : public runtime::HostedVehicle {
  public:
   // loop: steps the vehicle in real time. Throws as Node, LockstepLoop and AutopilotLoop do.
-  HostedPlant(const comms::Participant& participant, const std::string& name, const PlantSettings& settings,
+  HostedPlant(const dds::Participant& participant, const std::string& name, const PlantSettings& settings,
               RealtimeLoop& loop);
   ~HostedPlant() override;
 
@@ -44,7 +44,7 @@ class HostedPlant final : public runtime::HostedVehicle {
   void log_end() override { PlantReporter::log_end(last_); }
 
  private:
-  comms::Node node_;
+  dds::Node node_;
   std::optional<PlantReporter> reporter_;  // none with truth_only
   SimulatedVehicle simulated_;
   PlantReport last_;

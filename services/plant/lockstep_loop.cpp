@@ -30,7 +30,7 @@ constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
 
 LockstepLoop::LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings,
                            std::uint64_t seed, const LockstepSettings& lockstep, int rotor_count,
-                           comms::Node& node)
+                           dds::Node& node)
     : vehicle_(vehicle),
       mocap_(settings.mocap, seed),
       lockstep_(lockstep),
@@ -41,14 +41,14 @@ LockstepLoop::LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSet
       advance_to_ns_(lockstep.paused ? -1 : kNoLimit),
       paced_ns_(lockstep.speed > 0.0 || lockstep.goes_on ? 0 : kNoLimit) {
   if (!lockstep.trace.empty()) trace_.emplace(lockstep.trace, rotor_count);
-  commands_ = subscribe_commands(node, settings.control_levels, comms::Delivery::kShared,
+  commands_ = subscribe_commands(node, settings.control_levels, dds::Delivery::kShared,
                                  [this](const ReceivedCommand& received) { on_command(received); });
-  poses_ = node.subscribe<comms::msg::MocapPose>(
-      comms::topics::kMocapPose, [this](const auto& message) { on_pose(message); }, comms::Delivery::kShared,
-      comms::kSourceSilence);
+  poses_ = node.subscribe<messages::msg::MocapPose>(
+      messages::topics::kMocapPose, [this](const auto& message) { on_pose(message); }, dds::Delivery::kShared,
+      dds::kSourceSilence);
   if (lockstep.paused) {
-    clock_ = node.subscribe<comms::msg::SimulationClock>(comms::topics::kSimulationClock,
-                                                         [this](const auto& message) { on_clock(message); });
+    clock_ = node.subscribe<messages::msg::SimulationClock>(
+        messages::topics::kSimulationClock, [this](const auto& message) { on_clock(message); });
   }
 }
 
@@ -85,19 +85,19 @@ void LockstepLoop::on_command(const ReceivedCommand& received) {
   advance();
 }
 
-void LockstepLoop::on_pose(const comms::msg::MocapPose& message) {
+void LockstepLoop::on_pose(const messages::msg::MocapPose& message) {
   const Lock lock(mutex_);
   mocap_heard_ = true;
   mocap_missing_ = false;
   plant::PoseSample pose;
   const bool is_new = message.sequence_number() > mocap_sequence_;
-  if (is_new && vehicle_.needs_poses() && !comms::from_message(message, pose)) vehicle_.on_pose(pose);
+  if (is_new && vehicle_.needs_poses() && !messages::from_message(message, pose)) vehicle_.on_pose(pose);
   mocap_sequence_ = std::max(mocap_sequence_, message.sequence_number());
   if (message.sequence_number() == 0) mocap_seen_ns_ = std::max(mocap_seen_ns_, message.stamp_ns());
   advance();
 }
 
-void LockstepLoop::on_clock(const comms::msg::SimulationClock& message) {
+void LockstepLoop::on_clock(const messages::msg::SimulationClock& message) {
   const Lock lock(mutex_);
   clock_heard_ = true;
   clock_silence_s_ = 0.0;

@@ -38,7 +38,7 @@ class LockstepLoop {
   // Throws std::runtime_error if the trace cannot be written. The vehicle must outlive the loop. Motion
   // capture must run with the same settings and seed.
   LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings, std::uint64_t seed,
-               const LockstepSettings& lockstep, int rotor_count, comms::Node& node);
+               const LockstepSettings& lockstep, int rotor_count, dds::Node& node);
 
   // Runs until `stop`. Waits without limit for a peer that has not answered yet, as it may start later. Throws
   // std::runtime_error naming a peer that has answered before and is then silent for patience_s, unless it goes on without
@@ -47,8 +47,8 @@ class LockstepLoop {
 
  private:
   void on_command(const ReceivedCommand& received);
-  void on_pose(const comms::msg::MocapPose& message);
-  void on_clock(const comms::msg::SimulationClock& message);
+  void on_pose(const messages::msg::MocapPose& message);
+  void on_clock(const messages::msg::SimulationClock& message);
 
   // Call all functions below with mutex_ held.
   bool command_due() const { return vehicle_.awaited().has_value(); }
@@ -99,9 +99,9 @@ class LockstepLoop {
   double clock_silence_s_ = 0.0;  // since simulation_clock was last heard
   std::optional<record::FlightTrace> trace_;
 
-  std::vector<comms::Subscription> commands_;  // last: their callbacks use all members above
-  comms::Subscription poses_;
-  comms::Subscription clock_;
+  std::vector<dds::Subscription> commands_;  // last: their callbacks use all members above
+  dds::Subscription poses_;
+  dds::Subscription clock_;
 };
 
 }  // namespace swiftlet::services

@@ -59,7 +59,7 @@ struct Options {
   std::string autopilot_protocol;  // empty: the control service flies
   AutopilotSettings autopilot;
   std::array<double, 2> autopilot_range{0.0, 1.0};
-  comms::NodeSettings node;
+  dds::NodeSettings node;
   runtime::ProcessOptions process;
 };
 
@@ -188,7 +188,7 @@ void add_options(runtime::CommandLine app, Options& options) {
       "path, {} stands for the name of the vehicle");
   add_autopilot_options(app, options);
   options.node.name = "plant";
-  comms::add_service_options(app, options.node);
+  dds::add_service_options(app, options.node);
   runtime::add_process_options(app, options.process);
 }
 
@@ -249,10 +249,9 @@ std::string trace_of(const std::string& vehicle, std::string path) {
 // Throws as the loaders do, and std::invalid_argument.
 PlantSettings load(const Options& options) {
   PlantSettings settings;
-  settings.vehicle =
-      runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
-  settings.simulation = runtime::load_simulation_settings(
-      runtime::configuration_file(runtime::kinds::kSimulation, options.simulation));
+  settings.vehicle = io::load_vehicle(io::configuration_file(io::kinds::kVehicle, options.vehicle));
+  settings.simulation =
+      io::load_simulation_settings(io::configuration_file(io::kinds::kSimulation, options.simulation));
   settings.simulation.control_levels = plant::control_levels_from(options.levels).value();
   settings.simulation.odometry.source = options.odometry;
   if (options.imu_rate != 0) settings.simulation.imu.rate_hz = options.imu_rate;
@@ -308,7 +307,7 @@ PlantSettings settings_of(const std::vector<std::string>& names, std::size_t i, 
 }
 
 void run(const Options& options) {
-  const std::vector<std::string> names = comms::vehicles_of_list(options.node.vehicle);
+  const std::vector<std::string> names = messages::vehicles_of_list(options.node.vehicle);
   PlantSettings settings = load(options);
   check(options, names.size());
   check_autopilot(options, names.size());
@@ -317,14 +316,14 @@ void run(const Options& options) {
   const runtime::Logging logging("plant", options.process.log);
   settings.realtime = runtime::prepare_realtime(options.process.realtime, options.clock);
 
-  comms::NodeSettings network = options.node;
-  network.announcement_period = comms::kFixturePeriod;
+  dds::NodeSettings network = options.node;
+  network.announcement_period = messages::kFixturePeriod;
   network.hears_of_all = false;
   network.realtime_priority = settings.realtime.thread_priority();
   network.source_of =
-      options.autopilot.truth_only ? comms::topics::kGroundTruth.name : comms::topics::kImu.name;
-  comms::Participant participant(network, names);
-  const comms::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
+      options.autopilot.truth_only ? messages::topics::kGroundTruth.name : messages::topics::kImu.name;
+  dds::Participant participant(network, names);
+  const dds::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
   RealtimeLoop loop(settings.realtime);
   std::vector<std::unique_ptr<runtime::HostedVehicle>> vehicles;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -333,7 +332,7 @@ void run(const Options& options) {
     vehicles.push_back(
         std::make_unique<HostedPlant>(participant, names[i], settings_of(names, i, options, settings), loop));
   }
-  comms::log_reach(network);
+  dds::log_reach(network);
   runtime::log_info("ready: {}, vehicle {}, domain {}, clock {}, IMU at {:g} Hz, seed {}{}",
                     settings.vehicle.name, fmt::join(names, ","), network.domain,
                     runtime::to_string(options.clock), settings.simulation.imu.rate_hz, options.seed,

@@ -12,10 +12,10 @@ namespace {
 constexpr std::int64_t kPeriodNs = 1'000'000'000;
 constexpr std::int64_t kTroublePeriodNs = 10'000'000'000;
 
-comms::msg::VehicleInfo describe(const plant::Vehicle& vehicle, const plant::SimulationSettings& settings,
-                                 const std::string& autopilot) {
-  comms::msg::VehicleInfo info;
-  info.wire_version(comms::kWireVersion);
+messages::msg::VehicleInfo describe(const plant::Vehicle& vehicle, const plant::SimulationSettings& settings,
+                                    const std::string& autopilot) {
+  messages::msg::VehicleInfo info;
+  info.wire_version(messages::kWireVersion);
   info.name() = vehicle.name;
   info.simulated(true);
   info.autopilot() = autopilot;
@@ -26,7 +26,7 @@ comms::msg::VehicleInfo describe(const plant::Vehicle& vehicle, const plant::Sim
   return info;
 }
 
-void update(comms::msg::VehicleInfo& info, const PlantReport& report, const std::string& fault) {
+void update(messages::msg::VehicleInfo& info, const PlantReport& report, const std::string& fault) {
   info.stamp_ns(report.stamp_ns);
   info.sequence_number(info.sequence_number() + 1);
   info.rotors_running(report.rotors_running);
@@ -43,9 +43,9 @@ void update(comms::msg::VehicleInfo& info, const PlantReport& report, const std:
 
 }  // namespace
 
-PlantReporter::PlantReporter(comms::Node& node, const plant::Vehicle& vehicle,
+PlantReporter::PlantReporter(dds::Node& node, const plant::Vehicle& vehicle,
                              const plant::SimulationSettings& settings, const std::string& autopilot)
-    : publisher_(node.publish(comms::topics::kVehicleInfo)),
+    : publisher_(node.publish(messages::topics::kVehicleInfo)),
       info_(describe(vehicle, settings, autopilot)),
       timeout_fault_(fmt::format("no actuator command for {:g} s", settings.command_timeout_s)),
       command_hold_s_(settings.command_hold_s) {}

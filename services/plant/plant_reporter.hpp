@@ -14,7 +14,7 @@ namespace swiftlet::services {
 class PlantReporter {
  public:
   // autopilot: what flies the vehicle in place of control; empty: control does.
-  PlantReporter(comms::Node& node, const plant::Vehicle& vehicle, const plant::SimulationSettings& settings,
+  PlantReporter(dds::Node& node, const plant::Vehicle& vehicle, const plant::SimulationSettings& settings,
                 const std::string& autopilot);
 
   // Publishes vehicle_info every second, and at once when the rotors start or stop or the pause changes.
@@ -26,8 +26,8 @@ class PlantReporter {
   void log_rotors(const PlantReport& report, const std::string& fault);
   bool log_trouble(const PlantReport& report);
 
-  comms::Publisher<comms::msg::VehicleInfo> publisher_;
-  comms::msg::VehicleInfo info_;
+  dds::Publisher<messages::msg::VehicleInfo> publisher_;
+  messages::msg::VehicleInfo info_;
   std::string timeout_fault_;
   double command_hold_s_;
   PlantReport last_report_;

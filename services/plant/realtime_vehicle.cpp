@@ -14,20 +14,20 @@ std::int64_t scaled(std::int64_t simulated_ns, double speed) {
 }  // namespace
 
 RealtimeVehicle::RealtimeVehicle(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings,
-                                 double speed, comms::Node& node, const runtime::RealtimeSettings& realtime)
+                                 double speed, dds::Node& node, const runtime::RealtimeSettings& realtime)
     : vehicle_(vehicle),
       speed_(speed),
       steps_per_sample_(plant::period_ns(settings.imu.rate_hz) / settings.step_ns),
       sample_period_ns_(scaled(plant::period_ns(settings.imu.rate_hz), speed)),
       truth_(settings),
       realtime_(realtime),
-      subscriptions_(subscribe_commands(node, settings.control_levels, comms::Delivery::kSamples,
+      subscriptions_(subscribe_commands(node, settings.control_levels, dds::Delivery::kSamples,
                                         [this](const ReceivedCommand& received) { on_command(received); })),
       clock_(node, [this] { return simulated_ns(); }) {
   if (!vehicle.needs_poses()) return;
-  subscriptions_.push_back(node.subscribe<comms::msg::MocapPose>(
-      comms::topics::kMocapPose, [this](const auto& message) { on_pose(message); },
-      comms::Delivery::kSensors));
+  subscriptions_.push_back(node.subscribe<messages::msg::MocapPose>(
+      messages::topics::kMocapPose, [this](const auto& message) { on_pose(message); },
+      dds::Delivery::kSensors));
 }
 
 void RealtimeVehicle::begin(std::int64_t tick_ns) {
@@ -79,9 +79,9 @@ void RealtimeVehicle::on_command(const ReceivedCommand& received) {
   commands_.push(received);
 }
 
-void RealtimeVehicle::on_pose(const comms::msg::MocapPose& message) {
+void RealtimeVehicle::on_pose(const messages::msg::MocapPose& message) {
   plant::PoseSample pose;
-  if (message.sequence_number() == 0 || comms::from_message(message, pose)) return;
+  if (message.sequence_number() == 0 || messages::from_message(message, pose)) return;
   pose_.put(pose);
 }
 

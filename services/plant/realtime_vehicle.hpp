@@ -20,7 +20,7 @@ class RealtimeVehicle {
  public:
   // speed: simulated time per real time, > 0. The vehicle must outlive this.
   RealtimeVehicle(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings, double speed,
-                  comms::Node& node, const runtime::RealtimeSettings& realtime);
+                  dds::Node& node, const runtime::RealtimeSettings& realtime);
 
   // Computer's clock, ns: of the IMU.
   std::int64_t sample_period_ns() const { return sample_period_ns_; }
@@ -32,7 +32,7 @@ class RealtimeVehicle {
 
  private:
   void on_command(const ReceivedCommand& received);
-  void on_pose(const comms::msg::MocapPose& message);
+  void on_pose(const messages::msg::MocapPose& message);
   void obey_due(std::int64_t due_ns, bool is_last);
   void publish();
   void set_origin(std::int64_t tick_ns);
@@ -51,8 +51,8 @@ class RealtimeVehicle {
   runtime::LatestValue<plant::PoseSample> pose_;
   // The computer's clock at stamp 0, monotonic; 0 before the first step.
   std::atomic<std::int64_t> origin_ns_{0};
-  std::vector<comms::Subscription> subscriptions_;  // last two: their callbacks use all members above
-  comms::ClockServer clock_;
+  std::vector<dds::Subscription> subscriptions_;  // last two: their callbacks use all members above
+  clocks::ClockServer clock_;
 };
 
 }  // namespace swiftlet::services

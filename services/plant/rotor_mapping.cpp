@@ -55,7 +55,7 @@ std::optional<std::size_t> number_of(const std::string& text) {
 }
 
 Controls listed_controls(const std::string& text, int rotor_count) {
-  const std::vector<std::string> parts = runtime::split_text(text, ',');
+  const std::vector<std::string> parts = io::split_text(text, ',');
   if (static_cast<int>(parts.size()) != rotor_count)
     throw std::invalid_argument(fmt::format(
         "--autopilot-controls: is {}, must be px4, direct, or one number for each of the {} rotors", text,

@@ -10,42 +10,42 @@
 namespace swiftlet::services {
 namespace {
 
-using comms::topics::kBattery;
-using comms::topics::kGroundTruth;
-using comms::topics::kImu;
-using comms::topics::kRotorSpeeds;
-using comms::topics::kVehicleOdometry;
+using messages::topics::kBattery;
+using messages::topics::kGroundTruth;
+using messages::topics::kImu;
+using messages::topics::kRotorSpeeds;
+using messages::topics::kVehicleOdometry;
 
 constexpr std::int64_t kReportPeriodNs = 50'000'000;
 
 }  // namespace
 
-std::vector<comms::Subscription> subscribe_commands(comms::Node& node, plant::ControlLevels levels,
-                                                    comms::Delivery delivery,
-                                                    std::function<void(const ReceivedCommand&)> callback) {
-  std::vector<comms::Subscription> subscriptions;
+std::vector<dds::Subscription> subscribe_commands(dds::Node& node, plant::ControlLevels levels,
+                                                  dds::Delivery delivery,
+                                                  std::function<void(const ReceivedCommand&)> callback) {
+  std::vector<dds::Subscription> subscriptions;
   const auto subscribe = [&](const auto& topic, auto command) {
     using Message = typename std::decay_t<decltype(topic)>::Message;
     subscriptions.push_back(node.subscribe<Message>(
         topic,
         [callback, command](const Message& message) mutable {
-          const comms::Fault fault = comms::from_message(message, command);
+          const messages::Fault fault = messages::from_message(message, command);
           callback({command, runtime::monotonic_ns(), fault});
         },
         delivery));
   };
-  subscribe(comms::topics::kActuatorCommand, plant::ActuatorCommand());
+  subscribe(messages::topics::kActuatorCommand, plant::ActuatorCommand());
   if (levels.has(plant::ControlLevel::kRates))
-    subscribe(comms::topics::kRatesSetpoint, plant::RatesSetpoint());
+    subscribe(messages::topics::kRatesSetpoint, plant::RatesSetpoint());
   if (levels.has(plant::ControlLevel::kAttitude))
-    subscribe(comms::topics::kAttitudeSetpoint, plant::AttitudeSetpoint());
+    subscribe(messages::topics::kAttitudeSetpoint, plant::AttitudeSetpoint());
   if (levels.has(plant::ControlLevel::kTrajectory))
-    subscribe(comms::topics::kTrajectorySetpoint, plant::TrajectorySetpoint());
+    subscribe(messages::topics::kTrajectorySetpoint, plant::TrajectorySetpoint());
   return subscriptions;
 }
 
 SimulatedVehicle::SimulatedVehicle(const plant::Vehicle& vehicle, const plant::SimulationSettings& settings,
-                                   std::uint64_t seed, const plant::VehicleState& initial, comms::Node& node,
+                                   std::uint64_t seed, const plant::VehicleState& initial, dds::Node& node,
                                    bool truth_only)
     : simulation_(vehicle, settings, seed, initial),
       telemetry_path_(settings, seed),
@@ -89,13 +89,13 @@ bool SimulatedVehicle::accept(const plant::VehicleCommand& command) {
     ++report_.commands;
     return true;
   }
-  comms::Fault fault;
+  messages::Fault fault;
   std::snprintf(fault.text, sizeof fault.text, "%s", plant::to_string(refusal));
   refuse(fault);
   return false;
 }
 
-void SimulatedVehicle::refuse(const comms::Fault& fault) {
+void SimulatedVehicle::refuse(const messages::Fault& fault) {
   ++report_.refused_commands;
   report_.refusal = fault;
 }
@@ -136,11 +136,11 @@ plant::TelemetryPacket SimulatedVehicle::present_samples() const {
 
 void SimulatedVehicle::prepare_imu(const plant::TelemetryPacket& packet) {
   if (packet.odometry) {
-    odometry_message_ = comms::to_message(*packet.odometry);
-    odometry_message_.obeyed(comms::to_message(packet.obeyed));
+    odometry_message_ = messages::to_message(*packet.odometry);
+    odometry_message_.obeyed(messages::to_message(packet.obeyed));
   } else {
-    imu_message_ = comms::to_message(packet.imu);
-    imu_message_.obeyed(comms::to_message(packet.obeyed));
+    imu_message_ = messages::to_message(packet.imu);
+    imu_message_.obeyed(messages::to_message(packet.obeyed));
   }
   if (report_.rotors_running) answers_.written(packet.imu.sequence, runtime::monotonic_ns());
 }
@@ -219,7 +219,7 @@ void SimulatedVehicle::publish_truth() { publish_truth(simulation_.stamp_ns()); 
 
 void SimulatedVehicle::publish_truth(std::int64_t stamp_ns) {
   const std::uint64_t sequence = truth_message_.sequence_number() + 1;
-  truth_message_ = comms::to_message(simulation_.truth());
+  truth_message_ = messages::to_message(simulation_.truth());
   truth_message_.stamp_ns(stamp_ns);
   truth_message_.sequence_number(sequence);
   ground_truth_.publish(truth_message_);
@@ -228,11 +228,11 @@ void SimulatedVehicle::publish_truth(std::int64_t stamp_ns) {
 void SimulatedVehicle::publish_slow_samples(const std::optional<plant::BatterySample>& battery,
                                             const std::optional<plant::RotorSpeedSample>& rotor_speeds) {
   if (rotor_speeds) {
-    rotor_speeds_message_ = comms::to_message(*rotor_speeds);
+    rotor_speeds_message_ = messages::to_message(*rotor_speeds);
     rotor_speeds_.publish(rotor_speeds_message_);
   }
   if (battery) {
-    battery_message_ = comms::to_message(*battery);
+    battery_message_ = messages::to_message(*battery);
     battery_.publish(battery_message_);
   }
 }

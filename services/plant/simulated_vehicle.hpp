@@ -36,7 +36,7 @@ struct PlantReport {
   std::int64_t answer_max_ns = 0;
   std::uint64_t commands = 0;  // obeyed
   std::uint64_t refused_commands = 0;
-  comms::Fault refusal;         // of the last refused command
+  messages::Fault refusal;      // of the last refused command
   std::uint64_t slips = 0;      // number of times the loop fell behind real time
   std::int64_t slipped_ns = 0;  // total
 };
@@ -45,21 +45,21 @@ struct PlantReport {
 struct ReceivedCommand {
   plant::VehicleCommand command;
   std::int64_t received_ns = 0;  // monotonic
-  comms::Fault fault;
+  messages::Fault fault;
 };
 
 // Subscribes to the commands of the levels that the vehicle accepts, and to those of level actuators, with which a
 // controller turns the rotors off before it knows the levels. The callback runs in the threads of the subscriptions.
-std::vector<comms::Subscription> subscribe_commands(comms::Node& node, plant::ControlLevels levels,
-                                                    comms::Delivery delivery,
-                                                    std::function<void(const ReceivedCommand&)> callback);
+std::vector<dds::Subscription> subscribe_commands(dds::Node& node, plant::ControlLevels levels,
+                                                  dds::Delivery delivery,
+                                                  std::function<void(const ReceivedCommand&)> callback);
 
 // Not thread-safe.
 class SimulatedVehicle {
  public:
   // truth_only: publishes nothing but by publish_truth().
   SimulatedVehicle(const plant::Vehicle& vehicle, const plant::SimulationSettings& settings,
-                   std::uint64_t seed, const plant::VehicleState& initial, comms::Node& node,
+                   std::uint64_t seed, const plant::VehicleState& initial, dds::Node& node,
                    bool truth_only = false);
 
   const plant::PlantSimulation& simulation() const { return simulation_; }
@@ -104,7 +104,7 @@ class SimulatedVehicle {
   void publish_imu_in_order(const plant::TelemetryPacket& packet);
   plant::TelemetryPacket present_samples() const;
   void inform_firmware();
-  void refuse(const comms::Fault& fault);
+  void refuse(const messages::Fault& fault);
   void publish_truth();
   void publish_slow_samples(const std::optional<plant::BatterySample>& battery,
                             const std::optional<plant::RotorSpeedSample>& rotor_speeds);
@@ -117,11 +117,11 @@ class SimulatedVehicle {
   std::optional<plant::Odometry> odometry_;  // of a vehicle that brings it in place of IMU samples
   std::optional<plant::OdometrySample> odometry_sample_;  // of the present IMU sample
   // The newest samples; sequence number 0 before the first.
-  comms::msg::Imu imu_message_;
-  comms::msg::VehicleOdometry odometry_message_;
-  comms::msg::Battery battery_message_;
-  comms::msg::RotorSpeeds rotor_speeds_message_;
-  comms::msg::GroundTruth truth_message_;
+  messages::msg::Imu imu_message_;
+  messages::msg::VehicleOdometry odometry_message_;
+  messages::msg::Battery battery_message_;
+  messages::msg::RotorSpeeds rotor_speeds_message_;
+  messages::msg::GroundTruth truth_message_;
   std::uint64_t mocap_sequence_ = 0;  // lockstep: newest frame that control must have
   std::optional<std::uint64_t> awaited_;
 
@@ -131,11 +131,11 @@ class SimulatedVehicle {
   AnswerLatencies answers_;
   runtime::LatestValue<PlantReport> reports_;
 
-  comms::Publisher<comms::msg::Imu> imu_;  // or, in its place:
-  comms::Publisher<comms::msg::VehicleOdometry> vehicle_odometry_;
-  comms::Publisher<comms::msg::GroundTruth> ground_truth_;
-  comms::Publisher<comms::msg::RotorSpeeds> rotor_speeds_;
-  comms::Publisher<comms::msg::Battery> battery_;
+  dds::Publisher<messages::msg::Imu> imu_;  // or, in its place:
+  dds::Publisher<messages::msg::VehicleOdometry> vehicle_odometry_;
+  dds::Publisher<messages::msg::GroundTruth> ground_truth_;
+  dds::Publisher<messages::msg::RotorSpeeds> rotor_speeds_;
+  dds::Publisher<messages::msg::Battery> battery_;
 };
 
 }  // namespace swiftlet::services

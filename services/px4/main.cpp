@@ -40,7 +40,7 @@ struct Options {
   bool set_parameters = false;
   bool has_remote_control = false;
   std::string mavlink_host = "127.0.0.1";
-  comms::NodeSettings node;
+  dds::NodeSettings node;
   runtime::ProcessOptions process;
 };
 
@@ -112,7 +112,7 @@ void add_options(runtime::CommandLine app, Options& options) {
                "With these: a pilot has a remote control, whose absence stays a failsafe");
   app.add_option("--mavlink-host", options.mavlink_host, "With these: IPv4 address of PX4").show_default();
   options.node.name = "px4";
-  comms::add_service_options(app, options.node);
+  dds::add_service_options(app, options.node);
   runtime::add_process_options(app, options.process);
 }
 
@@ -139,24 +139,23 @@ void check_parameters(const Options& options) {
 
 void run(const Options& options) {
   if (options.check_parameters || options.set_parameters) return check_parameters(options);
-  const std::vector<std::string> names = comms::vehicles_of_list(options.node.vehicle);
+  const std::vector<std::string> names = messages::vehicles_of_list(options.node.vehicle);
   BridgeSettings settings = options.bridge;
   if (const double rate_hz = settings.vision.rate_hz; rate_hz > 0.0 && rate_hz < kLeastVisionRate_hz)
     throw std::invalid_argument(fmt::format("--vision-rate: is {:g}, must be 0, or 10 to 200", rate_hz));
-  settings.vehicle =
-      runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
+  settings.vehicle = io::load_vehicle(io::configuration_file(io::kinds::kVehicle, options.vehicle));
   settings.levels = *plant::control_levels_from(options.levels);
 
   runtime::StopSignal stop;
   const runtime::Logging logging("px4", options.process.log);
   settings.realtime = runtime::prepare_realtime(options.process.realtime, runtime::Clock::kRealtime);
 
-  comms::NodeSettings network = options.node;
-  network.announcement_period = comms::kFixturePeriod;
+  dds::NodeSettings network = options.node;
+  network.announcement_period = messages::kFixturePeriod;
   network.realtime_priority = settings.realtime.thread_priority();
-  network.source_of = comms::topics::kImu.name;
-  comms::Participant participant(network, names);
-  const comms::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
+  network.source_of = messages::topics::kImu.name;
+  dds::Participant participant(network, names);
+  const dds::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
   const int first_instance = settings.instance;
   std::vector<std::unique_ptr<runtime::HostedVehicle>> vehicles;
   for (const std::string& name : names) {
@@ -165,7 +164,7 @@ void run(const Options& options) {
     vehicles.push_back(std::make_unique<Px4Bridge>(participant, name, settings));
     ++settings.instance;
   }
-  comms::log_reach(network);
+  dds::log_reach(network);
   runtime::log_info("ready: vehicle {} in domain {}, PX4 instance {}, topics rt{}", fmt::join(names, ","),
                     network.domain, first_instance, topic_folder(first_instance));
   runtime::host(std::move(vehicles), stop, kReportPeriod);

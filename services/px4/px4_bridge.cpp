@@ -14,7 +14,7 @@
 namespace swiftlet::px4 {
 namespace {
 
-namespace topics = comms::topics;
+namespace topics = messages::topics;
 
 constexpr std::int64_t kPeriodNs = 10'000'000;
 constexpr std::int64_t kInfoPeriodNs = 1'000'000'000;
@@ -22,7 +22,7 @@ constexpr std::int64_t kSearchPeriodNs = 500'000'000;
 constexpr double kImuRateHz = 100.0;  // PX4's client sends no topic more often
 }  // namespace
 
-Px4Bridge::Px4Bridge(const comms::Participant& participant, const std::string& name,
+Px4Bridge::Px4Bridge(const dds::Participant& participant, const std::string& name,
                      const BridgeSettings& settings)
     : HostedVehicle(name),
       settings_(settings),
@@ -44,19 +44,19 @@ Px4Bridge::Px4Bridge(const comms::Participant& participant, const std::string& n
   } else {
     vehicle_odometry_ = node_.publish(topics::kVehicleOdometry);
   }
-  info_.wire_version(comms::kWireVersion);
+  info_.wire_version(messages::kWireVersion);
   info_.name() = settings.vehicle.name;
   info_.rotor_count(static_cast<std::uint8_t>(settings.vehicle.rotor_count()));
   info_.mass_kg(settings.vehicle.mass_kg);
   info_.imu_rate_hz(kImuRateHz);
   info_.control_levels(settings.levels.bits());
-  comms::log_peers(node_);
+  dds::log_peers(node_);
   subscribe();
 }
 
 void Px4Bridge::subscribe() {
-  using comms::Delivery;
-  const auto add = [this](comms::Subscription subscription) {
+  using dds::Delivery;
+  const auto add = [this](dds::Subscription subscription) {
     subscriptions_.push_back(std::move(subscription));
   };
   add(node_.subscribe<msg::BatteryStatus>(topics_.battery.get(),
@@ -75,29 +75,29 @@ void Px4Bridge::subscribe() {
     const std::lock_guard<std::mutex> lock(mutex_);
     vehicle_.on_ack(message);
   }));
-  add(node_.subscribe<comms::msg::MocapPose>(
+  add(node_.subscribe<messages::msg::MocapPose>(
       topics::kMocapPose, [this](const auto& message) { on_pose(message); }, Delivery::kSensors,
-      comms::kSourceSilence));
+      dds::kSourceSilence));
   // Control sends at one level at a time.
   if (settings_.levels.has(plant::ControlLevel::kRates))
-    add(node_.subscribe<comms::msg::RatesSetpoint>(
+    add(node_.subscribe<messages::msg::RatesSetpoint>(
         topics::kRatesSetpoint,
         [this](const auto& message) {
-          on_setpoint<comms::msg::RatesSetpoint, plant::RatesSetpoint>(message);
+          on_setpoint<messages::msg::RatesSetpoint, plant::RatesSetpoint>(message);
         },
         Delivery::kSamples));
   if (settings_.levels.has(plant::ControlLevel::kAttitude))
-    add(node_.subscribe<comms::msg::AttitudeSetpoint>(
+    add(node_.subscribe<messages::msg::AttitudeSetpoint>(
         topics::kAttitudeSetpoint,
         [this](const auto& message) {
-          on_setpoint<comms::msg::AttitudeSetpoint, plant::AttitudeSetpoint>(message);
+          on_setpoint<messages::msg::AttitudeSetpoint, plant::AttitudeSetpoint>(message);
         },
         Delivery::kSamples));
   if (settings_.levels.has(plant::ControlLevel::kTrajectory))
-    add(node_.subscribe<comms::msg::TrajectorySetpoint>(
+    add(node_.subscribe<messages::msg::TrajectorySetpoint>(
         topics::kTrajectorySetpoint,
         [this](const auto& message) {
-          on_setpoint<comms::msg::TrajectorySetpoint, plant::TrajectorySetpoint>(message);
+          on_setpoint<messages::msg::TrajectorySetpoint, plant::TrajectorySetpoint>(message);
         },
         Delivery::kSamples));
   add(node_.subscribe<msg::VehicleOdometry>(
@@ -109,8 +109,8 @@ void Px4Bridge::subscribe() {
 void Px4Bridge::on_sensors(const msg::SensorCombined& message) {
   const std::int64_t now_ns = runtime::monotonic_ns();
   sensor_thread_.enter(settings_.realtime);
-  comms::Fault fault;
-  std::optional<comms::msg::Imu> imu;
+  messages::Fault fault;
+  std::optional<messages::msg::Imu> imu;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     imu = vehicle_.on_sensors(message, now_ns, fault);
@@ -122,8 +122,8 @@ void Px4Bridge::on_sensors(const msg::SensorCombined& message) {
 void Px4Bridge::on_odometry(const msg::VehicleOdometry& message) {
   const std::int64_t now_ns = runtime::monotonic_ns();
   if (settings_.samples == Samples::kOdometry) odometry_thread_.enter(settings_.realtime);
-  comms::Fault fault;
-  std::optional<comms::msg::VehicleOdometry> odometry;
+  messages::Fault fault;
+  std::optional<messages::msg::VehicleOdometry> odometry;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     odometry = vehicle_.on_odometry(message, now_ns, fault);
@@ -133,8 +133,8 @@ void Px4Bridge::on_odometry(const msg::VehicleOdometry& message) {
 }
 
 void Px4Bridge::on_battery(const msg::BatteryStatus& message) {
-  comms::Fault fault;
-  std::optional<comms::msg::Battery> battery;
+  messages::Fault fault;
+  std::optional<messages::msg::Battery> battery;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     battery = vehicle_.on_battery(message, runtime::monotonic_ns(), fault);
@@ -144,7 +144,7 @@ void Px4Bridge::on_battery(const msg::BatteryStatus& message) {
 }
 
 void Px4Bridge::on_status(const msg::VehicleStatus& message) {
-  const comms::Fault fault = check(message);
+  const messages::Fault fault = check(message);
   if (fault) return status_faults_.note(fault);
   const std::lock_guard<std::mutex> lock(mutex_);
   vehicle_.on_status(message, runtime::monotonic_ns());
@@ -155,7 +155,7 @@ void Px4Bridge::on_setpoint(const Message& message) {
   const std::int64_t now_ns = runtime::monotonic_ns();
   command_thread_.enter(settings_.realtime);
   Command command;
-  if (comms::from_message(message, command)) return;
+  if (messages::from_message(message, command)) return;
   const std::lock_guard<std::mutex> lock(mutex_);
   if (const auto stream = vehicle_.on_command(command, now_ns)) publish(*stream);
 }
@@ -169,10 +169,10 @@ void Px4Bridge::publish(const OffboardStream& stream) {
     trajectories_.publish(*trajectory);
 }
 
-void Px4Bridge::on_pose(const comms::msg::MocapPose& message) {
+void Px4Bridge::on_pose(const messages::msg::MocapPose& message) {
   pose_thread_.enter(settings_.realtime);
   plant::PoseSample pose;
-  if (message.sequence_number() == 0 || comms::from_message(message, pose)) return;
+  if (message.sequence_number() == 0 || messages::from_message(message, pose)) return;
   const std::int64_t now_ns = runtime::monotonic_ns();
   std::optional<msg::VehicleOdometry> odometry;
   {
@@ -205,7 +205,7 @@ void Px4Bridge::attend() {
     // Topics vanish from discovery while a link is down: what was found stays known.
     if (version.state != VersionState::kNoTopics) vehicle_.set_version(std::move(version));
   }
-  const comms::msg::VehicleInfo before = info_;
+  const messages::msg::VehicleInfo before = info_;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     info_.rotors_running(vehicle_.session().rotors_running());

@@ -32,7 +32,7 @@ struct BridgeSettings : Px4VehicleSettings {
 
 class Px4Bridge final : public runtime::HostedVehicle {
  public:
-  Px4Bridge(const comms::Participant& participant, const std::string& name, const BridgeSettings& settings);
+  Px4Bridge(const dds::Participant& participant, const std::string& name, const BridgeSettings& settings);
 
   // The session, 100 times a second.
   void run(const std::atomic<bool>& stop) override;
@@ -49,7 +49,7 @@ class Px4Bridge final : public runtime::HostedVehicle {
   void on_status(const msg::VehicleStatus& message);
   template <class Message, class Command>
   void on_setpoint(const Message& message);
-  void on_pose(const comms::msg::MocapPose& message);
+  void on_pose(const messages::msg::MocapPose& message);
 
   void publish(const OffboardStream& stream);
   void log_changes();
@@ -60,10 +60,10 @@ class Px4Bridge final : public runtime::HostedVehicle {
   mutable std::mutex mutex_;  // guards the vehicle; held for microseconds
   Px4Vehicle vehicle_;
 
-  comms::ThrottledWarning sensor_faults_{"sensor_combined"};
-  comms::ThrottledWarning battery_faults_{"battery_status"};
-  comms::ThrottledWarning status_faults_{"vehicle_status_v1"};
-  comms::ThrottledWarning odometry_faults_{"vehicle_odometry"};
+  dds::ThrottledWarning sensor_faults_{"sensor_combined"};
+  dds::ThrottledWarning battery_faults_{"battery_status"};
+  dds::ThrottledWarning status_faults_{"vehicle_status_v1"};
+  dds::ThrottledWarning odometry_faults_{"vehicle_odometry"};
   runtime::RealtimeThread sensor_thread_, odometry_thread_, command_thread_, pose_thread_;
 
   // Of the main thread.
@@ -73,22 +73,22 @@ class Px4Bridge final : public runtime::HostedVehicle {
   int logged_steps_ = 0;
   std::int64_t search_due_ns_ = 0;
   std::int64_t info_due_ns_ = 0;
-  comms::msg::VehicleInfo info_;
+  messages::msg::VehicleInfo info_;
 
-  comms::Participant participant_;
-  comms::Node node_;
-  comms::Publisher<comms::msg::Imu> imu_;  // or, in its place:
-  comms::Publisher<comms::msg::VehicleOdometry> vehicle_odometry_;
-  comms::Publisher<comms::msg::Battery> battery_;
-  comms::Publisher<comms::msg::VehicleInfo> vehicle_info_;
-  comms::Publisher<msg::OffboardControlMode> modes_;
-  comms::Publisher<msg::VehicleRatesSetpoint> rates_;
-  comms::Publisher<msg::VehicleAttitudeSetpoint> attitudes_;
-  comms::Publisher<msg::TrajectorySetpoint> trajectories_;
-  comms::Publisher<msg::VehicleOdometry> poses_;
-  comms::Publisher<msg::VehicleCommand> commands_;
-  comms::ClockServer clock_server_;  // these last: their callbacks use all members above
-  std::vector<comms::Subscription> subscriptions_;
+  dds::Participant participant_;
+  dds::Node node_;
+  dds::Publisher<messages::msg::Imu> imu_;  // or, in its place:
+  dds::Publisher<messages::msg::VehicleOdometry> vehicle_odometry_;
+  dds::Publisher<messages::msg::Battery> battery_;
+  dds::Publisher<messages::msg::VehicleInfo> vehicle_info_;
+  dds::Publisher<msg::OffboardControlMode> modes_;
+  dds::Publisher<msg::VehicleRatesSetpoint> rates_;
+  dds::Publisher<msg::VehicleAttitudeSetpoint> attitudes_;
+  dds::Publisher<msg::TrajectorySetpoint> trajectories_;
+  dds::Publisher<msg::VehicleOdometry> poses_;
+  dds::Publisher<msg::VehicleCommand> commands_;
+  clocks::ClockServer clock_server_;  // these last: their callbacks use all members above
+  std::vector<dds::Subscription> subscriptions_;
 };
 
 }  // namespace swiftlet::px4

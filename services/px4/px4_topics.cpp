@@ -22,21 +22,21 @@
   X(VehicleOdometry) X(VehicleRatesSetpoint) X(VehicleStatus)
 // clang-format on
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
-#define SWIFTLET_INSTANTIATE(Name)                                                            \
-  template <>                                                                                 \
-  struct PubSubTypeOf<px4::msg::Name> {                                                       \
-    using type = px4::msg::Name##PubSubType;                                                  \
-  };                                                                                          \
-  template Publisher<px4::msg::Name> Node::publish(const Topic<px4::msg::Name>&);             \
-  template Subscription Node::subscribe(const Topic<px4::msg::Name>&,                         \
-                                        std::function<void(const px4::msg::Name&)>, Delivery, \
-                                        std::optional<std::chrono::milliseconds>);
+#define SWIFTLET_INSTANTIATE(Name)                                                                           \
+  template <>                                                                                                \
+  struct PubSubTypeOf<px4::msg::Name> {                                                                      \
+    using type = px4::msg::Name##PubSubType;                                                                 \
+  };                                                                                                         \
+  template dds::Publisher<px4::msg::Name> dds::Node::publish(const messages::Topic<px4::msg::Name>&);        \
+  template dds::Subscription dds::Node::subscribe(const messages::Topic<px4::msg::Name>&,                    \
+                                                  std::function<void(const px4::msg::Name&)>, dds::Delivery, \
+                                                  std::optional<std::chrono::milliseconds>);
 SWIFTLET_FOR_EACH_MESSAGE(SWIFTLET_INSTANTIATE)
 #undef SWIFTLET_INSTANTIATE
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds
 
 namespace swiftlet::px4 {
 

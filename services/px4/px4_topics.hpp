@@ -31,7 +31,7 @@ template <class T>
 class Px4Topic {
  public:
   Px4Topic(const std::string& folder, const std::string& name) : name_(folder + name) {}
-  comms::Topic<T> get() const { return {name_.c_str(), comms::Qos::kTelemetry}; }
+  messages::Topic<T> get() const { return {name_.c_str(), messages::Qos::kTelemetry}; }
   const std::string& name() const { return name_; }
 
  private:

@@ -30,8 +30,8 @@ Px4Vehicle::Px4Vehicle(const Px4VehicleSettings& settings)
       scale_(settings.vehicle, settings.hover_throttle),
       vision_(settings.vision) {}
 
-std::optional<comms::msg::Imu> Px4Vehicle::on_sensors(const msg::SensorCombined& message, std::int64_t now_ns,
-                                                      comms::Fault& fault) {
+std::optional<messages::msg::Imu> Px4Vehicle::on_sensors(const msg::SensorCombined& message,
+                                                         std::int64_t now_ns, messages::Fault& fault) {
   plant::ImuSample sample;
   fault = from_px4(message, sample);
   if (fault || version_.state == VersionState::kUnknown) return std::nullopt;
@@ -41,13 +41,14 @@ std::optional<comms::msg::Imu> Px4Vehicle::on_sensors(const msg::SensorCombined&
   sampled_ns_ = now_ns;
   sample.stamp_ns = clock_.to_host(message.timestamp(), now_ns);
   sample.sequence = ++samples_;
-  comms::msg::Imu out = comms::to_message(sample);
-  out.obeyed(comms::to_message(watchdog_.obeyed()));
+  messages::msg::Imu out = messages::to_message(sample);
+  out.obeyed(messages::to_message(watchdog_.obeyed()));
   return out;
 }
 
-std::optional<comms::msg::VehicleOdometry> Px4Vehicle::on_odometry(const msg::VehicleOdometry& message,
-                                                                   std::int64_t now_ns, comms::Fault& fault) {
+std::optional<messages::msg::VehicleOdometry> Px4Vehicle::on_odometry(const msg::VehicleOdometry& message,
+                                                                      std::int64_t now_ns,
+                                                                      messages::Fault& fault) {
   fault = from_px4(message, estimate_);
   if (fault) return std::nullopt;
   if (estimate_.position_valid) estimated_ns_ = now_ns;
@@ -58,13 +59,13 @@ std::optional<comms::msg::VehicleOdometry> Px4Vehicle::on_odometry(const msg::Ve
   estimate_.stamp_ns = clock_.to_host(message.timestamp_sample(), now_ns);
   estimate_.sequence = ++samples_;
   estimate_.fuses_mocap = vision_.passed() > 0;
-  comms::msg::VehicleOdometry out = comms::to_message(estimate_);
-  out.obeyed(comms::to_message(watchdog_.obeyed()));
+  messages::msg::VehicleOdometry out = messages::to_message(estimate_);
+  out.obeyed(messages::to_message(watchdog_.obeyed()));
   return out;
 }
 
-std::optional<comms::msg::Battery> Px4Vehicle::on_battery(const msg::BatteryStatus& message,
-                                                          std::int64_t now_ns, comms::Fault& fault) {
+std::optional<messages::msg::Battery> Px4Vehicle::on_battery(const msg::BatteryStatus& message,
+                                                             std::int64_t now_ns, messages::Fault& fault) {
   plant::BatterySample sample;
   fault = from_px4(message, sample);
   if (fault) return std::nullopt;
@@ -73,7 +74,7 @@ std::optional<comms::msg::Battery> Px4Vehicle::on_battery(const msg::BatteryStat
   battery_ns_ = now_ns;
   sample.stamp_ns = now_ns;
   sample.sequence = ++battery_samples_;
-  return comms::to_message(sample);
+  return messages::to_message(sample);
 }
 
 void Px4Vehicle::on_status(const msg::VehicleStatus& message, std::int64_t now_ns) {

@@ -47,12 +47,12 @@ class Px4Vehicle {
   explicit Px4Vehicle(const Px4VehicleSettings& settings);
 
   // PX4's topics. Each returns what control is sent, if anything. fault: set if the message is not sensible, and ignored then.
-  std::optional<comms::msg::Imu> on_sensors(const msg::SensorCombined& message, std::int64_t now_ns,
-                                            comms::Fault& fault);
-  std::optional<comms::msg::VehicleOdometry> on_odometry(const msg::VehicleOdometry& message,
-                                                         std::int64_t now_ns, comms::Fault& fault);
-  std::optional<comms::msg::Battery> on_battery(const msg::BatteryStatus& message, std::int64_t now_ns,
-                                                comms::Fault& fault);
+  std::optional<messages::msg::Imu> on_sensors(const msg::SensorCombined& message, std::int64_t now_ns,
+                                               messages::Fault& fault);
+  std::optional<messages::msg::VehicleOdometry> on_odometry(const msg::VehicleOdometry& message,
+                                                            std::int64_t now_ns, messages::Fault& fault);
+  std::optional<messages::msg::Battery> on_battery(const msg::BatteryStatus& message, std::int64_t now_ns,
+                                                   messages::Fault& fault);
   void on_status(const msg::VehicleStatus& message, std::int64_t now_ns);
   void on_flags(const msg::FailsafeFlags& message) { flags_ = message; }
   void on_land_detected(const msg::VehicleLandDetected& message) {

@@ -11,10 +11,10 @@
 namespace swiftlet::px4 {
 namespace {
 
-using comms::Fault;
-using comms::wire::Check;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
+using messages::Fault;
+using messages::wire::Check;
 
 constexpr float kUnused = std::numeric_limits<float>::quiet_NaN();
 constexpr std::array<float, 3> kUnusedVector{kUnused, kUnused, kUnused};

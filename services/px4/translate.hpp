@@ -38,12 +38,12 @@ msg::VehicleCommand land(std::uint8_t system);
 bool is_for_us(const msg::VehicleCommandAck& ack);
 
 // Fill all but stamp and sequence. Return a fault: the sample is not sensible.
-comms::Fault from_px4(const msg::SensorCombined& message, plant::ImuSample& sample);
-comms::Fault from_px4(const msg::BatteryStatus& message, plant::BatterySample& sample);
+messages::Fault from_px4(const msg::SensorCombined& message, plant::ImuSample& sample);
+messages::Fault from_px4(const msg::BatteryStatus& message, plant::BatterySample& sample);
 // PX4's own estimate, in its local frame. What it does not know is NaN there. Its variances of the orientation are about the body's
 // axes (EKF2::PublishOdometry of PX4), those of the deviations here about north, east and down. Of its reset counter, which wraps
 // at 256, odometry.resets counts the changes on from the value that it has. fuses_mocap is left to the caller.
-comms::Fault from_px4(const msg::VehicleOdometry& message, plant::OdometrySample& odometry);
-comms::Fault check(const msg::VehicleStatus& message);
+messages::Fault from_px4(const msg::VehicleOdometry& message, plant::OdometrySample& odometry);
+messages::Fault check(const msg::VehicleStatus& message);
 
 }  // namespace swiftlet::px4

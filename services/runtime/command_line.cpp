@@ -140,10 +140,10 @@ std::string unknown_argument(const CLI::App& program) {
   if (!is_option && commands.empty()) {
     return "Unexpected argument '" + word + "'.";
   }
-  const std::string meant = did_you_mean(is_option ? long_options(*app) : commands, word);
+  const std::string meant = io::did_you_mean(is_option ? long_options(*app) : commands, word);
   std::string sentence = std::string("Unknown ") + (is_option ? "option" : "command") + " '" + word + "'.";
   if (!meant.empty()) return sentence + meant;
-  return is_option ? sentence : sentence + " Commands: " + joined(commands, ", ") + ".";
+  return is_option ? sentence : sentence + " Commands: " + io::joined(commands, ", ") + ".";
 }
 
 }  // namespace
@@ -239,7 +239,7 @@ Option& Option::one_of(const std::vector<std::string>& texts) {
         const bool is_one = std::find(texts.begin(), texts.end(), text) != texts.end();
         return is_one ? "" : "is " + text + ", must be " + choice_of(texts);
       },
-      "{" + joined(texts, ",") + "}");
+      "{" + io::joined(texts, ",") + "}");
 }
 Option& Option::check(std::function<std::string(const std::string&)> fault_of,
                       const std::string& value_name) {

@@ -110,7 +110,7 @@ void host(std::vector<std::unique_ptr<HostedVehicle>> vehicles, StopSignal& stop
   if (failures.empty()) return;
   if (count == 1) throw std::runtime_error(failures.front());
   throw std::runtime_error(std::to_string(failures.size()) + " of " + std::to_string(count) +
-                           " vehicles failed: " + joined(failures, "; "));
+                           " vehicles failed: " + io::joined(failures, "; "));
 }
 
 }  // namespace swiftlet::runtime

@@ -37,7 +37,7 @@ int run_reporting_errors(const ProgramText& text, int argc, char** argv,
     limit_thread_stacks();
     body();
     return 0;
-  } catch (const ConfigError& error) {
+  } catch (const io::ConfigError& error) {
     return fail(text, error, kBadInput);
   } catch (const std::invalid_argument& error) {
     return fail(text, error, kBadInput);

@@ -20,14 +20,14 @@ ByteLink::ByteLink(ByteLinkSettings settings) : settings_(std::move(settings)) {
     if (!fault.empty()) throw std::invalid_argument("--baud: " + fault);
     return;
   }
-  const std::string fault = runtime::fault_of_host_address(settings_.udp);
+  const std::string fault = io::fault_of_host_address(settings_.udp);
   if (!fault.empty()) throw std::invalid_argument("--udp: " + fault);
-  const runtime::HostAddress address = runtime::parse_host_address(settings_.udp);
+  const io::HostAddress address = io::parse_host_address(settings_.udp);
   if (address.port == 0)
     throw std::invalid_argument("--udp: is '" + settings_.udp + "', must be HOST:PORT, with a port");
   far_end_.sin_family = AF_INET;
   far_end_.sin_port = htons(address.port);
-  ::inet_pton(AF_INET, runtime::ipv4_addresses_of(address.host).front().c_str(), &far_end_.sin_addr);
+  ::inet_pton(AF_INET, io::ipv4_addresses_of(address.host).front().c_str(), &far_end_.sin_addr);
 }
 
 int ByteLink::open() noexcept {

@@ -27,11 +27,11 @@ std::string quantiles(const runtime::LatencyHistogram& times) {
 
 }  // namespace
 
-LinkReporter::LinkReporter(comms::Node& node, const plant::Vehicle& vehicle, std::string link)
+LinkReporter::LinkReporter(dds::Node& node, const plant::Vehicle& vehicle, std::string link)
     : link_(std::move(link)),
       rotor_count_(vehicle.rotor_count()),
-      publisher_(node.publish(comms::topics::kVehicleInfo)) {
-  info_.wire_version(comms::kWireVersion);
+      publisher_(node.publish(messages::topics::kVehicleInfo)) {
+  info_.wire_version(messages::kWireVersion);
   info_.name() = vehicle.name;
   info_.rotor_count(static_cast<std::uint8_t>(rotor_count_));
   info_.mass_kg(vehicle.mass_kg);

@@ -13,7 +13,7 @@ namespace swiftlet::services {
 class LinkReporter {
  public:
   // link: as the user named it.
-  LinkReporter(comms::Node& node, const plant::Vehicle& vehicle, std::string link);
+  LinkReporter(dds::Node& node, const plant::Vehicle& vehicle, std::string link);
 
   // Logs what has changed.
   void update(const LinkMeasurements& measurements);
@@ -33,8 +33,8 @@ class LinkReporter {
 
   const std::string link_;
   const int rotor_count_;
-  comms::Publisher<comms::msg::VehicleInfo> publisher_;
-  comms::msg::VehicleInfo info_;
+  dds::Publisher<messages::msg::VehicleInfo> publisher_;
+  messages::msg::VehicleInfo info_;
   LinkMeasurements last_;
   LinkMeasurements logged_;
   bool clock_logged_ = false;

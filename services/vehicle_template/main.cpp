@@ -45,26 +45,26 @@ constexpr std::chrono::milliseconds kReportPeriod{20};
 struct Options {
   std::string vehicle = "kaylion";
   ByteLinkSettings link;
-  comms::NodeSettings node;
+  dds::NodeSettings node;
   runtime::ProcessOptions process;
 };
 
 class Vehicle final : public runtime::HostedVehicle {
  public:
-  Vehicle(const comms::Participant& participant, const std::string& name, const plant::Vehicle& parameters,
+  Vehicle(const dds::Participant& participant, const std::string& name, const plant::Vehicle& parameters,
           const ByteLinkSettings& link, const runtime::RealtimeSettings& realtime)
       : HostedVehicle(name),
         realtime_(realtime),
         link_(link),
         node_(participant, name, [this](const std::string& fault) { fail(fault); }),
-        imu_(node_.publish(comms::topics::kImu)),
-        rotor_speeds_(node_.publish(comms::topics::kRotorSpeeds)),
-        battery_(node_.publish(comms::topics::kBattery)),
+        imu_(node_.publish(messages::topics::kImu)),
+        rotor_speeds_(node_.publish(messages::topics::kRotorSpeeds)),
+        battery_(node_.publish(messages::topics::kBattery)),
         reporter_(node_, parameters, link.name()),
         clock_server_(node_, [this] { return clock_ns(); }),
-        commands_(node_.subscribe<comms::msg::ActuatorCommand>(
-            comms::topics::kActuatorCommand, [this](const auto& message) { on_command(message); },
-            comms::Delivery::kSamples)) {}
+        commands_(node_.subscribe<messages::msg::ActuatorCommand>(
+            messages::topics::kActuatorCommand, [this](const auto& message) { on_command(message); },
+            dds::Delivery::kSamples)) {}
 
   // The thread of the link: everything that the microcontroller sends, and all that is sent to it.
   void run(const std::atomic<bool>& stop) override {
@@ -91,10 +91,10 @@ class Vehicle final : public runtime::HostedVehicle {
  private:
   // The thread that receives commands hands over the newest one. The microcontroller refuses what it must not obey: an outdated
   // command, or one of a lower term.
-  void on_command(const comms::msg::ActuatorCommand& message) {
+  void on_command(const messages::msg::ActuatorCommand& message) {
     listener_.enter(realtime_);
     plant::ActuatorCommand command;
-    if (comms::from_message(message, command)) return;  // a fault: not a number, or out of range
+    if (messages::from_message(message, command)) return;  // a fault: not a number, or out of range
     newest_command_.put(command);
     link_.wake();
   }
@@ -108,18 +108,18 @@ class Vehicle final : public runtime::HostedVehicle {
 
   // Each IMU sample is answered by one command, so it goes out before anything else is done.
   void publish(const protocol::Imu& sample) {
-    comms::msg::Imu message = to_message(sample);
+    messages::msg::Imu message = to_message(sample);
     message.sequence_number(++imu_samples_);
     imu_.publish(message);
     measurements_.note(sample, link_.clock_ns(link_.arrived_ns()));
   }
   void publish(const protocol::RotorSpeeds& sample) {
-    comms::msg::RotorSpeeds message = to_message(sample);
+    messages::msg::RotorSpeeds message = to_message(sample);
     message.sequence_number(++rotor_speed_samples_);
     rotor_speeds_.publish(message);
   }
   void publish(const protocol::Battery& sample) {
-    comms::msg::Battery message = to_message(sample);
+    messages::msg::Battery message = to_message(sample);
     message.sequence_number(++battery_samples_);
     battery_.publish(message);
   }
@@ -154,16 +154,16 @@ class Vehicle final : public runtime::HostedVehicle {
   // From one thread to another, without waiting.
   runtime::LatestValue<plant::ActuatorCommand> newest_command_;
   runtime::LatestValue<LinkMeasurements> reports_;
-  runtime::LatestValue<std::optional<comms::ClockEstimate>> clock_;
-  std::optional<comms::ClockEstimate> served_clock_;
+  runtime::LatestValue<std::optional<clocks::ClockEstimate>> clock_;
+  std::optional<clocks::ClockEstimate> served_clock_;
 
-  comms::Node node_;
-  comms::Publisher<comms::msg::Imu> imu_;
-  comms::Publisher<comms::msg::RotorSpeeds> rotor_speeds_;
-  comms::Publisher<comms::msg::Battery> battery_;
+  dds::Node node_;
+  dds::Publisher<messages::msg::Imu> imu_;
+  dds::Publisher<messages::msg::RotorSpeeds> rotor_speeds_;
+  dds::Publisher<messages::msg::Battery> battery_;
   LinkReporter reporter_;
-  comms::ClockServer clock_server_;  // last two: their callbacks use all members above
-  comms::Subscription commands_;
+  clocks::ClockServer clock_server_;  // last two: their callbacks use all members above
+  dds::Subscription commands_;
 };
 
 void add_options(runtime::CommandLine app, Options& options) {
@@ -176,29 +176,29 @@ void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--vehicle", options.vehicle, "Vehicle file, or the name of one in config/vehicles")
       .show_default();
   options.node.name = "vehicle";
-  comms::add_node_options(app, options.node);
+  dds::add_node_options(app, options.node);
   runtime::add_process_options(app, options.process);
 }
 
 void run(const Options& options) {
   const plant::Vehicle parameters =
-      runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
+      io::load_vehicle(io::configuration_file(io::kinds::kVehicle, options.vehicle));
   runtime::StopSignal stop;
   const runtime::Logging logging("vehicle", options.process.log);
   const runtime::RealtimeSettings realtime =
       runtime::prepare_realtime(options.process.realtime, runtime::Clock::kRealtime);
 
-  comms::NodeSettings network = options.node;
+  dds::NodeSettings network = options.node;
   network.hears_of_all = false;
-  network.announcement_period = comms::kFixturePeriod;
+  network.announcement_period = messages::kFixturePeriod;
   network.realtime_priority = realtime.thread_priority();
-  network.source_of = comms::topics::kImu.name;
-  comms::Participant participant(network, {network.vehicle});
-  const comms::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
+  network.source_of = messages::topics::kImu.name;
+  dds::Participant participant(network, {network.vehicle});
+  const dds::SoleSource source(participant, network.source_of, [&stop] { stop.request(); });
   std::vector<std::unique_ptr<runtime::HostedVehicle>> vehicles;
   vehicles.push_back(
       std::make_unique<Vehicle>(participant, network.vehicle, parameters, options.link, realtime));
-  comms::log_reach(network);
+  dds::log_reach(network);
   runtime::log_info("ready: vehicle {} in domain {}, link {}", network.vehicle, network.domain,
                     options.link.name());
   runtime::host(std::move(vehicles), stop, kReportPeriod);

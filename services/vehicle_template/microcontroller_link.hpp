@@ -30,9 +30,9 @@ struct LinkStatus {
   int open_fault = 0;  // errno, while it is closed; 0 before the first attempt
   std::optional<protocol::HelloReply> microcontroller;  // the last that answered
   std::uint32_t sessions = 0;
-  protocol::FrameDecoder::Counts frames;      // from the microcontroller
-  std::uint32_t unsent = 0;                   // frames that the link could not take
-  std::optional<comms::ClockEstimate> clock;  // microcontroller's minus monotonic; empty: unknown
+  protocol::FrameDecoder::Counts frames;       // from the microcontroller
+  std::uint32_t unsent = 0;                    // frames that the link could not take
+  std::optional<clocks::ClockEstimate> clock;  // microcontroller's minus monotonic; empty: unknown
 };
 
 // All but wake() belong to one thread. Nothing allocates after construction, and nothing but wait() waits.
@@ -79,7 +79,7 @@ class MicrocontrollerLink {
   protocol::FrameDecoder decoder_;
   protocol::FrameEncoder encoder_;
   LinkStatus status_;
-  comms::ClockFilter clock_;
+  clocks::ClockFilter clock_;
   std::int64_t duty_due_ns_ = 0;
   std::int64_t heard_ns_ = 0;  // last frame of the session
 };

@@ -14,9 +14,9 @@ std::array<double, 3> widened(const std::array<float, 3>& vector) {
 
 }  // namespace
 
-comms::msg::Imu to_message(const protocol::Imu& in) {
-  using namespace comms::msg::ObeyedCommand_Constants;
-  comms::msg::Imu out;
+messages::msg::Imu to_message(const protocol::Imu& in) {
+  using namespace messages::msg::ObeyedCommand_Constants;
+  messages::msg::Imu out;
   out.stamp_ns(protocol::ns_of_us(in.stamp_us));
   out.specific_force_frd(widened(in.specific_force_frd));
   out.body_rates_frd(widened(in.body_rates_frd));
@@ -26,16 +26,16 @@ comms::msg::Imu to_message(const protocol::Imu& in) {
   return out;
 }
 
-comms::msg::RotorSpeeds to_message(const protocol::RotorSpeeds& in) {
-  comms::msg::RotorSpeeds out;
+messages::msg::RotorSpeeds to_message(const protocol::RotorSpeeds& in) {
+  messages::msg::RotorSpeeds out;
   out.stamp_ns(protocol::ns_of_us(in.stamp_us));
   out.rotor_count(in.rotor_count);
   std::copy(in.speeds.begin(), in.speeds.end(), out.speeds().begin());
   return out;
 }
 
-comms::msg::Battery to_message(const protocol::Battery& in) {
-  comms::msg::Battery out;
+messages::msg::Battery to_message(const protocol::Battery& in) {
+  messages::msg::Battery out;
   out.stamp_ns(protocol::ns_of_us(in.stamp_us));
   out.voltage_v(in.voltage_v);
   out.current_a(in.current_a);

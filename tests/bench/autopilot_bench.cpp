@@ -40,11 +40,11 @@ class Flight {
  public:
   explicit Flight(std::vector<std::string> arguments)
       : watcher_(settings(lock_.domain())),
-        info_(watcher_.subscribe<comms::msg::VehicleInfo>(comms::topics::kVehicleInfo,
-                                                          [this](const auto& info) {
-                                                            const std::lock_guard<std::mutex> lock(mutex_);
-                                                            newest_ = info;
-                                                          })) {
+        info_(watcher_.subscribe<messages::msg::VehicleInfo>(messages::topics::kVehicleInfo,
+                                                             [this](const auto& info) {
+                                                               const std::lock_guard<std::mutex> lock(mutex_);
+                                                               newest_ = info;
+                                                             })) {
     arguments.insert(arguments.end(), {"--autopilot", "mavlink", "--domain", std::to_string(lock_.domain()),
                                        "--localhost-only"});
     plant_ = std::make_unique<tests::Program>("swiftlet-plant", arguments, folder_.path());
@@ -62,7 +62,7 @@ class Flight {
     if (!autopilot_.fly_until(start_s + seconds, tests::kStuck)) fail();
   }
   // Flies on until vehicle_info has come that was sent after `seconds` by the autopilot's clock.
-  comms::msg::VehicleInfo info() {
+  messages::msg::VehicleInfo info() {
     const double now_s = static_cast<double>(autopilot_.log().sensor_times_us.back()) * 1e-6;
     for (double time_s = now_s; time_s < now_s + 60.0; time_s += 0.1) {
       if (!autopilot_.fly_until(time_s, tests::kStuck)) fail();
@@ -73,8 +73,8 @@ class Flight {
   }
 
  private:
-  static comms::NodeSettings settings(int domain) {
-    comms::NodeSettings settings;
+  static dds::NodeSettings settings(int domain) {
+    dds::NodeSettings settings;
     settings.name = "bench";
     settings.domain = domain;
     return settings;
@@ -86,14 +86,14 @@ class Flight {
   }
   [[noreturn]] void fail() const { throw std::runtime_error("the flight ended: " + plant_->errors()); }
 
-  comms::DomainLock lock_;
+  dds::DomainLock lock_;
   tests::TemporaryFolder folder_;
-  comms::Node watcher_;
+  dds::Node watcher_;
   std::mutex mutex_;
-  comms::msg::VehicleInfo newest_;
-  comms::Subscription info_;
+  messages::msg::VehicleInfo newest_;
+  dds::Subscription info_;
   std::unique_ptr<tests::Program> plant_;
-  tests::ScriptedAutopilot autopilot_{runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")),
+  tests::ScriptedAutopilot autopilot_{io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")),
                                       plant::SiteSettings(), pilot_settings()};
 };
 
@@ -105,7 +105,7 @@ double median(std::vector<double> values) {
 }
 
 void print_latency(const char* link, Flight& flight) {
-  const comms::msg::VehicleInfo info = flight.info();
+  const messages::msg::VehicleInfo info = flight.info();
   std::printf(
       "%-28s sense to actuate p50 %4.0f us, p99 %4.0f us, max %5.0f us; of it in the autopilot %2.0f us\n",
       link, info.sense_to_actuate_p50_us(), info.sense_to_actuate_p99_us(), info.sense_to_actuate_max_us(),

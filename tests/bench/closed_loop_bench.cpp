@@ -35,24 +35,23 @@ Eigen::Vector3d repeat(const std::vector<plant::MotorCommand>& commands, const p
 // An item is one step of plant and controller: 1 ms. plant_alone: CPU time of the plant's steps alone over that of the
 // flight, both measured in turn.
 void fly_square(benchmark::State& state, const char* settings_file) {
-  const plant::Vehicle vehicle = runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml"));
-  const control::ControlSettings settings =
-      runtime::load_control_settings(runtime::find_config(settings_file));
+  const plant::Vehicle vehicle = io::load_vehicle(io::find_config("vehicles/kaylion.yaml"));
+  const control::ControlSettings settings = io::load_control_settings(io::find_config(settings_file));
   control::Mission mission =
-      ground::load_mission_file(runtime::find_config("missions/square.yaml"), settings.limits).mission;
+      io::load_mission_file(io::find_config("missions/square.yaml"), settings.limits).mission;
   plant::SimulationSettings simulation =
-      runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
+      io::load_simulation_settings(io::find_config("simulation/default.yaml"));
   simulation.imu.rate_hz = 1000.0;
 
   mission.id = 1;
-  const double planned_s = ground::planned_duration_s(mission, settings.limits);
+  const double planned_s = io::planned_duration_s(mission, settings.limits);
 
   std::vector<plant::MotorCommand> commands;
   {
-    ground::ClosedLoop loop(vehicle, simulation, settings, kSeed);
+    simulation::ClosedLoop loop(vehicle, simulation, settings, kSeed);
     const auto take_command = [&] { commands.push_back({loop.command.rotor_state, loop.command.throttle}); };
     take_command();
-    ground::fly(loop, mission, planned_s, {nullptr, nullptr, {}, take_command, {}});
+    simulation::fly(loop, mission, planned_s, {nullptr, nullptr, {}, take_command, {}});
     commands.pop_back();  // of the last sample: no step follows
     if (repeat(commands, vehicle, simulation) != loop.plant.state().position_ned)
       return state.SkipWithError("the plant alone moves otherwise than in the flight");
@@ -62,8 +61,8 @@ void fly_square(benchmark::State& state, const char* settings_file) {
   double plant_s = 0.0;
   for (auto _ : state) {
     const double begin_s = cpu_time_s();
-    ground::ClosedLoop loop(vehicle, simulation, settings, kSeed);
-    const ground::SimulatedFlight flight = ground::fly(loop, mission, planned_s, {});
+    simulation::ClosedLoop loop(vehicle, simulation, settings, kSeed);
+    const simulation::SimulatedFlight flight = simulation::fly(loop, mission, planned_s, {});
     if (!flight.completed) return state.SkipWithError(flight.reason.c_str());
     simulated_ns += loop.plant.stamp_ns();
     state.PauseTiming();

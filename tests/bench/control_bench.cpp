@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 
 const ControlSettings& settings() {
   static const ControlSettings loaded =
-      runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml"));
+      io::load_control_settings(tests::in_source("config/control/motor_lag.yaml"));
   return loaded;
 }
 
@@ -63,9 +63,9 @@ void attitude_moments(benchmark::State& state, AttitudeErrorKind error) {
   attitude.error = error;
   const AttitudeController controller(vehicle, attitude, design(vehicle, settings()));
   AttitudeReference reference;
-  reference.body_z_ned = quaternion_from_euler({0.1, -0.05, 0.3}) * Vector3d::UnitZ();
+  reference.body_z_ned = math::quaternion_from_euler({0.1, -0.05, 0.3}) * Vector3d::UnitZ();
   reference.heading = 0.3;
-  Eigen::Quaterniond q = quaternion_from_euler({0.12, -0.04, 0.31});
+  Eigen::Quaterniond q = math::quaternion_from_euler({0.12, -0.04, 0.31});
   Vector3d rates(0.2, -0.3, 0.1);
   Vector3d moment(1e-4, -2e-4, 1e-5);
   for (auto _ : state) {
@@ -74,7 +74,7 @@ void attitude_moments(benchmark::State& state, AttitudeErrorKind error) {
     benchmark::DoNotOptimize(controller.moments(q, rates, moment, reference));
   }
 }
-BENCHMARK_CAPTURE(attitude_moments, euler_angles, AttitudeErrorKind::kEulerAngles);
+BENCHMARK_CAPTURE(attitude_moments, math::euler_angles, AttitudeErrorKind::kEulerAngles);
 BENCHMARK_CAPTURE(attitude_moments, rotation, AttitudeErrorKind::kRotation);
 
 // Reference from the polynomial, position law, conversion to thrust and attitude, feedforward.

@@ -3,15 +3,15 @@
 
 #include <benchmark/benchmark.h>
 
-#include "swiftlet/services/dds/datagram/datagram_guard.hpp"
+#include "swiftlet/services/rtps/datagram_guard.hpp"
 #include "tests/support/rtps_message.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 namespace {
 
 using namespace swiftlet::tests;
 
-const runtime::NetworkKeys kKeys{runtime::NetworkKey{1}};
+const io::NetworkKeys kKeys{io::NetworkKey{1}};
 constexpr std::size_t kImuBytes = 208;  // of a sample on the wire
 
 Bytes imu_datagram() {
@@ -24,7 +24,7 @@ Bytes imu_datagram() {
 }
 
 void datagram_check(benchmark::State& state) {
-  DatagramGuard guard;
+  rtps::DatagramGuard guard;
   const Bytes datagram = imu_datagram();
   for (auto _ : state)
     benchmark::DoNotOptimize(guard.admit(datagram.data(), datagram.size(), {}, 7411, {1, 1}).fault);
@@ -33,7 +33,7 @@ BENCHMARK(datagram_check);
 
 // With the copy that a sender makes.
 void datagram_seal(benchmark::State& state) {
-  DatagramGuard guard(kKeys);
+  rtps::DatagramGuard guard(kKeys);
   const Bytes datagram = imu_datagram();
   Bytes sealed = datagram;
   for (auto _ : state) {
@@ -46,20 +46,20 @@ BENCHMARK(datagram_seal);
 
 // Seal and check of a hop together; without the copy, the rest is what the receiver does.
 void datagram_hop_with_key(benchmark::State& state) {
-  DatagramGuard sender(kKeys);
-  DatagramGuard receiver(kKeys);
+  rtps::DatagramGuard sender(kKeys);
+  rtps::DatagramGuard receiver(kKeys);
   const Bytes datagram = imu_datagram();
   Bytes sealed = datagram;
   for (auto _ : state) {
     sealed = datagram;
     sender.seal(sealed, {1, 1});
-    const CheckedDatagram checked = receiver.admit(sealed.data(), sealed.size(), {}, 7411, {1, 1});
+    const rtps::CheckedDatagram checked = receiver.admit(sealed.data(), sealed.size(), {}, 7411, {1, 1});
     if (checked.fault != nullptr) state.SkipWithError(checked.fault);
   }
 }
 BENCHMARK(datagram_hop_with_key);
 
 }  // namespace
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds
 
 BENCHMARK_MAIN();

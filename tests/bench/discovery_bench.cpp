@@ -148,13 +148,13 @@ class ServerProcess {
     if (pid_ == 0) {
       ::close(input_[1]);
       network.hosts.enter(0);
-      comms::DiscoveryServerSettings settings;
+      dds::DiscoveryServerSettings settings;
       settings.domain = network.domain;
       settings.open_network = true;
-      settings.port = runtime::kDiscoveryServerPort;
-      comms::DiscoveryServer server(settings, [](const comms::DiscoveryServerEvent&) {});
+      settings.port = io::kDiscoveryServerPort;
+      dds::DiscoveryServer server(settings, [](const dds::DiscoveryServerEvent&) {});
       pollfd input{input_[0], POLLIN, 0};
-      ::poll(&input, 1, std::chrono::milliseconds(comms::DiscoveryServer::kStartTime).count());
+      ::poll(&input, 1, std::chrono::milliseconds(dds::DiscoveryServer::kStartTime).count());
       server.serve();
       char byte = 'r';
       if (::write(ready[1], &byte, 1) != 1) std::_Exit(1);
@@ -181,8 +181,8 @@ class ServerProcess {
   pid_t pid_ = 0;
 };
 
-comms::NodeSettings settings_of(const std::string& name, const std::string& vehicle, const Network& network) {
-  comms::NodeSettings settings;
+dds::NodeSettings settings_of(const std::string& name, const std::string& vehicle, const Network& network) {
+  dds::NodeSettings settings;
   settings.name = name;
   settings.vehicle = vehicle;
   settings.domain = network.domain;
@@ -214,14 +214,14 @@ void wait_until(const Condition& holds, int input) {
 }
 
 // The four processes of a vehicle, with the topics over which they find each other.
-void run_plant(const comms::NodeSettings& settings, int input, int output) {
-  comms::Node node(settings);
-  const auto imu = node.publish(comms::topics::kImu);
-  const auto rotors = node.publish(comms::topics::kRotorSpeeds);
-  const auto truth = node.publish(comms::topics::kGroundTruth);
-  const auto info = node.publish(comms::topics::kVehicleInfo);
+void run_plant(const dds::NodeSettings& settings, int input, int output) {
+  dds::Node node(settings);
+  const auto imu = node.publish(messages::topics::kImu);
+  const auto rotors = node.publish(messages::topics::kRotorSpeeds);
+  const auto truth = node.publish(messages::topics::kGroundTruth);
+  const auto info = node.publish(messages::topics::kVehicleInfo);
   const auto commands =
-      node.subscribe<comms::msg::ActuatorCommand>(comms::topics::kActuatorCommand, [](const auto&) {});
+      node.subscribe<messages::msg::ActuatorCommand>(messages::topics::kActuatorCommand, [](const auto&) {});
   wait_until(
       [&] {
         return imu.matched() == 1 && rotors.matched() == 1 && truth.matched() == 1 && info.matched() == 2 &&
@@ -231,25 +231,29 @@ void run_plant(const comms::NodeSettings& settings, int input, int output) {
   write_known(output);
   exit_when_closed(input);
 }
-void run_motion_capture(const comms::NodeSettings& settings, int input, int output) {
-  comms::Node node(settings);
-  const auto poses = node.publish(comms::topics::kMocapPose);
-  const auto truth = node.subscribe<comms::msg::GroundTruth>(comms::topics::kGroundTruth, [](const auto&) {});
+void run_motion_capture(const dds::NodeSettings& settings, int input, int output) {
+  dds::Node node(settings);
+  const auto poses = node.publish(messages::topics::kMocapPose);
+  const auto truth =
+      node.subscribe<messages::msg::GroundTruth>(messages::topics::kGroundTruth, [](const auto&) {});
   wait_until([&] { return poses.matched() == 2 && truth.matched() == 1; }, input);
   write_known(output);
   exit_when_closed(input);
 }
-void run_control(const comms::NodeSettings& settings, int input, int output) {
-  comms::Node node(settings);
-  const auto actuators = node.publish(comms::topics::kActuatorCommand);
-  const auto status = node.publish(comms::topics::kControlStatus);
-  const auto state = node.publish(comms::topics::kControllerState);
-  const auto imu = node.subscribe<comms::msg::Imu>(comms::topics::kImu, [](const auto&) {});
+void run_control(const dds::NodeSettings& settings, int input, int output) {
+  dds::Node node(settings);
+  const auto actuators = node.publish(messages::topics::kActuatorCommand);
+  const auto status = node.publish(messages::topics::kControlStatus);
+  const auto state = node.publish(messages::topics::kControllerState);
+  const auto imu = node.subscribe<messages::msg::Imu>(messages::topics::kImu, [](const auto&) {});
   const auto rotors =
-      node.subscribe<comms::msg::RotorSpeeds>(comms::topics::kRotorSpeeds, [](const auto&) {});
-  const auto poses = node.subscribe<comms::msg::MocapPose>(comms::topics::kMocapPose, [](const auto&) {});
-  const auto info = node.subscribe<comms::msg::VehicleInfo>(comms::topics::kVehicleInfo, [](const auto&) {});
-  const auto requests = node.subscribe<comms::msg::Command>(comms::topics::kCommand, [](const auto&) {});
+      node.subscribe<messages::msg::RotorSpeeds>(messages::topics::kRotorSpeeds, [](const auto&) {});
+  const auto poses =
+      node.subscribe<messages::msg::MocapPose>(messages::topics::kMocapPose, [](const auto&) {});
+  const auto info =
+      node.subscribe<messages::msg::VehicleInfo>(messages::topics::kVehicleInfo, [](const auto&) {});
+  const auto requests =
+      node.subscribe<messages::msg::Command>(messages::topics::kCommand, [](const auto&) {});
   wait_until(
       [&] {
         return actuators.matched() == 1 && status.matched() == 1 && state.matched() == 1 &&
@@ -260,15 +264,17 @@ void run_control(const comms::NodeSettings& settings, int input, int output) {
   write_known(output);
   exit_when_closed(input);
 }
-void run_ground(const comms::NodeSettings& settings, int input, int output) {
-  comms::Node node(settings);
-  const auto requests = node.publish(comms::topics::kCommand);
+void run_ground(const dds::NodeSettings& settings, int input, int output) {
+  dds::Node node(settings);
+  const auto requests = node.publish(messages::topics::kCommand);
   const auto status =
-      node.subscribe<comms::msg::ControlStatus>(comms::topics::kControlStatus, [](const auto&) {});
+      node.subscribe<messages::msg::ControlStatus>(messages::topics::kControlStatus, [](const auto&) {});
   const auto state =
-      node.subscribe<comms::msg::ControllerState>(comms::topics::kControllerState, [](const auto&) {});
-  const auto poses = node.subscribe<comms::msg::MocapPose>(comms::topics::kMocapPose, [](const auto&) {});
-  const auto info = node.subscribe<comms::msg::VehicleInfo>(comms::topics::kVehicleInfo, [](const auto&) {});
+      node.subscribe<messages::msg::ControllerState>(messages::topics::kControllerState, [](const auto&) {});
+  const auto poses =
+      node.subscribe<messages::msg::MocapPose>(messages::topics::kMocapPose, [](const auto&) {});
+  const auto info =
+      node.subscribe<messages::msg::VehicleInfo>(messages::topics::kVehicleInfo, [](const auto&) {});
   wait_until(
       [&] {
         return requests.matched() == 1 && status.matched() == 1 && state.matched() == 1 &&
@@ -283,20 +289,20 @@ void run_ground(const comms::NodeSettings& settings, int input, int output) {
 void run_process_of_fleet(int number, const Network& network, int input, int output) {
   network.hosts.enter(number % network.hosts.count());
   constexpr std::array kNames = {"plant", "mocap", "control", "ground"};
-  constexpr std::array<void (*)(const comms::NodeSettings&, int, int), kProcessesOfVehicle> kRoles = {
+  constexpr std::array<void (*)(const dds::NodeSettings&, int, int), kProcessesOfVehicle> kRoles = {
       run_plant, run_motion_capture, run_control, run_ground};
   const int role = number % kProcessesOfVehicle;
-  comms::NodeSettings settings =
+  dds::NodeSettings settings =
       settings_of(kNames[role], "kl" + std::to_string(number / kProcessesOfVehicle), network);
   settings.hears_of_all = false;
-  if (role < 2) settings.announcement_period = comms::kFixturePeriod;
+  if (role < 2) settings.announcement_period = messages::kFixturePeriod;
   kRoles[role](settings, input, output);
 }
 
 // A tool that looks at the domain, as `swiftlet list` does: writes a byte once it knows all processes.
 void run_tool(int count, const Network& network, int input, int output) {
   network.hosts.enter(0);
-  const comms::Participant participant(settings_of("tool", "", network));
+  const dds::Participant participant(settings_of("tool", "", network));
   // Clients of a discovery server see it as one more.
   const std::size_t all = static_cast<std::size_t>(count) + (network.server ? 1 : 0);
   wait_until([&] { return participant.processes_seen().size() >= all; }, input);
@@ -395,7 +401,7 @@ class Fleet {
 
 nlohmann::ordered_json measure(int count, Hosts& hosts, const Options& options) {
   const std::chrono::duration<double> patience(options.patience_s);
-  const comms::DomainLock lock;
+  const dds::DomainLock lock;
   const Network network{hosts, lock.domain(), options.server};
   const ServerProcess server(network);
   const auto start = Clock::now();

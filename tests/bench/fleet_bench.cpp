@@ -33,8 +33,8 @@ namespace swiftlet {
 namespace {
 
 using namespace std::chrono_literals;
-namespace topics = comms::topics;
-namespace msg = comms::msg;
+namespace topics = messages::topics;
+namespace msg = messages::msg;
 
 constexpr std::int64_t kPeriodNs = 2'000'000;
 constexpr int kSamplesPerPose = 5;
@@ -46,8 +46,8 @@ struct Options {
   runtime::ProcessOptions process;
 };
 
-comms::NodeSettings settings(const char* name, int domain, const runtime::RealtimeSettings& realtime) {
-  comms::NodeSettings settings;
+dds::NodeSettings settings(const char* name, int domain, const runtime::RealtimeSettings& realtime) {
+  dds::NodeSettings settings;
   settings.name = name;
   settings.domain = domain;
   settings.realtime_priority = realtime.thread_priority();
@@ -62,14 +62,14 @@ std::vector<std::string> names(int vehicles) {
 
 // Answers each IMU sample of its vehicle with a command.
 struct Control {
-  Control(const comms::Participant& participant, const std::string& name,
+  Control(const dds::Participant& participant, const std::string& name,
           const runtime::RealtimeSettings& realtime)
       : node(participant, name), commands(node.publish(topics::kActuatorCommand)) {
     poses = node.subscribe<msg::MocapPose>(
-        topics::kMocapPose, [](const auto&) {}, comms::Delivery::kSensors);
+        topics::kMocapPose, [](const auto&) {}, dds::Delivery::kSensors);
     rotor_speeds = node.subscribe<msg::RotorSpeeds>(
         topics::kRotorSpeeds, [this, realtime](const auto&) { rotor_speed_thread.enter(realtime); },
-        comms::Delivery::kSensors);
+        dds::Delivery::kSensors);
     samples = node.subscribe<msg::Imu>(
         topics::kImu,
         [this, realtime](const msg::Imu& imu) {
@@ -77,18 +77,18 @@ struct Control {
           command.imu_sequence_number(imu.sequence_number());
           commands.publish(command);
         },
-        comms::Delivery::kSamples);
+        dds::Delivery::kSamples);
   }
-  comms::Node node;
-  comms::Publisher<msg::ActuatorCommand> commands;
+  dds::Node node;
+  dds::Publisher<msg::ActuatorCommand> commands;
   msg::ActuatorCommand command;
   runtime::RealtimeThread thread, rotor_speed_thread;
-  comms::Subscription poses, rotor_speeds, samples;
+  dds::Subscription poses, rotor_speeds, samples;
 };
 
 // Answers each truth of its vehicle with a pose.
 struct Mocap {
-  Mocap(const comms::Participant& participant, const std::string& name,
+  Mocap(const dds::Participant& participant, const std::string& name,
         const runtime::RealtimeSettings& realtime)
       : node(participant, name), poses(node.publish(topics::kMocapPose)) {
     truth = node.subscribe<msg::GroundTruth>(
@@ -98,19 +98,19 @@ struct Mocap {
           pose.sequence_number(sample.sequence_number());
           poses.publish(pose);
         },
-        comms::Delivery::kSamples);
+        dds::Delivery::kSamples);
   }
-  comms::Node node;
-  comms::Publisher<msg::MocapPose> poses;
+  dds::Node node;
+  dds::Publisher<msg::MocapPose> poses;
   msg::MocapPose pose;
   runtime::RealtimeThread thread;
-  comms::Subscription truth;
+  dds::Subscription truth;
 };
 
 // Publishes IMU samples of its vehicle, for every fifth one truth and rotor speeds, and counts late answers.
 class Plant {
  public:
-  Plant(const comms::Participant& participant, const std::string& name,
+  Plant(const dds::Participant& participant, const std::string& name,
         const runtime::RealtimeSettings& realtime)
       : node_(participant, name),
         imu_(node_.publish(topics::kImu)),
@@ -123,7 +123,7 @@ class Plant {
           const std::lock_guard<std::mutex> lock(mutex_);
           answers_.answered(command.imu_sequence_number(), runtime::monotonic_ns());
         },
-        comms::Delivery::kSamples);
+        dds::Delivery::kSamples);
   }
   void publish() {
     ++sequence_;
@@ -156,10 +156,10 @@ class Plant {
   }
 
  private:
-  comms::Node node_;
-  comms::Publisher<msg::Imu> imu_;
-  comms::Publisher<msg::GroundTruth> truth_;
-  comms::Publisher<msg::RotorSpeeds> rotor_speeds_;
+  dds::Node node_;
+  dds::Publisher<msg::Imu> imu_;
+  dds::Publisher<msg::GroundTruth> truth_;
+  dds::Publisher<msg::RotorSpeeds> rotor_speeds_;
   std::mutex mutex_;  // guards answers_
   services::AnswerLatencies answers_{kPeriodNs};
   runtime::RealtimeThread receiver_;
@@ -167,11 +167,11 @@ class Plant {
   msg::Imu imu_message_;
   msg::GroundTruth truth_message_;
   msg::RotorSpeeds rotor_speeds_message_;
-  comms::Subscription commands_;
+  dds::Subscription commands_;
 };
 
 template <class Vehicle>
-std::vector<std::unique_ptr<Vehicle>> serve(const comms::Participant& participant, int vehicles,
+std::vector<std::unique_ptr<Vehicle>> serve(const dds::Participant& participant, int vehicles,
                                             const runtime::RealtimeSettings& realtime) {
   std::vector<std::unique_ptr<Vehicle>> all;
   for (const std::string& name : names(vehicles))
@@ -232,7 +232,7 @@ class ServingProcess {
     ::close(pipe_[1]);
     const runtime::RealtimeSettings realtime =
         runtime::prepare_realtime(options.process.realtime, runtime::Clock::kRealtime);
-    const comms::Participant participant(settings(name, domain, realtime), names(options.vehicles));
+    const dds::Participant participant(settings(name, domain, realtime), names(options.vehicles));
     const auto vehicles = serve<Vehicle>(participant, options.vehicles, realtime);
     char byte = 0;
     while (::read(pipe_[0], &byte, 1) > 0) {
@@ -246,12 +246,12 @@ class ServingProcess {
 
 void run(const Options& options) {
   runtime::log_to_stderr();
-  const comms::DomainLock lock;
+  const dds::DomainLock lock;
   const ServingProcess<Control> control("control", lock.domain(), options);
   const ServingProcess<Mocap> mocap("mocap", lock.domain(), options);
   const runtime::RealtimeSettings realtime =
       runtime::prepare_realtime(options.process.realtime, runtime::Clock::kRealtime);
-  const comms::Participant participant(settings("plant", lock.domain(), realtime), names(options.vehicles));
+  const dds::Participant participant(settings("plant", lock.domain(), realtime), names(options.vehicles));
   const auto vehicles = serve<Plant>(participant, options.vehicles, realtime);
   for (const auto& vehicle : vehicles) {
     if (!tests::eventually([&] { return vehicle->connected(); }))

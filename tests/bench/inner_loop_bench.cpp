@@ -23,10 +23,10 @@ control::Request request(control::RequestKind kind,
 }
 
 // A closed loop after take-off, on a long and slow minimum-jerk line.
-ground::ClosedLoop loop_in_flight(const char* settings) {
-  ground::ClosedLoop loop(runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml")),
-                          plant::SimulationSettings(),
-                          runtime::load_control_settings(runtime::find_config(settings)), 1);
+simulation::ClosedLoop loop_in_flight(const char* settings) {
+  simulation::ClosedLoop loop(io::load_vehicle(io::find_config("vehicles/kaylion.yaml")),
+                              plant::SimulationSettings(),
+                              io::load_control_settings(io::find_config(settings)), 1);
   loop.step_until([&] { return loop.time_s() > 0.5; }, 1.0);
   if (!loop.controller.request(request(control::RequestKind::kArm)).accepted ||
       !loop.controller.request(request(control::RequestKind::kTakeoff, {0, 0, -1})).accepted ||
@@ -42,7 +42,7 @@ ground::ClosedLoop loop_in_flight(const char* settings) {
 // Repeats samples of steady flight with new stamps: a pose with every fifth IMU sample, the battery at 10 Hz.
 // Times the controller as in flight, without the plant.
 void inner_loop_step(benchmark::State& state, const char* settings) {
-  ground::ClosedLoop loop = loop_in_flight(settings);
+  simulation::ClosedLoop loop = loop_in_flight(settings);
   constexpr int kPosePeriod = 5;
   constexpr int kBatteryPeriod = 50;
   plant::ImuSample imu = *loop.plant.imu();

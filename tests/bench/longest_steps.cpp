@@ -33,9 +33,9 @@ double cpu_us() {
 class Flight {
  public:
   Flight()
-      : loop_(runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml")),
-              runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml")),
-              runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml")), 1) {
+      : loop_(io::load_vehicle(io::find_config("vehicles/kaylion.yaml")),
+              io::load_simulation_settings(io::find_config("simulation/default.yaml")),
+              io::load_control_settings(io::find_config("control/motor_lag.yaml")), 1) {
     loop_.step_until([this] { return loop_.time_s() > 1.0; }, 2.0);
     require(request(RequestKind::kArm));
     require(request(RequestKind::kTakeoff, {0.0, 0.0, -1.0}));
@@ -93,7 +93,7 @@ class Flight {
     if (!outcome.accepted) throw std::runtime_error(outcome.reason);
   }
 
-  ground::ClosedLoop loop_;
+  simulation::ClosedLoop loop_;
   std::mt19937 random_{1};
 };
 

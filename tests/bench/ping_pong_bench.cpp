@@ -47,9 +47,9 @@ using namespace std::chrono_literals;
 
 constexpr std::uint32_t kProcesses = 2;  // in the domain
 constexpr const char* kVehicle = "kl1";
-namespace dds = eprosima::fastdds::dds;
-using comms::msg::ActuatorCommand;
-using comms::msg::Imu;
+namespace fastdds = eprosima::fastdds::dds;
+using messages::msg::ActuatorCommand;
+using messages::msg::Imu;
 
 constexpr int kBackToBack = 0;                   // in place of a rate
 constexpr double kBackToBackSamples = 10'000.0;  // for each second
@@ -93,36 +93,36 @@ T* require_created(T* made, const char* what) {
 
 // A participant with one writer and one reader.
 template <class Sent, class SentType, class Received, class ReceivedType>
-class BarePair final : private dds::DataReaderListener {
+class BarePair final : private fastdds::DataReaderListener {
  public:
-  BarePair(const Options& options, const char* name, int domain, const comms::Topic<Sent>& sent,
-           const comms::Topic<Received>& received, std::function<void(const Received&)> on_sample)
+  BarePair(const Options& options, const char* name, int domain, const messages::Topic<Sent>& sent,
+           const messages::Topic<Received>& received, std::function<void(const Received&)> on_sample)
       : on_sample_(std::move(on_sample)) {
-    comms::NodeSettings settings;
+    dds::NodeSettings settings;
     settings.name = name;
     settings.domain = domain;
     settings.localhost_only = true;
     settings.security = options.security;
-    participant_ = require_created(dds::DomainParticipantFactory::get_instance()->create_participant(
-                                       static_cast<std::uint32_t>(domain),
-                                       comms::participant_qos(settings, kProcesses, guard(settings))),
-                                   "participant");
+    participant_ = require_created(
+        fastdds::DomainParticipantFactory::get_instance()->create_participant(
+            static_cast<std::uint32_t>(domain), dds::participant_qos(settings, kProcesses, guard(settings))),
+        "participant");
     auto* const publisher =
-        require_created(participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT), "publisher");
+        require_created(participant_->create_publisher(fastdds::PUBLISHER_QOS_DEFAULT), "publisher");
     auto* const subscriber =
-        require_created(participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT), "subscriber");
+        require_created(participant_->create_subscriber(fastdds::SUBSCRIBER_QOS_DEFAULT), "subscriber");
     writer_ = require_created(
-        publisher->create_datawriter(topic<SentType>(wire_name(sent.name)), comms::writer_qos(sent.qos)),
+        publisher->create_datawriter(topic<SentType>(wire_name(sent.name)), dds::writer_qos(sent.qos)),
         "writer");
     reader_ = require_created(subscriber->create_datareader(topic<ReceivedType>(wire_name(received.name)),
-                                                            comms::reader_qos(received.qos), this,
-                                                            dds::StatusMask::data_available()),
+                                                            dds::reader_qos(received.qos), this,
+                                                            fastdds::StatusMask::data_available()),
                               "reader");
   }
   ~BarePair() override {
     reader_->set_listener(nullptr);
     participant_->delete_contained_entities();
-    dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+    fastdds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
   }
   BarePair(const BarePair&) = delete;
   BarePair& operator=(const BarePair&) = delete;
@@ -130,8 +130,8 @@ class BarePair final : private dds::DataReaderListener {
   void send(Sent& sample) { writer_->write(&sample); }
 
   bool matched() const {
-    dds::PublicationMatchedStatus readers;
-    dds::SubscriptionMatchedStatus writers;
+    fastdds::PublicationMatchedStatus readers;
+    fastdds::SubscriptionMatchedStatus writers;
     writer_->get_publication_matched_status(readers);
     reader_->get_subscription_matched_status(writers);
     return readers.current_count > 0 && writers.current_count > 0;
@@ -139,31 +139,31 @@ class BarePair final : private dds::DataReaderListener {
 
  private:
   static std::string wire_name(const char* topic) { return std::string("rt/") + kVehicle + "/" + topic; }
-  static std::shared_ptr<comms::DatagramGuard> guard(const comms::NodeSettings& settings) {
-    comms::DatagramLimits limits;
+  static std::shared_ptr<rtps::DatagramGuard> guard(const dds::NodeSettings& settings) {
+    rtps::DatagramLimits limits;
     limits.security = !settings.security.empty();
-    return std::make_shared<comms::DatagramGuard>(runtime::NetworkKeys(), limits);
+    return std::make_shared<rtps::DatagramGuard>(io::NetworkKeys(), limits);
   }
   template <class Type>
-  dds::Topic* topic(const std::string& name) {
-    const dds::TypeSupport type(new Type());
+  fastdds::Topic* topic(const std::string& name) {
+    const fastdds::TypeSupport type(new Type());
     participant_->register_type(type);
-    return require_created(participant_->create_topic(name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT),
+    return require_created(participant_->create_topic(name, type.get_type_name(), fastdds::TOPIC_QOS_DEFAULT),
                            "topic");
   }
 
-  void on_data_available(dds::DataReader* reader) override {
-    dds::SampleInfo info;
-    while (comms::succeeded(reader->take_next_sample(&sample_, &info))) {
+  void on_data_available(fastdds::DataReader* reader) override {
+    fastdds::SampleInfo info;
+    while (dds::succeeded(reader->take_next_sample(&sample_, &info))) {
       if (info.valid_data) on_sample_(sample_);
     }
   }
 
   std::function<void(const Received&)> on_sample_;
   Received sample_;
-  dds::DomainParticipant* participant_ = nullptr;
-  dds::DataWriter* writer_ = nullptr;
-  dds::DataReader* reader_ = nullptr;
+  fastdds::DomainParticipant* participant_ = nullptr;
+  fastdds::DataWriter* writer_ = nullptr;
+  fastdds::DataReader* reader_ = nullptr;
 };
 using BarePlant = BarePair<Imu, swiftlet_msgs::msg::ImuPubSubType, ActuatorCommand,
                            swiftlet_msgs::msg::ActuatorCommandPubSubType>;
@@ -176,13 +176,13 @@ void echo_dds(const Options& options) {
   std::atomic<BareControl*> ready{nullptr};
   ThreadSetUp set_up(options.process.realtime);
   ActuatorCommand command;
-  pair =
-      std::make_unique<BareControl>(options, "control", options.echo_domain, comms::topics::kActuatorCommand,
-                                    comms::topics::kImu, [&](const Imu& imu) {
-                                      set_up();
-                                      command.imu_sequence_number(imu.sequence_number());
-                                      if (BareControl* const self = ready.load()) self->send(command);
-                                    });
+  pair = std::make_unique<BareControl>(options, "control", options.echo_domain,
+                                       messages::topics::kActuatorCommand, messages::topics::kImu,
+                                       [&](const Imu& imu) {
+                                         set_up();
+                                         command.imu_sequence_number(imu.sequence_number());
+                                         if (BareControl* const self = ready.load()) self->send(command);
+                                       });
   ready = pair.get();
   char byte = 0;
   while (::read(STDIN_FILENO, &byte, 1) > 0) {
@@ -308,9 +308,9 @@ class RoundTrips {
 };
 
 void over_udp(const Options& options, int rate_hz, RoundTrips& trips) {
-  const comms::DomainLock lock;
+  const dds::DomainLock lock;
   ThreadSetUp set_up(options.process.realtime);
-  BarePlant pair(options, "plant", lock.domain(), comms::topics::kImu, comms::topics::kActuatorCommand,
+  BarePlant pair(options, "plant", lock.domain(), messages::topics::kImu, messages::topics::kActuatorCommand,
                  [&](const ActuatorCommand& command) {
                    set_up();
                    trips.answered(command.imu_sequence_number());

@@ -36,13 +36,13 @@ std::optional<record::TrackingErrors> fly_square(const plant::Vehicle& vehicle,
                                                  const plant::SimulationSettings& world,
                                                  const control::ControlSettings& settings,
                                                  std::uint64_t seed) {
-  ClosedLoop loop(vehicle, world, settings, seed);
+  simulation::ClosedLoop loop(vehicle, world, settings, seed);
   control::Mission mission =
-      load_mission_file(runtime::find_config("missions/square.yaml"), settings.limits).mission;
+      io::load_mission_file(io::find_config("missions/square.yaml"), settings.limits).mission;
   mission.id = 1;
-  const double planned_s = planned_duration_s(mission, settings.limits);
+  const double planned_s = io::planned_duration_s(mission, settings.limits);
   record::Flight flight;
-  const SimulatedFlight done = fly(loop, mission, planned_s, {&flight, nullptr, {}});
+  const simulation::SimulatedFlight done = simulation::fly(loop, mission, planned_s, {&flight, nullptr, {}});
   if (!done.completed) return std::nullopt;
   return record::evaluate(flight).errors;
 }
@@ -56,11 +56,10 @@ std::string text_of(const std::optional<record::TrackingErrors>& errors) {
 
 int run(const Options& options) {
   const plant::Vehicle vehicle =
-      runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
+      io::load_vehicle(io::configuration_file(io::kinds::kVehicle, options.vehicle));
   const control::ControlSettings settings =
-      runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml"));
-  plant::SimulationSettings world =
-      runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
+      io::load_control_settings(io::find_config("control/motor_lag.yaml"));
+  plant::SimulationSettings world = io::load_simulation_settings(io::find_config("simulation/default.yaml"));
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   if (!options.json) {
     std::printf("%s, square, %.0f %% loss, %.0f ms of jitter; errors in mm\n", vehicle.name.c_str(),
@@ -77,10 +76,10 @@ int run(const Options& options) {
       world.radio = {delay_s, jitter_s, options.loss};
       const std::optional<record::TrackingErrors> flown = fly_square(vehicle, world, settings, options.seed);
       all_flew = all_flew && flown;
-      DelayDesign tuned{1.0, settings, {}};
+      analysis::DelayDesign tuned{1.0, settings, {}};
       if (level != ControlLevel::kTrajectory && delay_s > 0.0)
-        tuned =
-            design_for_delay(vehicle, settings, 2.0 * (delay_s + jitter_s), {level, vehicle_loops(vehicle)});
+        tuned = analysis::design_for_delay(vehicle, settings, 2.0 * (delay_s + jitter_s),
+                                           {level, vehicle_loops(vehicle)});
       const std::optional<record::TrackingErrors> slower =
           tuned.factor < 1.0 ? fly_square(vehicle, world, tuned.settings, options.seed) : flown;
       if (options.json) {

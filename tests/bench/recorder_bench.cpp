@@ -53,8 +53,8 @@ struct Options {
   int domain = 0;
 };
 
-comms::NodeSettings network(const char* name, int domain) {
-  comms::NodeSettings settings;
+dds::NodeSettings network(const char* name, int domain) {
+  dds::NodeSettings settings;
   settings.name = name;
   settings.domain = domain;
   return settings;
@@ -75,10 +75,10 @@ fs::path fly(const std::string& mission, int imu_rate_hz, const fs::path& folder
   options.record = folder;
   const ground::LaunchConfiguration plan = ground::plan_flight(options);
   fs::create_directories(folder);
-  ground::ClosedLoop loop = ground::closed_loop(plan, {plan.vehicle, plan.simulation}, plan.seed);
+  simulation::ClosedLoop loop = ground::closed_loop(plan, {plan.vehicle, plan.simulation}, plan.seed);
   ground::SimulatedRecorder messages(loop, plan, "recorder_bench");
   record::Flight flight;
-  const ground::FlightReport report =
+  const analysis::FlightReport report =
       ground::fly_in_process(loop, plan, plan.seed, flight, nullptr, {}, &messages);
   const std::string fault = messages.finish();
   if (!fault.empty()) throw std::runtime_error(fault);
@@ -117,8 +117,8 @@ void publish(const Options& options) {
   const std::vector<Recorded> messages = messages_in(options.publish);
   std::set<std::string> topics;
   for (const Recorded& message : messages) topics.insert(message.topic);
-  const comms::Participant participant(network("plant", options.domain), names(options.vehicles));
-  std::deque<comms::Node> nodes;
+  const dds::Participant participant(network("plant", options.domain), names(options.vehicles));
+  std::deque<dds::Node> nodes;
   std::deque<ground::TopicPublishers> vehicles;
   for (const std::string& name : names(options.vehicles))
     vehicles.emplace_back(nodes.emplace_back(participant, name), topics);
@@ -149,13 +149,13 @@ void publish(const Options& options) {
 }
 
 void record(const Options& options) {
-  const auto folder = runtime::TemporaryFolder::of_the_system("swiftlet-recorder-bench");
+  const auto folder = io::TemporaryFolder::of_the_system("swiftlet-recorder-bench");
   const fs::path log = fly("square", options.imu_rate_hz, folder.path() / "flight");
-  const comms::DomainLock domain;
-  const comms::Participant participant(network("ground", domain.domain()));
+  const dds::DomainLock domain;
+  const dds::Participant participant(network("ground", domain.domain()));
   record::FlightRecorder recorder(participant, folder.path() / "fleet.mcap", {});
   for (const std::string& name : names(options.vehicles)) recorder.add_vehicle(name);
-  ground::ChildProcess publisher(
+  io::ChildProcess publisher(
       {"the publisher",
        fs::read_symlink("/proc/self/exe"),
        {"--publish", log, "--domain", std::to_string(domain.domain()), "--vehicles",
@@ -164,7 +164,7 @@ void record(const Options& options) {
   tests::eventually([&] { return recorder.totals().received > 0 || publisher.poll(); });
   const Usage before = usage_of(::getpid());
   const auto begin = Steady::now();
-  const std::optional<ground::ProcessEnd> ended = publisher.wait(
+  const std::optional<io::ProcessEnd> ended = publisher.wait(
       std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * (2.0 * options.seconds + 30.0))));
   const double time_s = std::chrono::duration<double>(Steady::now() - begin).count();
   const Usage after = usage_of(::getpid());
@@ -208,7 +208,7 @@ void record(const Options& options) {
 
 // Flies an hour, and checks that each IMU sample and its command are in the file.
 void fly_an_hour(const Options& options) {
-  const auto folder = runtime::TemporaryFolder::of_the_system("swiftlet-recorder-bench");
+  const auto folder = io::TemporaryFolder::of_the_system("swiftlet-recorder-bench");
   const fs::path mission = folder.path() / "hour.yaml";
   {
     std::ofstream text(mission);

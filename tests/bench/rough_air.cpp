@@ -42,9 +42,9 @@ struct Result {
 
 Result fly(const World& world, std::uint64_t seed) {
   control::Mission mission =
-      ground::load_mission_file(runtime::find_config("missions/square.yaml"), world.control.limits).mission;
+      io::load_mission_file(io::find_config("missions/square.yaml"), world.control.limits).mission;
   mission.id = 1;
-  ground::ClosedLoop loop(world.flown, world.nominal, world.simulation, world.control, seed);
+  simulation::ClosedLoop loop(world.flown, world.nominal, world.simulation, world.control, seed);
   Result result;
   const auto watch = [&] {
     const control::MissionProgress& progress = loop.controller.status().mission;
@@ -56,10 +56,10 @@ Result fly(const World& world, std::uint64_t seed) {
     result.peak_m = std::max(result.peak_m, error_m);
     if (progress.item_index == 0) result.takeoff_peak_m = std::max(result.takeoff_peak_m, error_m);
   };
-  ground::FlightObserver observer;
+  simulation::FlightObserver observer;
   observer.stepped = watch;
   result.completed =
-      ground::fly(loop, mission, ground::planned_duration_s(mission, world.control.limits), observer)
+      simulation::fly(loop, mission, io::planned_duration_s(mission, world.control.limits), observer)
           .completed;
   return result;
 }

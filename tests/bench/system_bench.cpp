@@ -37,7 +37,7 @@ namespace {
 
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
-namespace msg = comms::msg;
+namespace msg = messages::msg;
 using bench::Table;
 using nlohmann::json;
 
@@ -127,7 +127,7 @@ class Fleet {
                                    "0.35", "--per-row", "6"});
       const std::string full = std::string("swiftlet-") + name;
       logs_.push_back(folder / full);
-      processes_.emplace_back(ground::ProcessSettings{full, program(full), words, logs_.back()});
+      processes_.emplace_back(io::ProcessSettings{full, program(full), words, logs_.back()});
     }
   }
 
@@ -196,12 +196,12 @@ class Fleet {
   // Whether one of the processes has ended.
   bool has_ended() {
     return std::any_of(processes_.begin(), processes_.end(),
-                       [](ground::ChildProcess& process) { return process.poll().has_value(); });
+                       [](io::ChildProcess& process) { return process.poll().has_value(); });
   }
 
   std::uint64_t refused() const {
     std::uint64_t refused = 0;
-    for (const fs::path& log : logs_) refused += tests::refused_datagrams(runtime::read_text_file(log));
+    for (const fs::path& log : logs_) refused += tests::refused_datagrams(io::read_text_file(log));
     return refused;
   }
 
@@ -240,15 +240,15 @@ class Fleet {
 
   // A client of each vehicle, in one participant.
   struct Clients {
-    Clients(const comms::NodeSettings& network, const std::vector<std::string>& names)
+    Clients(const dds::NodeSettings& network, const std::vector<std::string>& names)
         : participant(network, names) {
       for (const std::string& name : names) {
-        comms::NodeSettings own = network;
+        dds::NodeSettings own = network;
         own.vehicle = name;
         all.push_back(std::make_unique<ground::Client>(participant, own));
       }
     }
-    comms::Participant participant;
+    dds::Participant participant;
     std::vector<std::unique_ptr<ground::Client>> all;
   };
 
@@ -260,17 +260,17 @@ class Fleet {
 
   // Hears the counters of a vehicle, and nothing else, which would be a load.
   struct Counters {
-    Counters(const comms::Participant& participant, const std::string& name)
+    Counters(const dds::Participant& participant, const std::string& name)
         : node(participant, name),
           vehicle_info(node.subscribe<msg::VehicleInfo>(
-              comms::topics::kVehicleInfo, [this](const msg::VehicleInfo& info) { vehicle.put(info); })),
+              messages::topics::kVehicleInfo, [this](const msg::VehicleInfo& info) { vehicle.put(info); })),
           control_status(node.subscribe<msg::ControlStatus>(
-              comms::topics::kControlStatus,
+              messages::topics::kControlStatus,
               [this](const msg::ControlStatus& status) { control.put(status); })) {}
-    comms::Node node;
+    dds::Node node;
     tests::Inbox<msg::VehicleInfo> vehicle;
     tests::Inbox<msg::ControlStatus> control;
-    comms::Subscription vehicle_info, control_status;
+    dds::Subscription vehicle_info, control_status;
   };
 
   // The next counters of each vehicle.
@@ -292,16 +292,16 @@ class Fleet {
     return all;
   }
 
-  comms::DomainLock lock_;
-  comms::NodeSettings network_ = [] {
-    comms::NodeSettings settings;
+  dds::DomainLock lock_;
+  dds::NodeSettings network_ = [] {
+    dds::NodeSettings settings;
     settings.name = "ground";
     return settings;
   }();
   std::vector<std::string> names_;
   std::vector<fs::path> logs_;
-  std::vector<ground::ChildProcess> processes_;
-  std::optional<comms::Participant> counting_;
+  std::vector<io::ChildProcess> processes_;
+  std::optional<dds::Participant> counting_;
   std::vector<std::unique_ptr<Counters>> counters_;
   std::vector<VehicleFigures> begin_;
 };

@@ -156,8 +156,7 @@ Path figure_of_eight(const std::string& file, int laps) {
     for (int power = 0; power < control::kPolynomialCoefficients; ++power)
       columns.push_back(std::string(axis) + "^" + std::to_string(power));
   }
-  const runtime::CsvTable table =
-      runtime::parse_csv(runtime::read_text_file(file), file, columns, 1, {true, true});
+  const io::CsvTable table = io::parse_csv(io::read_text_file(file), file, columns, 1, {true, true});
   Path path{"fig8", {}, {}, 0.0, 0.0};
   for (int lap = 0; lap < laps; ++lap) {
     for (std::size_t row = 0; row < table.row_count(); ++row) {
@@ -240,7 +239,7 @@ control::Request request(control::RequestKind kind) {
   return out;
 }
 
-void send_request(ground::ClosedLoop& loop, const control::Request& request) {
+void send_request(simulation::ClosedLoop& loop, const control::Request& request) {
   const control::Outcome outcome = loop.controller.request(request);
   if (!outcome.accepted) throw std::runtime_error(outcome.reason);
 }
@@ -249,8 +248,8 @@ Score fly(const Path& path, const plant::SimulationSettings& simulation,
           const control::ControlSettings& settings, std::uint64_t seed) {
   const control::Outcome checked = control::check(path.trajectory, settings.limits);
   if (!checked.accepted) throw std::runtime_error(path.name + ": " + checked.reason);
-  ground::ClosedLoop loop(runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml")), simulation,
-                          settings, seed);
+  simulation::ClosedLoop loop(io::load_vehicle(io::find_config("vehicles/kaylion.yaml")), simulation,
+                              settings, seed);
   loop.step_until([&] { return loop.time_s() >= 1.0; }, 2.0);
   send_request(loop, request(control::RequestKind::kArm));
   control::Request takeoff = request(control::RequestKind::kTakeoff);
@@ -330,7 +329,7 @@ control::ControlSettings agile(control::ControlSettings settings) {
 FastFlight fly_fast(const Path& path, double speed, const plant::SimulationSettings& perfect,
                     const plant::SimulationSettings& real, const control::ControlSettings& settings,
                     std::uint64_t seed) {
-  const plant::Vehicle vehicle = runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml"));
+  const plant::Vehicle vehicle = io::load_vehicle(io::find_config("vehicles/kaylion.yaml"));
   const Path fast = faster(path, speed);
   FastFlight out{path.name, speed, {}, {}, {}, ""};
   out.demands = control::worst_demands(vehicle, settings.limits, settings.failsafe.low_battery_voltage,
@@ -382,8 +381,8 @@ void print_fast(const std::vector<FastFlight>& flights) {
 
 // How many times as fast the vehicle can fly a path with a reserve, and what it meets then.
 std::string limit_of(const Path& path, const control::ControlSettings& settings) {
-  const plant::Vehicle vehicle = runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml"));
-  const ground::TrajectoryFile file{path.trajectory.segments, {}};
+  const plant::Vehicle vehicle = io::load_vehicle(io::find_config("vehicles/kaylion.yaml"));
+  const io::TrajectoryFile file{path.trajectory.segments, {}};
   ground::CheckConditions conditions = ground::at_start_of(file);
   conditions.reserve = 0.1;
   const ground::Pace pace =
@@ -393,15 +392,13 @@ std::string limit_of(const Path& path, const control::ControlSettings& settings)
 }
 
 void run(const Options& options) {
-  control::ControlSettings settings =
-      runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml"));
+  control::ControlSettings settings = io::load_control_settings(io::find_config("control/motor_lag.yaml"));
   settings.limits.fence_min_ned = {-5.0, -5.0, -2.5};  // sq4 exceeds the default fence
   settings.limits.fence_max_ned = {5.0, 5.0, 0.2};
-  plant::SimulationSettings perfect =
-      runtime::load_simulation_settings(runtime::find_config("simulation/ideal.yaml"));
+  plant::SimulationSettings perfect = io::load_simulation_settings(io::find_config("simulation/ideal.yaml"));
   perfect.imu.rate_hz = perfect.mocap.rate_hz = perfect.rotor_speed_rate_hz = 1000.0;
   const plant::SimulationSettings real =
-      runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
+      io::load_simulation_settings(io::find_config("simulation/default.yaml"));
   const std::vector<Path> paths = {square("sq2", 2.0), square("sq4", 4.0), minimum_jerk_square(),
                                    figure_of_eight(options.figure_of_eight, 5), lemniscate()};
 
@@ -469,7 +466,7 @@ void score_logs(const Options& options) {
     for (const auto& [vehicle, flight] : record::read_flights(file)) {
       const record::Evaluation flown = record::evaluate(flight);
       if (flown.errors.matched == 0)
-        throw runtime::ConfigError(log, 0, "/" + vehicle, "has no ground truth and reference of a mission");
+        throw io::ConfigError(log, 0, "/" + vehicle, "has no ground truth and reference of a mission");
       rows.push_back({{"name", log + " " + vehicle},
                       {"rms_m", flown.errors.rms_3d_m},
                       {"peak_m", flown.errors.peak_3d_m},

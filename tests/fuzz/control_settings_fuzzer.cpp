@@ -8,7 +8,7 @@ using namespace swiftlet;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   tests::is_read([&] {
     const control::ControlSettings settings =
-        runtime::parse_control_settings(tests::text_of(data, size), tests::kFuzzedFile);
+        io::parse_control_settings(tests::text_of(data, size), tests::kFuzzedFile);
     tests::demand(control::validate(settings).empty(), "settings that were read are valid");
   });
   return 0;

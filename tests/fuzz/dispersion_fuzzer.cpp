@@ -8,14 +8,14 @@
 using namespace swiftlet;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const ground::World nominal{
-      runtime::load_vehicle(swiftlet::tests::in_source("config/vehicles/kaylion.yaml")),
-      runtime::load_simulation_settings(swiftlet::tests::in_source("config/simulation/default.yaml"))};
+  static const simulation::World nominal{
+      io::load_vehicle(swiftlet::tests::in_source("config/vehicles/kaylion.yaml")),
+      io::load_simulation_settings(swiftlet::tests::in_source("config/simulation/default.yaml"))};
   tests::is_read([&] {
-    const ground::Dispersion dispersion =
-        ground::parse_dispersion_file(std::string(tests::text_of(data, size)), tests::kFuzzedFile, nominal);
-    const ground::DispersionSample draw = ground::draw(dispersion, nominal, 1);
-    tests::demand(ground::validate(draw.world).empty(), "a sampled world is valid");
+    const simulation::Dispersion dispersion = simulation::parse_dispersion_file(
+        std::string(tests::text_of(data, size)), tests::kFuzzedFile, nominal);
+    const simulation::DispersionSample draw = simulation::draw(dispersion, nominal, 1);
+    tests::demand(simulation::validate(draw.world).empty(), "a sampled world is valid");
   });
   return 0;
 }

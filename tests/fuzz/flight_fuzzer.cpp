@@ -62,17 +62,17 @@ class Input {
 };
 
 const plant::Vehicle& vehicle() {
-  static const auto read = runtime::load_vehicle(swiftlet::tests::in_source("config/vehicles/kaylion.yaml"));
+  static const auto read = io::load_vehicle(swiftlet::tests::in_source("config/vehicles/kaylion.yaml"));
   return read;
 }
 const plant::SimulationSettings& simulation() {
   static const auto read =
-      runtime::load_simulation_settings(swiftlet::tests::in_source("config/simulation/default.yaml"));
+      io::load_simulation_settings(swiftlet::tests::in_source("config/simulation/default.yaml"));
   return read;
 }
 const control::ControlSettings& settings() {
   static const auto read =
-      runtime::load_control_settings(swiftlet::tests::in_source("config/control/motor_lag.yaml"));
+      io::load_control_settings(swiftlet::tests::in_source("config/control/motor_lag.yaml"));
   return read;
 }
 
@@ -255,7 +255,7 @@ class Flight {
   }
 
   Input input_;
-  ground::ClosedLoop loop_;
+  simulation::ClosedLoop loop_;
   std::uint64_t sequence_ = 1'000'000;
   std::deque<control::Mission> missions_;  // the controller may still fly any of them
   std::deque<control::Trajectory> trajectories_;

@@ -19,7 +19,7 @@ const control::Limits& limits() {
   return limits;
 }
 
-void demand_flyable(const ground::MissionFile& file) {
+void demand_flyable(const io::MissionFile& file) {
   const control::Outcome outcome = control::check(file.mission, limits());
   if (!outcome.accepted) std::fprintf(stderr, "%s\n", outcome.reason);
   tests::demand(outcome.accepted, "control accepts a mission that was read");
@@ -28,17 +28,17 @@ void demand_flyable(const ground::MissionFile& file) {
 [[maybe_unused]] void foreign_table(const std::string& text) {
   for (const char* const columns : {"", "t,x,y,z", "x,y,z,yaw [deg]"}) {
     tests::is_read([&] {
-      const ground::ForeignTable table = ground::read_foreign_table(text, tests::kFuzzedFile, columns);
+      const io::ForeignTable table = io::read_foreign_table(text, tests::kFuzzedFile, columns);
       const auto parse = [&](auto* parser) {
         demand_flyable(parser(table.text, tests::kFuzzedFile, limits(), {}, table.first_line));
       };
-      switch (ground::detect_format(table.text, tests::kFuzzedFile)) {
-        case ground::MissionFormat::kPolynomialCsv:
-          return parse(ground::parse_polynomial_csv);
-        case ground::MissionFormat::kSampledCsv:
-          return parse(ground::parse_sampled_csv);
-        case ground::MissionFormat::kWaypointCsv:
-          return parse(ground::parse_waypoint_csv);
+      switch (io::detect_format(table.text, tests::kFuzzedFile)) {
+        case io::MissionFormat::kPolynomialCsv:
+          return parse(io::parse_polynomial_csv);
+        case io::MissionFormat::kSampledCsv:
+          return parse(io::parse_sampled_csv);
+        case io::MissionFormat::kWaypointCsv:
+          return parse(io::parse_waypoint_csv);
         default:
           return;
       }
@@ -48,9 +48,8 @@ void demand_flyable(const ground::MissionFile& file) {
 
 [[maybe_unused]] void waypoint_list(const std::string& text) {
   tests::is_read([&] {
-    demand_flyable(ground::parse_qgroundcontrol_plan(
-        ground::plan_of_waypoint_list("QGC WPL 110\n" + text, tests::kFuzzedFile), tests::kFuzzedFile,
-        limits()));
+    demand_flyable(io::parse_qgroundcontrol_plan(
+        io::plan_of_waypoint_list("QGC WPL 110\n" + text, tests::kFuzzedFile), tests::kFuzzedFile, limits()));
   });
 }
 
@@ -60,8 +59,8 @@ void demand_flyable(const ground::MissionFile& file) {
       static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const unsigned char*>(log.data()), log.size()));
   for (int i = 0; i < 4; ++i, crc >>= 8U) log += static_cast<char>(crc & 0xFFU);
   tests::is_read([&] {
-    demand_flyable(ground::parse_sampled_csv(ground::read_crazyflie_log(log, tests::kFuzzedFile).table,
-                                             tests::kFuzzedFile, limits()));
+    demand_flyable(io::parse_sampled_csv(io::read_crazyflie_log(log, tests::kFuzzedFile).table,
+                                         tests::kFuzzedFile, limits()));
   });
 }
 

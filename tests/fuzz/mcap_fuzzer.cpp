@@ -16,7 +16,7 @@ void decode(const mcap::Reader& file, const mcap::Channel& channel, const mcap::
     std::vector<mcap::Value> values;
     if (decoder.decode(message.payload, values))
       tests::demand(values.size() == decoder.columns().size(), "each column has a value");
-  } catch (const runtime::ConfigError&) {
+  } catch (const io::ConfigError&) {
   }
 }
 

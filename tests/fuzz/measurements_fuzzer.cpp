@@ -7,12 +7,12 @@
 using namespace swiftlet;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using Q = runtime::Quantity;
+  using Q = io::Quantity;
   tests::is_read([&] {
-    const runtime::Measurements measurements =
-        runtime::parse_measurements(tests::text_of(data, size), tests::kFuzzedFile,
-                                    {Q::kTime, Q::kSupplyVoltage, Q::kMotorVoltage, Q::kThrottle,
-                                     Q::kPulseWidth, Q::kSpeed, Q::kThrust, Q::kTorque});
+    const io::Measurements measurements =
+        io::parse_measurements(tests::text_of(data, size), tests::kFuzzedFile,
+                               {Q::kTime, Q::kSupplyVoltage, Q::kMotorVoltage, Q::kThrottle, Q::kPulseWidth,
+                                Q::kSpeed, Q::kThrust, Q::kTorque});
     for (const Q quantity : {Q::kTime, Q::kSpeed, Q::kThrust}) {
       if (!measurements.has(quantity)) continue;
       const std::vector<double>& column = measurements.column(quantity);

@@ -15,10 +15,10 @@ namespace {
 // Converts the bytes to the plain struct of a message; false if they are not a valid message.
 template <class Type>
 bool is_accepted(const std::uint8_t* data, std::size_t size, typename Type::Plain& out) {
-  static comms::CheckedTypeSupport<typename Type::PubSub> type;
-  comms::ReceivedSample<typename Type::PubSub::type> sample;
+  static swiftlet::dds::CheckedTypeSupport<typename Type::PubSub> type;
+  swiftlet::dds::ReceivedSample<typename Type::PubSub::type> sample;
   if (!tests::deserialize(type, data, size, &sample)) return false;
-  const comms::Fault fault = comms::from_message(sample.message, out);
+  const messages::Fault fault = messages::from_message(sample.message, out);
   if (fault) tests::demand(std::strlen(fault.text) > 8, "a refusal says what is wrong");
   return !fault;
 }
@@ -32,7 +32,7 @@ void check_message(const std::uint8_t* data, std::size_t size) {
     tests::demand(outcome.accepted || std::strlen(outcome.reason) > 8, "a refusal says what is wrong");
   } else if constexpr (!std::is_same_v<Type, tests::GroundLink>) {
     typename Type::Plain again;
-    tests::demand(!comms::from_message(comms::to_message(accepted), again),
+    tests::demand(!messages::from_message(messages::to_message(accepted), again),
                   "an accepted message can be sent");
   }
 }

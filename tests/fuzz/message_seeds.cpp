@@ -14,9 +14,9 @@
 namespace {
 
 using namespace swiftlet;
-using namespace swiftlet::comms::fixtures;
-using comms::to_message;
-namespace msg = comms::msg;
+using namespace swiftlet::messages::fixtures;
+using messages::to_message;
+namespace msg = messages::msg;
 
 template <class Type>
 void write(const std::filesystem::path& folder, const char* name,
@@ -75,23 +75,24 @@ int main(int argc, char** argv) {
   write_sent<msg::ReferencePubSubType>(folder, "reference");
   write_sent<msg::VehicleInfoPubSubType>(folder, "vehicle_info");
 
-  write<Mission>(folder, "mission", to_message(comms::fixtures::mission(5)));
+  write<Mission>(folder, "mission", to_message(messages::fixtures::mission(5)));
   write<Mission>(folder, "mission_empty", msg::Mission());
-  msg::Mission long_mission = to_message(comms::fixtures::mission(control::kMaxMissionItems, 0));
+  msg::Mission long_mission = to_message(messages::fixtures::mission(control::kMaxMissionItems, 0));
   write<Mission>(folder, "mission_at_its_bound", long_mission);
   long_mission.items().push_back(long_mission.items().front());
   write<Mission>(folder, "mission_past_its_bound", long_mission);
-  msg::Mission wrong = to_message(comms::fixtures::mission(2));
+  msg::Mission wrong = to_message(messages::fixtures::mission(2));
   wrong.items().front().speed(std::nan(""));
   write<Mission>(folder, "mission_nan", wrong);
 
-  write<Trajectory>(folder, "trajectory", to_message(comms::fixtures::trajectory(3)));
+  write<Trajectory>(folder, "trajectory", to_message(messages::fixtures::trajectory(3)));
   write<Trajectory>(folder, "trajectory_empty", msg::Trajectory());
-  msg::Trajectory long_trajectory = to_message(comms::fixtures::trajectory(control::kMaxTrajectorySegments));
+  msg::Trajectory long_trajectory =
+      to_message(messages::fixtures::trajectory(control::kMaxTrajectorySegments));
   write<Trajectory>(folder, "trajectory_at_its_bound", long_trajectory);
   long_trajectory.segments().push_back(long_trajectory.segments().front());
   write<Trajectory>(folder, "trajectory_past_its_bound", long_trajectory);
-  msg::Trajectory endless = to_message(comms::fixtures::trajectory(1));
+  msg::Trajectory endless = to_message(messages::fixtures::trajectory(1));
   endless.segments().front().duration_s(std::numeric_limits<double>::infinity());
   write<Trajectory>(folder, "trajectory_infinite", endless);
   return 0;

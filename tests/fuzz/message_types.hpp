@@ -31,23 +31,24 @@ struct MessageType {
   using Plain = PlainStruct;
 };
 
-using Imu = MessageType<'i', comms::msg::ImuPubSubType, plant::ImuSample>;
-using VehicleOdometry = MessageType<'o', comms::msg::VehicleOdometryPubSubType, plant::OdometrySample>;
-using MocapPose = MessageType<'p', comms::msg::MocapPosePubSubType, plant::PoseSample>;
-using Battery = MessageType<'b', comms::msg::BatteryPubSubType, plant::BatterySample>;
-using RotorSpeeds = MessageType<'r', comms::msg::RotorSpeedsPubSubType, plant::RotorSpeedSample>;
-using ActuatorCommand = MessageType<'a', comms::msg::ActuatorCommandPubSubType, plant::ActuatorCommand>;
-using RatesSetpoint = MessageType<'w', comms::msg::RatesSetpointPubSubType, plant::RatesSetpoint>;
-using AttitudeSetpoint = MessageType<'h', comms::msg::AttitudeSetpointPubSubType, plant::AttitudeSetpoint>;
+using Imu = MessageType<'i', messages::msg::ImuPubSubType, plant::ImuSample>;
+using VehicleOdometry = MessageType<'o', messages::msg::VehicleOdometryPubSubType, plant::OdometrySample>;
+using MocapPose = MessageType<'p', messages::msg::MocapPosePubSubType, plant::PoseSample>;
+using Battery = MessageType<'b', messages::msg::BatteryPubSubType, plant::BatterySample>;
+using RotorSpeeds = MessageType<'r', messages::msg::RotorSpeedsPubSubType, plant::RotorSpeedSample>;
+using ActuatorCommand = MessageType<'a', messages::msg::ActuatorCommandPubSubType, plant::ActuatorCommand>;
+using RatesSetpoint = MessageType<'w', messages::msg::RatesSetpointPubSubType, plant::RatesSetpoint>;
+using AttitudeSetpoint = MessageType<'h', messages::msg::AttitudeSetpointPubSubType, plant::AttitudeSetpoint>;
 using TrajectorySetpoint =
-    MessageType<'y', comms::msg::TrajectorySetpointPubSubType, plant::TrajectorySetpoint>;
-using GroundTruth = MessageType<'g', comms::msg::GroundTruthPubSubType, plant::TruthSample>;
-using Setpoint = MessageType<'s', comms::msg::SetpointPubSubType, control::Setpoint>;
-using ControllerState = MessageType<'c', comms::msg::ControllerStatePubSubType, comms::ControllerReport>;
-using GroundLink = MessageType<'l', comms::msg::GroundLinkPubSubType, control::GroundHeartbeat>;
-using Command = MessageType<'q', comms::msg::CommandPubSubType, control::Request>;
-using Mission = MessageType<'m', comms::msg::MissionPubSubType, control::Mission>;
-using ControlSettings = MessageType<'n', comms::msg::ControlSettingsPubSubType, control::SettingsRequest>;
-using Trajectory = MessageType<'t', comms::msg::TrajectoryPubSubType, control::Trajectory>;
+    MessageType<'y', messages::msg::TrajectorySetpointPubSubType, plant::TrajectorySetpoint>;
+using GroundTruth = MessageType<'g', messages::msg::GroundTruthPubSubType, plant::TruthSample>;
+using Setpoint = MessageType<'s', messages::msg::SetpointPubSubType, control::Setpoint>;
+using ControllerState =
+    MessageType<'c', messages::msg::ControllerStatePubSubType, messages::ControllerReport>;
+using GroundLink = MessageType<'l', messages::msg::GroundLinkPubSubType, control::GroundHeartbeat>;
+using Command = MessageType<'q', messages::msg::CommandPubSubType, control::Request>;
+using Mission = MessageType<'m', messages::msg::MissionPubSubType, control::Mission>;
+using ControlSettings = MessageType<'n', messages::msg::ControlSettingsPubSubType, control::SettingsRequest>;
+using Trajectory = MessageType<'t', messages::msg::TrajectoryPubSubType, control::Trajectory>;
 
 }  // namespace swiftlet::tests

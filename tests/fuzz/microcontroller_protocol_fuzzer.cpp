@@ -71,11 +71,11 @@ void read_as_host(const Bytes& wire) {
     plant::RotorSpeedSample speeds;
     plant::BatterySample battery;
     if (const auto message = protocol::message_of<protocol::Imu>(frame))
-      comms::from_message(services::to_message(*message), imu);
+      messages::from_message(services::to_message(*message), imu);
     if (const auto message = protocol::message_of<protocol::RotorSpeeds>(frame))
-      comms::from_message(services::to_message(*message), speeds);
+      messages::from_message(services::to_message(*message), speeds);
     if (const auto message = protocol::message_of<protocol::Battery>(frame))
-      comms::from_message(services::to_message(*message), battery);
+      messages::from_message(services::to_message(*message), battery);
   }
 }
 

@@ -12,13 +12,13 @@ using namespace swiftlet;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const control::Limits limits;
   const std::string text(tests::text_of(data, size));
-  tests::is_read([&] { ground::detect_format(text, tests::kFuzzedFile); });
+  tests::is_read([&] { io::detect_format(text, tests::kFuzzedFile); });
   tests::is_read([&] {
-    const ground::MissionFile file = ground::SWIFTLET_FUZZED_PARSER(text, tests::kFuzzedFile, limits);
+    const io::MissionFile file = io::SWIFTLET_FUZZED_PARSER(text, tests::kFuzzedFile, limits);
     const control::Outcome outcome = control::check(file.mission, limits);
     if (!outcome.accepted) std::fprintf(stderr, "%s\n", outcome.reason);
     tests::demand(outcome.accepted, "control accepts a mission that was read");
-    const double duration_s = ground::planned_duration_s(file.mission, limits);
+    const double duration_s = io::planned_duration_s(file.mission, limits);
     tests::demand(std::isfinite(duration_s) && duration_s > 0.0,
                   "the duration of a mission is finite and positive");
   });

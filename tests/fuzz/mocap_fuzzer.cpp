@@ -38,10 +38,10 @@ void fuzz_natnet(const std::uint8_t* data, std::size_t size, natnet::Version ver
 void fuzz_session(const std::uint8_t* data, std::size_t size) {
   NatNetSession session;
   std::int64_t now_ns = 1'000'000'000;
-  runtime::ByteReader in(data, size, true);
+  io::ByteReader in(data, size, true);
   while (in.rest() > 0) {
     const std::size_t bytes = in.u16();
-    const runtime::ByteReader datagram = in.part(bytes < in.rest() ? bytes : in.rest());
+    const io::ByteReader datagram = in.part(bytes < in.rest() ? bytes : in.rest());
     if (session.take(datagram.data(), datagram.rest(), now_ns += 1'000'000) == NatNetSession::Event::kFrame)
       session.exposed_ns(now_ns, true);
   }

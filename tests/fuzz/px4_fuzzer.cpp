@@ -25,12 +25,12 @@ namespace {
 
 template <class PubSubType, class Use>
 void use(const std::uint8_t* data, std::size_t size, const Use& what) {
-  static comms::CheckedTypeSupport<PubSubType> type;
-  comms::ReceivedSample<typename PubSubType::type> sample;
+  static swiftlet::dds::CheckedTypeSupport<PubSubType> type;
+  swiftlet::dds::ReceivedSample<typename PubSubType::type> sample;
   if (tests::deserialize(type, data, size, &sample)) what(sample.message);
 }
 
-void demand_reason(const comms::Fault& fault) {
+void demand_reason(const messages::Fault& fault) {
   if (fault) tests::demand(std::strlen(fault.text) > 8, "a refusal says what is wrong");
 }
 
@@ -49,7 +49,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     case 0:
       use<px4::msg::SensorCombinedPubSubType>(payload, length, [](const auto& message) {
         plant::ImuSample sample;
-        const comms::Fault fault = px4::from_px4(message, sample);
+        const messages::Fault fault = px4::from_px4(message, sample);
         demand_reason(fault);
         tests::demand(sample.specific_force_frd.allFinite() && sample.body_rates_frd.allFinite(),
                       "a sample is finite");
@@ -69,12 +69,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         plant::OdometrySample odometry;
         demand_reason(px4::from_px4(message, odometry));
         plant::OdometrySample again;
-        tests::demand(!comms::from_message(comms::to_message(odometry), again), "an estimate can be sent");
+        tests::demand(!messages::from_message(messages::to_message(odometry), again),
+                      "an estimate can be sent");
       });
       break;
     case 3:
       use<px4::msg::VehicleStatusPubSubType>(payload, length, [](const auto& message) {
-        const comms::Fault fault = px4::check(message);
+        const messages::Fault fault = px4::check(message);
         demand_reason(fault);
         tests::demand(!px4::mode_name(message.nav_state()).empty() &&
                           !px4::disarming_reason(message.latest_disarming_reason()).empty(),

@@ -30,7 +30,7 @@ bool is_read(const Parse& parse) {
   try {
     parse();
     return true;
-  } catch (const runtime::ConfigError& error) {
+  } catch (const io::ConfigError& error) {
     const std::string sentence = error.what();
     demand(sentence.rfind(kFuzzedFile, 0) == 0, "a refusal names the file");
     demand(sentence.size() > error.file().size() + error.key().size() + 6, "a refusal says what is wrong");

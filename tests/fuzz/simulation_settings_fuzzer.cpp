@@ -8,7 +8,7 @@ using namespace swiftlet;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   tests::is_read([&] {
     const plant::SimulationSettings settings =
-        runtime::parse_simulation_settings(tests::text_of(data, size), tests::kFuzzedFile);
+        io::parse_simulation_settings(tests::text_of(data, size), tests::kFuzzedFile);
     tests::demand(plant::validate(settings).empty(), "settings that were read are valid");
   });
   return 0;

@@ -9,8 +9,8 @@ using namespace swiftlet;
 namespace {
 
 std::string rewritten(std::string_view text, const plant::Vehicle& vehicle) {
-  return runtime::vehicle_text(vehicle, runtime::parse_vehicle_sources(text, tests::kFuzzedFile),
-                               runtime::parse_vehicle_uncertainty(text, tests::kFuzzedFile), "");
+  return io::vehicle_text(vehicle, io::parse_vehicle_sources(text, tests::kFuzzedFile),
+                          io::parse_vehicle_uncertainty(text, tests::kFuzzedFile), "");
 }
 
 }  // namespace
@@ -18,12 +18,12 @@ std::string rewritten(std::string_view text, const plant::Vehicle& vehicle) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text = tests::text_of(data, size);
   tests::is_read([&] {
-    const plant::Vehicle vehicle = runtime::parse_vehicle(text, tests::kFuzzedFile);
+    const plant::Vehicle vehicle = io::parse_vehicle(text, tests::kFuzzedFile);
     tests::demand(plant::validate(vehicle).empty(), "a vehicle that was read is valid");
     const std::string once = rewritten(text, vehicle);
     std::string twice;
     tests::demand(
-        tests::is_read([&] { twice = rewritten(once, runtime::parse_vehicle(once, tests::kFuzzedFile)); }),
+        tests::is_read([&] { twice = rewritten(once, io::parse_vehicle(once, tests::kFuzzedFile)); }),
         "a written vehicle can be read");
     tests::demand(once == twice, "a written vehicle is read unchanged");
   });

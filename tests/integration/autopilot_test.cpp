@@ -57,17 +57,17 @@ class Autopilot : public testing::Test {
   bool says(const Program& plant, const std::string& text) const {
     return eventually([&] { return plant.errors().find(text) != std::string::npos; });
   }
-  comms::NodeSettings node() const {
-    comms::NodeSettings settings;
+  dds::NodeSettings node() const {
+    dds::NodeSettings settings;
     settings.name = "watcher";
     settings.domain = lock_.domain();
     return settings;
   }
 
-  const comms::DomainLock lock_;
+  const dds::DomainLock lock_;
   const TemporaryFolder folder_;
   const int port_ = 14'600 + 2 * lock_.domain();  // and the next one: nobody else's, as the domain
-  const plant::Vehicle vehicle_ = runtime::load_vehicle(in_source("config/vehicles/kaylion.yaml"));
+  const plant::Vehicle vehicle_ = io::load_vehicle(in_source("config/vehicles/kaylion.yaml"));
 };
 
 TEST_F(Autopilot, HoversInLockstepAndRepeatsExactly) {
@@ -172,10 +172,10 @@ TEST_F(Autopilot, HoversOverASerialDevice) {
 }
 
 TEST_F(Autopilot, RotorsStopIfItDisconnectsInFlightAndItMayComeBack) {
-  comms::Node watcher(node());
+  dds::Node watcher(node());
   Inbox<std::pair<bool, std::string>> states;
   const auto subscription =
-      watcher.subscribe<comms::msg::VehicleInfo>(comms::topics::kVehicleInfo, [&](const auto& info) {
+      watcher.subscribe<messages::msg::VehicleInfo>(messages::topics::kVehicleInfo, [&](const auto& info) {
         states.put({info.rotors_running(), info.fault().c_str()});
       });
   const auto plant = start_lockstep();
@@ -230,11 +230,11 @@ TEST_F(Autopilot, OneThatAnswersEverySecondSampleFliesInLockstepToo) {
 // GIVEN another process that is the vehicle WHEN the plant publishes the truth alone THEN with stamps of that vehicle's clock.
 TEST_F(Autopilot, TheTruthAloneHasTheStampsOfTheVehicle) {
   constexpr std::int64_t kAhead = 7'000'000'000;
-  comms::Node vehicle(node());
-  const comms::ClockServer clock(vehicle, [] { return runtime::monotonic_ns() + kAhead; });
+  dds::Node vehicle(node());
+  const clocks::ClockServer clock(vehicle, [] { return runtime::monotonic_ns() + kAhead; });
   Inbox<std::int64_t> ages;
-  const auto truth = vehicle.subscribe<comms::msg::GroundTruth>(
-      comms::topics::kGroundTruth,
+  const auto truth = vehicle.subscribe<messages::msg::GroundTruth>(
+      messages::topics::kGroundTruth,
       [&](const auto& message) { ages.put(runtime::monotonic_ns() + kAhead - message.stamp_ns()); });
   const auto plant = start_plant(
       {"--autopilot-port", std::to_string(port_), "--clock", "lockstep", "--speed", "1", "--truth-only"});
@@ -254,8 +254,8 @@ TEST_F(Autopilot, TheTruthAloneHasTheStampsOfTheVehicle) {
 
 TEST_F(Autopilot, AnswersRequestsForItsClock) {
   const auto plant = start_plant({"--autopilot-port", std::to_string(port_)});
-  comms::Node watcher(node());
-  comms::ClockClient client(watcher, runtime::monotonic_ns);
+  dds::Node watcher(node());
+  clocks::ClockClient client(watcher, runtime::monotonic_ns);
   EXPECT_TRUE(eventually([&] {
     client.ask_if_due();
     return client.to_vehicle(runtime::monotonic_ns()).has_value();

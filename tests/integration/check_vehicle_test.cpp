@@ -28,12 +28,12 @@ namespace {
 
 using ground::HandStep;
 using nlohmann::json;
-namespace msg = comms::msg;
+namespace msg = messages::msg;
 
 class CheckVehicle : public testing::Test {
  protected:
-  comms::NodeSettings node(const std::string& name, const std::string& vehicle) const {
-    comms::NodeSettings settings;
+  dds::NodeSettings node(const std::string& name, const std::string& vehicle) const {
+    dds::NodeSettings settings;
     settings.name = name;
     settings.vehicle = vehicle;
     settings.domain = lock_.domain();
@@ -82,7 +82,7 @@ class CheckVehicle : public testing::Test {
     return found->at("verdict").get<std::string>() + ": " + found->at("finding").get<std::string>();
   }
 
-  comms::DomainLock lock_;
+  dds::DomainLock lock_;
   TemporaryFolder folder_;
   std::unique_ptr<Program> plant_, mocap_;
   std::unique_ptr<SpoilingRelay> relay_;

@@ -37,14 +37,14 @@ class OneContext : public testing::Test {
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
-  comms::NodeSettings network() const {
-    comms::NodeSettings network;
+  dds::NodeSettings network() const {
+    dds::NodeSettings network;
     network.name = "test";
     network.domain = lock_.domain();
     return network;
   }
 
-  comms::DomainLock lock_;
+  dds::DomainLock lock_;
   TemporaryFolder folder_;
 };
 

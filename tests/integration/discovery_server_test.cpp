@@ -77,7 +77,7 @@ class Client {
   const std::string server_;
   const Kind kind_;
   const int socket_;
-  comms::GuidPrefix prefix_ = kAlice;
+  rtps::GuidPrefix prefix_ = kAlice;
   std::uint32_t changes_ = 0;
 };
 

@@ -116,7 +116,7 @@ class FaultInFlight : public testing::Test {
  private:
   FaultFlight fly(std::vector<std::string> words, const std::string& kind, const std::string& for_s,
                   const std::string& parameters, double at_s) {
-    std::string simulation = runtime::read_text_file(in_source("config/simulation/default.yaml"));
+    std::string simulation = io::read_text_file(in_source("config/simulation/default.yaml"));
     simulation += "faults:\n  - {kind: " + kind + ", at_s: " + std::to_string(at_s) + ", for_s: " + for_s +
                   (parameters.empty() ? "" : ", " + parameters) + "}\n";
     const std::string file = folder_.write("faulty.yaml", simulation);

@@ -60,15 +60,14 @@ class Failsafe : public SeparateProcesses {
   }
   // A file with the control settings of motor_lag in which `from` is replaced.
   std::string settings_with(const std::string& from, const std::string& to) const {
-    std::string text = runtime::read_text_file(in_source("config/control/motor_lag.yaml"));
+    std::string text = io::read_text_file(in_source("config/control/motor_lag.yaml"));
     const std::size_t at = text.find(from);
     EXPECT_NE(at, std::string::npos) << from;
     return folder_.write("control.yaml", text.replace(at, from.size(), to));
   }
   std::string simulation_with(const std::string& faults) const {
-    return folder_.write(
-        "simulation.yaml",
-        runtime::read_text_file(in_source("config/simulation/default.yaml")) + "faults:\n" + faults);
+    return folder_.write("simulation.yaml", io::read_text_file(in_source("config/simulation/default.yaml")) +
+                                                "faults:\n" + faults);
   }
 };
 
@@ -219,7 +218,7 @@ TEST_F(Failsafe, HoldsInsideTheFenceWhenSetpointsLeaveIt) {
   start_all(
       {"--control", settings_with("fence_max_ned_m: [3.0, 3.0, 0.0]", "fence_max_ned_m: [0.6, 3.0, 0.0]")});
   hover();
-  auto setpoints = watcher_->publish(comms::topics::kSetpoint);
+  auto setpoints = watcher_->publish(messages::topics::kSetpoint);
   ASSERT_TRUE(eventually([&] { return setpoints.matched() == 1; }));
   // By the vehicle's clock: 0.4 m/s northwards, through the fence.
   const std::int64_t start_ns = stamp_ns();
@@ -232,7 +231,7 @@ TEST_F(Failsafe, HoldsInsideTheFenceWhenSetpointsLeaveIt) {
         ++setpoint.sequence;
         setpoint.position_ned.x() = 0.4 * elapsed_s;
         setpoint.velocity_ned.x() = 0.4;
-        setpoints.publish(comms::to_message(setpoint));
+        setpoints.publish(messages::to_message(setpoint));
         return elapsed_s > 4.0;
       },
       kTimeout));
@@ -299,7 +298,7 @@ class SteppedClocks : public Failsafe {
 TEST_F(SteppedClocks, DoNotDisturbTheFlight) {
   Inbox<std::int64_t> stamps_ns;
   const auto poses = watcher_->subscribe<msg::MocapPose>(
-      comms::topics::kMocapPose, [&](const auto& pose) { stamps_ns.put(pose.stamp_ns()); });
+      messages::topics::kMocapPose, [&](const auto& pose) { stamps_ns.put(pose.stamp_ns()); });
   of_mocap_.step(3);
   of_mocap_.preload("50");
   mocap_ = start("swiftlet-mocap", {"--frame-clock", "host"});
@@ -321,7 +320,7 @@ TEST_F(SteppedClocks, DoNotDisturbTheFlight) {
 
   Inbox<std::int64_t> offsets_ns;
   const auto clocks =
-      watcher_->subscribe<msg::ClockStatus>(comms::topics::kClockStatus, [&](const auto& clock) {
+      watcher_->subscribe<msg::ClockStatus>(messages::topics::kClockStatus, [&](const auto& clock) {
         if (clock.known()) offsets_ns.put(clock.offset_ns());
       });
   // The simulated vehicle's clock stands still while its host does: those steps are shorter.

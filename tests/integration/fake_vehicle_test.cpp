@@ -29,7 +29,7 @@ namespace {
 using namespace std::chrono_literals;
 using control::Mode;
 using ground::View;
-namespace msg = comms::msg;
+namespace msg = messages::msg;
 
 constexpr auto kTimeout = kStuck;
 
@@ -41,7 +41,7 @@ class FakeVehicleFlight : public testing::Test {
         client_(settings_of("ground", lock_)) {}
 
   void start_vehicle(plant::ControlLevel level = plant::ControlLevel::kActuators) {
-    const auto parameters = runtime::load_vehicle(in_source("config/vehicles/kaylion.yaml"));
+    const auto parameters = io::load_vehicle(in_source("config/vehicles/kaylion.yaml"));
     vehicle_ = std::make_unique<FakeVehicle>(parameters, settings_of("plant", lock_), level);
     ASSERT_TRUE(client_.wait(kTimeout, [](const View& view) { return view.control.message.has_pose(); }))
         << control_.errors();
@@ -81,7 +81,7 @@ class FakeVehicleFlight : public testing::Test {
     return command && !running(*command);
   }
 
-  comms::DomainLock lock_;
+  dds::DomainLock lock_;
   TemporaryFolder folder_;
   Program control_;
   ground::Client client_;
@@ -234,18 +234,18 @@ TEST_F(FakeVehicleFlight, RefusesADifferentMissionOfTheSameId) {
   mission.items.resize(2);
   for (control::MissionItem& item : mission.items) item.position_ned = {0.0, 0.0, -0.7};
   ASSERT_TRUE(client_.upload(mission, kTimeout).accepted());
-  comms::Node node(settings_of("stranger", lock_));
-  auto missions = node.publish(comms::topics::kMission);
+  dds::Node node(settings_of("stranger", lock_));
+  auto missions = node.publish(messages::topics::kMission);
   std::mutex mutex;
   std::optional<msg::CommandAck> ack;
   const auto acks =
-      node.subscribe<msg::CommandAck>(comms::topics::kCommandAck, [&](const msg::CommandAck& got) {
+      node.subscribe<msg::CommandAck>(messages::topics::kCommandAck, [&](const msg::CommandAck& got) {
         const std::lock_guard<std::mutex> lock(mutex);
         if (got.client() == 77) ack = got;
       });
   mission.id = client_.mission_id();
   mission.items[1].position_ned.x() = 0.5;
-  msg::Mission other = comms::to_message(mission);
+  msg::Mission other = messages::to_message(mission);
   other.client(77);
   ASSERT_TRUE(eventually([&] { return missions.matched() > 0; }, kTimeout));
   ASSERT_TRUE(eventually(

@@ -144,7 +144,7 @@ class TwoVehicles : public testing::Test {
     return run_program("swiftlet", words(vehicles, more), folder_.path());
   }
 
-  comms::DomainLock lock_;
+  dds::DomainLock lock_;
   TemporaryFolder folder_;
   Program plant_1_{"swiftlet-plant", lockstep("kl1", {"--speed", "4"}), folder_.path()};
   Program mocap_1_{"swiftlet-mocap", lockstep("kl1"), folder_.path()};

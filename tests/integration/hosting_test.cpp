@@ -40,7 +40,7 @@ class Hosting : public testing::Test {
     return eventually([&] { return ask(vehicles, words).exit_code == 0; });
   }
 
-  comms::DomainLock lock_;
+  dds::DomainLock lock_;
   TemporaryFolder folder_;
 };
 

@@ -41,10 +41,10 @@ TEST_F(IdentifyFlight, WritesAVehicleFileFromARecord) {
   EXPECT_EQ(report["vehicle"], "mine");
   EXPECT_EQ(report["source"], "measured");
   EXPECT_EQ(report["prediction"].size(), 4U);
-  const plant::Vehicle found = runtime::load_vehicle(in_folder("mine.yaml"));
+  const plant::Vehicle found = io::load_vehicle(in_folder("mine.yaml"));
   EXPECT_NEAR(found.rotor.thrust / 3.7901e-8, 1.0, 0.01);
   EXPECT_NEAR(found.motor.time_constant_s / 0.0821, 1.0, 0.001);
-  EXPECT_GE(runtime::load_vehicle_uncertainty(in_folder("mine.yaml")).parameters.size(), 5U);
+  EXPECT_GE(io::load_vehicle_uncertainty(in_folder("mine.yaml")).parameters.size(), 5U);
   std::ostringstream page;
   page << std::ifstream(in_folder("report.html")).rdbuf();
   EXPECT_NE(page.str().find("<figure data-panel="), std::string::npos);
@@ -72,7 +72,7 @@ TEST_F(IdentifyFlight, ReadsTheRecordOfSeparateProcesses) {
   const ProgramResult result =
       run({"identify", "flight", in_folder("first"), "--out", in_folder("mine.yaml"), "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_NEAR(runtime::load_vehicle(in_folder("mine.yaml")).motor.time_constant_s / 0.0821, 1.0, 0.001);
+  EXPECT_NEAR(io::load_vehicle(in_folder("mine.yaml")).motor.time_constant_s / 0.0821, 1.0, 0.001);
 }
 
 TEST_F(IdentifyFlight, ReportsWhatALogWithoutPosesDetermines) {
@@ -87,7 +87,7 @@ TEST_F(IdentifyFlight, ReportsWhatALogWithoutPosesDetermines) {
   EXPECT_EQ(report["beside_file"][0]["file"], 0.072);
   EXPECT_EQ(report["horizons"].size(), 20U);
   EXPECT_NE(report["unexcited"].dump().find("does not determine them"), std::string::npos);
-  const plant::Vehicle found = runtime::load_vehicle(in_folder("mine.yaml"));
+  const plant::Vehicle found = io::load_vehicle(in_folder("mine.yaml"));
   EXPECT_EQ(found.mass_kg, 0.027);
   EXPECT_NEAR(found.motor.time_constant_s, 0.065, 0.01);
   std::ostringstream page;

@@ -60,10 +60,10 @@ TEST_F(Identify, WritesAVehicleThatOtherCommandsRead) {
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const nlohmann::json report = nlohmann::json::parse(result.output);
   EXPECT_EQ(report["vehicle"], "mine");
-  const plant::Vehicle found = runtime::load_vehicle(vehicle());
+  const plant::Vehicle found = io::load_vehicle(vehicle());
   EXPECT_NEAR(found.motor.k2 / 1.020e-3, 1.0, 0.05);
   EXPECT_NEAR(found.rotor.thrust / 3.7901e-8, 1.0, 0.01);
-  EXPECT_EQ(runtime::load_vehicle_uncertainty(vehicle()).parameters.size(), 11U);
+  EXPECT_EQ(io::load_vehicle_uncertainty(vehicle()).parameters.size(), 11U);
   std::ostringstream text;
   text << std::ifstream(page()).rdbuf();
   EXPECT_NE(text.str().find("Fig. 7:"), std::string::npos);
@@ -121,7 +121,7 @@ TEST_F(Identify, RefusesToOverwriteItsInputs) {
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_NE(result.errors.find("--out: " + base + " is also an input file"), std::string::npos)
       << result.errors;
-  EXPECT_EQ(runtime::load_vehicle(base).name, "kaylion");
+  EXPECT_EQ(io::load_vehicle(base).name, "kaylion");
 }
 
 TEST_F(Identify, RefusesInvalidArguments) {

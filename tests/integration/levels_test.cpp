@@ -18,7 +18,7 @@
 namespace swiftlet::tests {
 namespace {
 
-namespace msg = comms::msg;
+namespace msg = messages::msg;
 using nlohmann::json;
 using plant::ControlLevel;
 

@@ -26,7 +26,7 @@ using namespace std::chrono_literals;
 using ground::View;
 using nlohmann::json;
 namespace msg = ground::msg;
-namespace topics = comms::topics;
+namespace topics = messages::topics;
 
 class LivingVehicle : public SeparateProcesses {
  protected:
@@ -110,12 +110,12 @@ TEST_F(LivingVehicle, OneOfTwoFlightsThatStartAtOnceIsRefused) {
 TEST_F(LivingVehicle, IsFlownByTheSamplesOfOneSourceOnly) {
   start_all();
   hover();
-  comms::Node impostor(node("impostor"));
+  dds::Node impostor(node("impostor"));
   auto imu = impostor.publish(topics::kImu);
   auto poses = impostor.publish(topics::kMocapPose);
   std::uint64_t sequence = 1'000'000;
   {
-    const comms::PeriodicTask shouting(2ms, [&] {
+    const dds::PeriodicTask shouting(2ms, [&] {
       const double nan = std::numeric_limits<double>::quiet_NaN();
       msg::Imu sample;
       sample.stamp_ns(stamp_ns());
@@ -268,7 +268,7 @@ TEST_F(LivingVehicle, ADeadMotionCaptureAndADeadControlServiceAreReportedSilentF
       << watch.output();
 }
 
-class SilentProgress final : public ground::Progress {
+class SilentProgress final : public io::Progress {
  public:
   void update(int, const std::string&) override {}
   void say(const std::string&) override {}
@@ -279,7 +279,7 @@ class SilentProgress final : public ground::Progress {
 TEST_F(LivingVehicleInRealTime, IsDisarmedAgainWhenTheStartIsRefused) {
   start_all_in_real_time();
   wait_until_ready();
-  const ground::MissionFile mission = ground::parse_mission_file(kHopMission, "hop.yaml", control::Limits());
+  const io::MissionFile mission = io::parse_mission_file(kHopMission, "hop.yaml", control::Limits());
   ground::StartBarrier barrier(2);
   SilentProgress progress;
   const ground::NetworkTransport::Watch watch{[] { return std::nullopt; }, [] { return 0; },
@@ -287,8 +287,8 @@ TEST_F(LivingVehicleInRealTime, IsDisarmedAgainWhenTheStartIsRefused) {
   auto flight = std::async(std::launch::async, [&]() -> std::string {
     ground::NetworkTransport vehicle(*client_, mission, runtime::Clock::kRealtime, watch, progress);
     try {
-      ground::fly_mission(vehicle, 10.0);
-    } catch (const ground::FlightFailure& failure) {
+      simulation::fly_mission(vehicle, 10.0);
+    } catch (const simulation::FlightFailure& failure) {
       return failure.what();
     }
     return "completed";
@@ -324,7 +324,7 @@ TEST_F(LivingVehicle, FliesAMissionFromWhereItStands) {
 }
 
 TEST(Attached, AFlightThatFindsNothingSaysWhereItLooked) {
-  const comms::DomainLock lock;
+  const dds::DomainLock lock;
   const TemporaryFolder folder;
   const ProgramResult fly = run_program("swiftlet",
                                         {"fly", "square", "--attach", "--localhost-only", "--domain",

@@ -210,7 +210,7 @@ class LockstepServices : public testing::Test {
     return std::make_unique<Program>(name, more, folder_.path());
   }
 
-  comms::DomainLock domain_;
+  dds::DomainLock domain_;
   TemporaryFolder folder_;
 };
 
@@ -235,15 +235,15 @@ TEST_F(LockstepServices, PlantWaitsForAPeerAndReportsItsEnd) {
 // The plant repeats a truth whose answer was lost. The repetition is answered again and is no gap.
 TEST_F(LockstepServices, MocapAnswersARepeatedTruthAgain) {
   const auto mocap = start("swiftlet-mocap");
-  comms::NodeSettings settings;
+  dds::NodeSettings settings;
   settings.name = "plant";
   settings.domain = domain_.domain();
-  comms::Node plant(settings);
-  Inbox<comms::msg::MocapPose> poses;
-  const auto subscription = plant.subscribe<comms::msg::MocapPose>(
-      comms::topics::kMocapPose, [&](const auto& pose) { poses.put(pose); });
-  auto truths = plant.publish(comms::topics::kGroundTruth);
-  comms::msg::GroundTruth truth;
+  dds::Node plant(settings);
+  Inbox<messages::msg::MocapPose> poses;
+  const auto subscription = plant.subscribe<messages::msg::MocapPose>(
+      messages::topics::kMocapPose, [&](const auto& pose) { poses.put(pose); });
+  auto truths = plant.publish(messages::topics::kGroundTruth);
+  messages::msg::GroundTruth truth;
   truth.q_ned_from_frd({1.0, 0.0, 0.0, 0.0});
   truth.rotor_count(4);
   for (std::uint64_t sequence = 1; sequence <= 40; ++sequence) {
@@ -271,17 +271,17 @@ TEST_F(LockstepServices, TimeAdvancesWithTheSimulationClockOnly) {
   const auto control = start("swiftlet-control");
   const auto plant = start("swiftlet-plant", {"--paused", "--patience", "0.5"});
   {
-    comms::NodeSettings settings;
+    dds::NodeSettings settings;
     settings.name = "ground";
     settings.domain = domain_.domain();
-    comms::Node ground(settings);
+    dds::Node ground(settings);
     Inbox<std::int64_t> pauses;
     const auto subscription =
-        ground.subscribe<comms::msg::VehicleInfo>(comms::topics::kVehicleInfo, [&](const auto& info) {
+        ground.subscribe<messages::msg::VehicleInfo>(messages::topics::kVehicleInfo, [&](const auto& info) {
           if (info.paused()) pauses.put(info.stamp_ns());
         });
-    auto clock = ground.publish(comms::topics::kSimulationClock);
-    comms::msg::SimulationClock clock_message;
+    auto clock = ground.publish(messages::topics::kSimulationClock);
+    messages::msg::SimulationClock clock_message;
     for (const std::int64_t until_ns : {100'000'000, 150'000'000}) {
       clock_message.advance_to_ns(until_ns);
       ASSERT_TRUE(eventually(

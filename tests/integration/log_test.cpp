@@ -47,7 +47,7 @@ class Log : public testing::Test {
     return eventually([&] { return fs::exists(file) && fs::file_size(file) >= bytes; });
   }
 
-  comms::DomainLock lock_;
+  dds::DomainLock lock_;
   TemporaryFolder folder_;
   std::unique_ptr<Program> vehicle_;
 };

@@ -44,7 +44,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using nlohmann::json;
 using plant::PoseSample;
-namespace msg = comms::msg;
+namespace msg = messages::msg;
 
 constexpr std::int64_t kHourNs = 3'600'000'000'000;
 constexpr std::int32_t kBody = 42;
@@ -150,28 +150,28 @@ PoseErrors errors_of(const std::vector<msg::MocapPose>& poses, const std::vector
     attitudes_rad.push_back(attitude(pose.q_ned_from_frd()).angularDistance(turned));
   }
   if (positions_m.empty()) return {};
-  return {positions_m.size(), ground::spread(positions_m).median, ground::spread(attitudes_rad).median};
+  return {positions_m.size(), math::spread(positions_m).median, math::spread(attitudes_rad).median};
 }
 
 // In place of swiftlet-mocap, in lockstep with the plant: what the cameras send of each frame that is due is received as
 // swiftlet-mocap does, and published with the stamp of the exposure.
 class LockstepCapture {
  public:
-  LockstepCapture(const comms::NodeSettings& network, const std::string& room, Cameras cameras)
+  LockstepCapture(const dds::NodeSettings& network, const std::string& room, Cameras cameras)
       : room_(mocap::parse_room(room, "room")),
         source_(mocap::open_source(room_)),
         cameras_(std::move(cameras)),
         node_(network),
-        poses_(node_.publish(comms::topics::kMocapPose)) {
+        poses_(node_.publish(messages::topics::kMocapPose)) {
     connect();
-    truth_ = node_.subscribe<msg::GroundTruth>(comms::topics::kGroundTruth,
+    truth_ = node_.subscribe<msg::GroundTruth>(messages::topics::kGroundTruth,
                                                [this](const auto& message) { on_truth(message); });
   }
 
  private:
   static plant::MocapSettings settings() {
     plant::MocapSettings settings =
-        runtime::load_simulation_settings(in_source("config/simulation/default.yaml")).mocap;
+        io::load_simulation_settings(in_source("config/simulation/default.yaml")).mocap;
     settings.position_error_m = settings.orientation_error_rad = settings.misalignment_rad = 0.0;
     return settings;
   }
@@ -188,11 +188,11 @@ class LockstepCapture {
 
   void on_truth(const msg::GroundTruth& message) {
     plant::TruthSample truth;
-    if (comms::from_message(message, truth)) return;
+    if (messages::from_message(message, truth)) return;
     if (truth.sequence > newest_) {
       newest_ = truth.sequence;
       const std::optional<PoseSample> exposed = exposures_.update(truth);
-      answer_ = exposed ? comms::to_message(captured(*exposed)) : msg::MocapPose();
+      answer_ = exposed ? messages::to_message(captured(*exposed)) : msg::MocapPose();
       if (!exposed) answer_.stamp_ns(truth.stamp_ns);
     }
     poses_.publish(answer_);
@@ -226,9 +226,9 @@ class LockstepCapture {
   mocap::SourceFrame frame_;
   std::uint64_t newest_ = 0;
   msg::MocapPose answer_;
-  comms::Node node_;
-  comms::Publisher<msg::MocapPose> poses_;
-  comms::Subscription truth_;  // last: its callback uses all members above
+  dds::Node node_;
+  dds::Publisher<msg::MocapPose> poses_;
+  dds::Subscription truth_;  // last: its callback uses all members above
 };
 
 class MotionCapture : public SeparateProcesses {
@@ -254,10 +254,10 @@ class MotionCapture : public SeparateProcesses {
   // within this error of its real pose.
   void expect_flown_in_lockstep(const std::string& room, Cameras cameras, const std::string& mission,
                                 double rms_m) {
-    comms::NodeSettings network = node("mocap");
+    dds::NodeSettings network = node("mocap");
     capture_.emplace(network, room, std::move(cameras));
     poses_.emplace();
-    seen_ = watcher_->subscribe<msg::MocapPose>(comms::topics::kMocapPose, [this](const auto& pose) {
+    seen_ = watcher_->subscribe<msg::MocapPose>(messages::topics::kMocapPose, [this](const auto& pose) {
       if (pose.sequence_number() > 0) poses_->put(pose);
     });
     control_ = start("swiftlet-control", {"--clock", "lockstep"});
@@ -278,7 +278,7 @@ class MotionCapture : public SeparateProcesses {
 
   std::optional<LockstepCapture> capture_;
   std::optional<Inbox<msg::MocapPose>> poses_;
-  comms::Subscription seen_;
+  dds::Subscription seen_;
 };
 
 // GIVEN a server of NatNet 4.1 with y up, whose body is turned by 20 degrees and 4 cm off THEN the square is flown at 1 m/s as
@@ -305,16 +305,16 @@ TEST_F(MotionCapture, FliesThroughVrpnInLockstep) {
 // A vehicle in real time with cameras, which know at what time of this host each of its poses was.
 class FilmedVehicle {
  public:
-  FilmedVehicle(const comms::NodeSettings& network, Cameras cameras)
-      : node_(network), clock_(node_, runtime::monotonic_ns, comms::ClockClient::Reporting::kNone) {
-    poses_ = node_.subscribe<msg::MocapPose>(comms::topics::kMocapPose,
+  FilmedVehicle(const dds::NodeSettings& network, Cameras cameras)
+      : node_(network), clock_(node_, runtime::monotonic_ns, clocks::ClockClient::Reporting::kNone) {
+    poses_ = node_.subscribe<msg::MocapPose>(messages::topics::kMocapPose,
                                              [this](const auto& pose) { seen_.put(pose); });
     truth_ = node_.subscribe<msg::GroundTruth>(
-        comms::topics::kGroundTruth, [this, cameras = std::move(cameras)](const auto& message) {
+        messages::topics::kGroundTruth, [this, cameras = std::move(cameras)](const auto& message) {
           clock_.ask_if_due();
           const auto vehicle_now_ns = clock_.to_vehicle(runtime::monotonic_ns());
           plant::TruthSample truth;
-          if (!vehicle_now_ns || comms::from_message(message, truth)) return;
+          if (!vehicle_now_ns || messages::from_message(message, truth)) return;
           const std::int64_t age_ns = *vehicle_now_ns - truth.stamp_ns;
           cameras({truth.stamp_ns, 0, true, truth.position_ned, truth.q_ned_from_frd},
                   std::max<std::int64_t>(age_ns, 1));
@@ -324,10 +324,10 @@ class FilmedVehicle {
 
  private:
   Inbox<msg::MocapPose> seen_;
-  comms::Node node_;
-  comms::ClockClient clock_;
-  comms::Subscription poses_;
-  comms::Subscription truth_;  // last: its callback uses all members above
+  dds::Node node_;
+  clocks::ClockClient clock_;
+  dds::Subscription poses_;
+  dds::Subscription truth_;  // last: its callback uses all members above
 };
 
 // GIVEN a vehicle by a server of NatNet, an hour ahead, and one by a server of VRPN, an hour behind, in real time WHEN they fly a
@@ -343,14 +343,14 @@ TEST_F(MotionCapture, StampsThePosesOfNatNetAndVrpnByTheVehiclesClocks) {
   const auto tracked = std::make_shared<std::atomic<bool>>(true);
 
   const auto network_of = [this](const char* name, const char* vehicle) {
-    comms::NodeSettings network = node(name);
+    dds::NodeSettings network = node(name);
     network.vehicle = vehicle;
     return network;
   };
   const FilmedVehicle by_natnet(network_of("cameras", "kl1"), natnet_cameras(natnet_server, tracked));
   const FilmedVehicle by_vrpn(network_of("cameras", "kl2"), vrpn_cameras(vrpn_server));
   const ground::Client client_of_kl2(network_of("ground", "kl2"));
-  comms::Node watcher_of_kl2(network_of("watcher", "kl2"));
+  dds::Node watcher_of_kl2(network_of("watcher", "kl2"));
   const TelemetryLog telemetry_of_kl2(watcher_of_kl2);
 
   control_ = start("swiftlet-control", {"--vehicle-name", "kl1,kl2"});

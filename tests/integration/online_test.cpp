@@ -277,9 +277,9 @@ TEST_F(OnlineFlight, JoinsASecondTrajectoryDuringTheFirst) {
   EXPECT_EQ(swiftlet({"trajectory", mission}).exit_code, 2);
   take_off();
   Inbox<Mode> modes;
-  comms::Node watcher(settings());
-  const comms::Subscription subscription =
-      watcher.subscribe<comms::msg::ControlStatus>(comms::topics::kControlStatus, [&](const auto& status) {
+  dds::Node watcher(settings());
+  const dds::Subscription subscription = watcher.subscribe<messages::msg::ControlStatus>(
+      messages::topics::kControlStatus, [&](const auto& status) {
         const std::vector<Mode> before = modes.items();
         const auto mode = static_cast<Mode>(status.mode());
         if (before.empty() || before.back() != mode) modes.put(mode);

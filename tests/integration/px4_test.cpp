@@ -25,7 +25,7 @@ namespace {
 
 using control::Mode;
 using ground::View;
-namespace msg = comms::msg;
+namespace msg = messages::msg;
 
 constexpr std::uint8_t kPosition = 2, kAutoLand = 18;
 constexpr double kHeight_m = 0.6;
@@ -36,8 +36,8 @@ class Px4 : public testing::Test {
  protected:
   static constexpr const char* kNames[] = {"kl1", "kl2"};
 
-  comms::NodeSettings node(const std::string& name, const std::string& vehicle) const {
-    comms::NodeSettings settings = settings_of(name.c_str(), lock_);
+  dds::NodeSettings node(const std::string& name, const std::string& vehicle) const {
+    dds::NodeSettings settings = settings_of(name.c_str(), lock_);
     settings.vehicle = vehicle;
     return settings;
   }
@@ -57,8 +57,8 @@ class Px4 : public testing::Test {
     }
   }
 
-  const plant::Vehicle vehicle_ = runtime::load_vehicle(in_source("config/vehicles/kaylion.yaml"));
-  comms::DomainLock lock_;
+  const plant::Vehicle vehicle_ = io::load_vehicle(in_source("config/vehicles/kaylion.yaml"));
+  dds::DomainLock lock_;
   TemporaryFolder folder_;
   std::vector<std::unique_ptr<ScriptedPx4>> px4s_;
 };
@@ -66,7 +66,7 @@ class Px4 : public testing::Test {
 // A vehicle with its control service, as the ground sees it.
 class Seen {
  public:
-  explicit Seen(const comms::NodeSettings& settings) : client_(settings) {}
+  explicit Seen(const dds::NodeSettings& settings) : client_(settings) {}
 
   ground::Result ask(std::uint8_t kind) {
     msg::Command command;

@@ -26,7 +26,7 @@ namespace swiftlet::tests {
 namespace {
 
 namespace fs = std::filesystem;
-namespace msg = comms::msg;
+namespace msg = messages::msg;
 using namespace std::chrono_literals;
 
 constexpr std::int64_t kDays_s = 24 * 3600;
@@ -44,8 +44,8 @@ class Security : public testing::Test {
     }
     return path;
   }
-  static comms::NodeSettings secured(const std::string& security) {
-    comms::NodeSettings settings;
+  static dds::NodeSettings secured(const std::string& security) {
+    dds::NodeSettings settings;
     settings.security = security;
     return settings;
   }
@@ -54,19 +54,19 @@ class Security : public testing::Test {
   std::string without_write_control(const std::string& keys) const {
     const std::string path = folder_.path() / "captured";
     fs::copy(keys, path, fs::copy_options::recursive);
-    const runtime::SecurityFolder copy{path};
-    const runtime::Credential authority{runtime::read_text_file(copy.authority()),
-                                        runtime::read_text_file(copy.authority_key())};
+    const io::SecurityFolder copy{path};
+    const io::Credential authority{io::read_text_file(copy.authority()),
+                                   io::read_text_file(copy.authority_key())};
     const std::string on = "<enable_write_access_control>true<";
-    std::string governance = comms::governance_document();
+    std::string governance = messages::governance_document();
     governance.replace(governance.find(on), on.size(), "<enable_write_access_control>false<");
-    std::ofstream(copy.governance()) << runtime::sign(authority, governance);
+    std::ofstream(copy.governance()) << io::sign(authority, governance);
     return path;
   }
 
   // Sends commands that stop the rotors to the vehicle, which flies.
-  static void expect_not_obeyed(const RedundantFlight& flight, comms::Node& sender) {
-    comms::Publisher<msg::ActuatorCommand> commands = sender.publish(comms::topics::kActuatorCommand);
+  static void expect_not_obeyed(const RedundantFlight& flight, dds::Node& sender) {
+    dds::Publisher<msg::ActuatorCommand> commands = sender.publish(messages::topics::kActuatorCommand);
     msg::ActuatorCommand stop;
     stop.rotor_state(msg::ActuatorCommand_Constants::ROTORS_OFF);
     stop.rotor_count(4);
@@ -93,16 +93,16 @@ TEST_F(Security, StandbyTakesOverAndNeitherStrangersNorGroundFlyTheVehicle) {
   flight.fly(square_laps(0.5, 50));
   flight.wait("the vehicle flies a side", [&] { return flight.z_ned() < -0.98 && flight.speed() > 0.3; });
 
-  comms::NodeSettings open = flight.node_settings("stranger");
+  dds::NodeSettings open = flight.node_settings("stranger");
   open.security.clear();
-  comms::Node stranger(open);
+  dds::Node stranger(open);
   expect_not_obeyed(flight, stranger);
 
-  comms::Node ground(flight.node_settings("ground"));
-  EXPECT_THROW(ground.publish(comms::topics::kActuatorCommand), std::runtime_error);
-  comms::NodeSettings captured = flight.node_settings("ground");
+  dds::Node ground(flight.node_settings("ground"));
+  EXPECT_THROW(ground.publish(messages::topics::kActuatorCommand), std::runtime_error);
+  dds::NodeSettings captured = flight.node_settings("ground");
   captured.security = without_write_control(keys("lab"));
-  comms::Node captured_ground(captured);
+  dds::Node captured_ground(captured);
   expect_not_obeyed(flight, captured_ground);
 
   for (int kill = 0; kill < 2; ++kill) {
@@ -152,7 +152,7 @@ TEST_F(Security, StrangersAreRefusedByName) {
   const std::string thief = folder_.path() / "thief";
   fs::copy(lab, thief, fs::copy_options::recursive);
   ASSERT_EQ(swiftlet({"keys", "renew", thief, "ground"}).exit_code, 0);
-  runtime::revoke_identity({lab}, runtime::SecurityFolder{thief}.certificate("ground"));
+  io::revoke_identity({lab}, io::SecurityFolder{thief}.certificate("ground"));
   const std::string foreign = keys("foreign");
   const std::string patient = "25";  // a busy machine takes long for a handshake
   const auto own = status({"--security", lab}, patient);
@@ -204,19 +204,19 @@ TEST_F(Security, TheNetworkKeyIsExchangedInThreeSteps) {
   };
   ASSERT_EQ(swiftlet({"keys", "network", file}).exit_code, 0);
   EXPECT_EQ(swiftlet({"keys", "network", file}).exit_code, 2) << "it exists";
-  const runtime::NetworkKeys before = runtime::read_network_keys(file);
+  const io::NetworkKeys before = io::read_network_keys(file);
   ASSERT_EQ(before.size(), 1U);
   EXPECT_EQ(exchange("switch"), 2) << "there is one key";
   EXPECT_EQ(exchange("add"), 0);
-  const runtime::NetworkKeys both = runtime::read_network_keys(file);
+  const io::NetworkKeys both = io::read_network_keys(file);
   ASSERT_EQ(both.size(), 2U);
   EXPECT_EQ(both[0], before[0]) << "the old one still sends";
   EXPECT_NE(both[1], before[0]);
   EXPECT_EQ(exchange("add"), 2) << "there are two";
   EXPECT_EQ(exchange("switch"), 0);
-  EXPECT_EQ(runtime::read_network_keys(file), (runtime::NetworkKeys{both[1], both[0]}));
+  EXPECT_EQ(io::read_network_keys(file), (io::NetworkKeys{both[1], both[0]}));
   EXPECT_EQ(exchange("drop"), 0);
-  EXPECT_EQ(runtime::read_network_keys(file), runtime::NetworkKeys{both[1]});
+  EXPECT_EQ(io::read_network_keys(file), io::NetworkKeys{both[1]});
 }
 
 TEST_F(Security, WholeFlightIsFlown) {
@@ -226,7 +226,7 @@ TEST_F(Security, WholeFlightIsFlown) {
                     "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.5}\n"
                     "  - {kind: waypoint, position_m: [0.3, 0, -0.5], speed_m_s: 0.5}\n"
                     "  - {kind: land, speed_m_s: 0.5}\n");
-  const comms::DomainLock lock;
+  const dds::DomainLock lock;
   const ProgramResult flight = swiftlet({"fly", mission, "--clock", "lockstep", "--security", keys("lab"),
                                          "--domain", std::to_string(lock.domain())});
   EXPECT_EQ(flight.exit_code, 0) << flight.output << flight.errors;

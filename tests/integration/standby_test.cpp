@@ -25,7 +25,7 @@
 namespace swiftlet::tests {
 namespace {
 
-namespace msg = comms::msg;
+namespace msg = messages::msg;
 using namespace std::chrono_literals;
 
 constexpr double kReferenceStep_m = 0.01;
@@ -225,8 +225,7 @@ TEST_F(Standby, ActionAndRequestSucceedAcrossAFailover) {
 
 // The settings that the controllers are started with, with another bandwidth of x and y.
 control::SettingsRequest with_bandwidth(const char* name, double omega_n, double ramp_s) {
-  control::ControlSettings settings =
-      runtime::load_control_settings(in_source("config/control/motor_lag.yaml"));
+  control::ControlSettings settings = io::load_control_settings(in_source("config/control/motor_lag.yaml"));
   settings.name = name;
   settings.position.x.omega_n = settings.position.y.omega_n = omega_n;
   return control::settings_request(settings, {}, ramp_s);
@@ -249,9 +248,9 @@ TEST_F(Standby, TakesOverWithTheGainsInForce) {
   ASSERT_TRUE(soft.wait(20s).done());
 
   Inbox<msg::ControlStatus> statuses;
-  comms::Node node(flight_.node_settings("gains"));
-  const comms::Subscription subscription = node.subscribe<msg::ControlStatus>(
-      comms::topics::kControlStatus, [&](const msg::ControlStatus& status) { statuses.put(status); });
+  dds::Node node(flight_.node_settings("gains"));
+  const dds::Subscription subscription = node.subscribe<msg::ControlStatus>(
+      messages::topics::kControlStatus, [&](const msg::ControlStatus& status) { statuses.put(status); });
   const auto waits_for = [&](const char* what,
                              const std::function<bool(const msg::ControlStatus&)>& predicate) {
     flight_.wait(what, [&] {

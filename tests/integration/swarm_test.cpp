@@ -339,7 +339,7 @@ class RunningSwarm : public testing::Test {
     ASSERT_EQ(off.exit_code, 0) << off.errors;
   }
 
-  comms::DomainLock lock_;
+  dds::DomainLock lock_;
   TemporaryFolder folder_;
   Program plant_{"swiftlet-plant", of_process({"--speed", "4", "--spacing", "1"}), folder_.path()};
   Program mocap_{"swiftlet-mocap", of_process(), folder_.path()};

@@ -18,7 +18,7 @@ namespace {
 using Replacements = std::vector<std::pair<std::string, std::string>>;
 
 std::string replaced(const std::string& file, const Replacements& replacements) {
-  std::string text = runtime::read_text_file(in_source(file));
+  std::string text = io::read_text_file(in_source(file));
   for (const auto& [from, to] : replacements) {
     const std::size_t at = text.find(from);
     EXPECT_NE(at, std::string::npos) << from;

@@ -22,7 +22,7 @@ namespace {
 
 using ground::View;
 namespace msg = ground::msg;
-namespace topics = comms::topics;
+namespace topics = messages::topics;
 
 // The part of a flight in which the reference flies the square, 1 m above the ground.
 record::Window at_height(const record::Flight& flight) {

@@ -11,7 +11,7 @@
 namespace swiftlet::tests {
 namespace {
 
-namespace msg = comms::msg;
+namespace msg = messages::msg;
 
 // The port in the first URL of a text; 0 if there is none yet.
 int port_in(const std::string& text) {
@@ -32,7 +32,7 @@ template <class T, class Predicate>
 bool reads(FoxgloveClient& viewer, const Predicate& wanted) {
   while (const auto message = viewer.read_message()) {
     T read;
-    EXPECT_TRUE(comms::from_payload(message->payload.data(), message->payload.size(), read));
+    EXPECT_TRUE(dds::from_payload(message->payload.data(), message->payload.size(), read));
     if (wanted(read)) return true;
   }
   return false;

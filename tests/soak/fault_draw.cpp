@@ -11,9 +11,9 @@ namespace swiftlet::soak {
 namespace {
 
 using Eigen::Vector3d;
+using math::RandomStream;
 using plant::Fault;
 using plant::FaultKind;
-using plant::RandomStream;
 
 constexpr double kMeanInterval_s = 4.0;
 constexpr double kRecovery_s = 5.0;  // of the estimate after a fault of IMU or motion capture

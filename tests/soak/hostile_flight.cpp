@@ -17,7 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using tests::eventually;
-namespace msg = comms::msg;
+namespace msg = messages::msg;
 
 constexpr double kSpeed = 1.0;  // m/s, of the mission
 
@@ -51,7 +51,7 @@ class HostileFlight {
   HostileResult fly();
 
  private:
-  static comms::NodeSettings network(const HostileSettings& settings, const std::filesystem::path& folder);
+  static dds::NodeSettings network(const HostileSettings& settings, const std::filesystem::path& folder);
   // Name and process id of each process.
   std::vector<std::pair<std::string, pid_t>> processes() const;
   void attack(HostileResult& result);
@@ -62,12 +62,12 @@ class HostileFlight {
   tests::RedundantFlight flight_;
 };
 
-comms::NodeSettings HostileFlight::network(const HostileSettings& settings,
-                                           const std::filesystem::path& folder) {
-  comms::NodeSettings network;
+dds::NodeSettings HostileFlight::network(const HostileSettings& settings,
+                                         const std::filesystem::path& folder) {
+  dds::NodeSettings network;
   if (settings.network_key) {
     network.network_key_file = folder / "network.key";
-    runtime::write_network_keys(network.network_key_file, {runtime::random_network_key()});
+    io::write_network_keys(network.network_key_file, {io::random_network_key()});
   }
   return network;
 }

@@ -24,7 +24,7 @@ namespace {
 using namespace std::chrono_literals;
 using tests::eventually;
 using ControlMode = control::Mode;
-namespace msg = comms::msg;
+namespace msg = messages::msg;
 
 constexpr double kSpeed = 1.0;  // m/s, of the mission
 constexpr int kLaps = 20;
@@ -89,7 +89,7 @@ std::vector<Partition> all_partitions() {
 
 std::unique_ptr<ground::Client> client_on(const tests::HostNetwork& network, Host host, const char* name) {
   const tests::HostNetwork::Inside inside(network, host);
-  comms::NodeSettings settings;
+  dds::NodeSettings settings;
   settings.name = name;
   settings.open_network = true;
   return std::make_unique<ground::Client>(settings);

@@ -33,7 +33,7 @@ Pilot::Pilot(std::uint64_t seed, const control::Limits& limits, Log log)
       random_(seed, plant::streams::of_name("soak.pilot")),
       next_ns_(kFirstRequestNs) {}
 
-void Pilot::act(ground::ClosedLoop& loop) {
+void Pilot::act(simulation::ClosedLoop& loop) {
   now_ns_ = loop.plant.stamp_ns();
   if (now_ns_ < setpoints_until_ns_ && now_ns_ >= next_setpoint_ns_) send_setpoint(loop);
   if (now_ns_ < next_ns_) return;
@@ -63,19 +63,19 @@ void Pilot::act(ground::ClosedLoop& loop) {
   }
 }
 
-bool Pilot::ask(ground::ClosedLoop& loop, const Request& request, const std::string& what) {
+bool Pilot::ask(simulation::ClosedLoop& loop, const Request& request, const std::string& what) {
   const control::Outcome outcome = loop.controller.request(request);
   if (log_) log_("asks: " + what + (outcome.accepted ? "" : std::string("; refused: ") + outcome.reason));
   return outcome.accepted;
 }
 
-void Pilot::arm(ground::ClosedLoop& loop) {
+void Pilot::arm(simulation::ClosedLoop& loop) {
   Request request;
   request.kind = RequestKind::kArm;
   ask(loop, request, "arm");
 }
 
-void Pilot::take_off(ground::ClosedLoop& loop) {
+void Pilot::take_off(simulation::ClosedLoop& loop) {
   ++take_offs_;
   if (random_.uniform() < 0.5) return fly_mission(loop, true);
   Request request;
@@ -85,7 +85,7 @@ void Pilot::take_off(ground::ClosedLoop& loop) {
   ask(loop, request, "take off");
 }
 
-void Pilot::start_random_action(ground::ClosedLoop& loop) {
+void Pilot::start_random_action(simulation::ClosedLoop& loop) {
   const double what = random_.uniform();
   wait(random_.uniform(0.5, 5.0));
   if (what < 0.45) return go_to(loop);
@@ -107,7 +107,7 @@ Vector3d Pilot::sample_position() {
   return {x, y, -random_.uniform(kLowest_m, kHighest_m)};
 }
 
-void Pilot::go_to(ground::ClosedLoop& loop) {
+void Pilot::go_to(simulation::ClosedLoop& loop) {
   Request request;
   request.kind = RequestKind::kGoTo;
   request.position_ned = sample_position();
@@ -117,7 +117,7 @@ void Pilot::go_to(ground::ClosedLoop& loop) {
   ask(loop, request, "go to");
 }
 
-void Pilot::fly_mission(ground::ClosedLoop& loop, bool from_ground) {
+void Pilot::fly_mission(simulation::ClosedLoop& loop, bool from_ground) {
   Mission& mission = missions_.emplace_back();
   mission.id = missions_.size();
   const auto add = [&](MissionItemKind kind) {
@@ -148,7 +148,7 @@ void Pilot::fly_mission(ground::ClosedLoop& loop, bool from_ground) {
   ask(loop, request, "mission start");
 }
 
-void Pilot::fly_trajectory(ground::ClosedLoop& loop) {
+void Pilot::fly_trajectory(simulation::ClosedLoop& loop) {
   Trajectory& trajectory = trajectories_.emplace_back();
   trajectory.id = trajectories_.size();
   Vector3d from = sample_position();
@@ -174,7 +174,7 @@ void Pilot::fly_trajectory(ground::ClosedLoop& loop) {
 
 // Setpoints at constant velocity from the current reference towards a position inside the margins. Some
 // continue out of the fence and are refused there.
-void Pilot::begin_setpoints(ground::ClosedLoop& loop) {
+void Pilot::begin_setpoints(simulation::ClosedLoop& loop) {
   setpoints_until_ns_ = now_ns_ + static_cast<std::int64_t>(random_.uniform(0.5, 3.0) * 1e9);
   next_setpoint_ns_ = now_ns_;
   setpoint_.position_ned = loop.controller.reference().position_ned;
@@ -184,7 +184,7 @@ void Pilot::begin_setpoints(ground::ClosedLoop& loop) {
   if (log_) log_("sends setpoints");
 }
 
-void Pilot::send_setpoint(ground::ClosedLoop& loop) {
+void Pilot::send_setpoint(simulation::ClosedLoop& loop) {
   next_setpoint_ns_ += kSetpointPeriodNs;
   setpoint_.stamp_ns = now_ns_;
   ++setpoint_.sequence;
@@ -196,7 +196,7 @@ void Pilot::send_setpoint(ground::ClosedLoop& loop) {
   setpoint_.position_ned += static_cast<double>(kSetpointPeriodNs) * 1e-9 * setpoint_.velocity_ned;
 }
 
-void Pilot::land(ground::ClosedLoop& loop) {
+void Pilot::land(simulation::ClosedLoop& loop) {
   Request request;
   request.kind = RequestKind::kLand;
   request.speed = random_.uniform(0.2, 0.5);

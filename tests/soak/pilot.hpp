@@ -24,28 +24,28 @@ class Pilot {
   Pilot(std::uint64_t seed, const control::Limits& limits, Log log);
 
   // Sends requests between two samples, if any are due.
-  void act(ground::ClosedLoop& loop);
+  void act(simulation::ClosedLoop& loop);
 
   int take_offs() const { return take_offs_; }
 
  private:
   Eigen::Vector3d sample_position();
   double speed() { return random_.uniform(0.3, 1.5); }
-  bool ask(ground::ClosedLoop& loop, const control::Request& request, const std::string& what);
-  void arm(ground::ClosedLoop& loop);
-  void take_off(ground::ClosedLoop& loop);
-  void start_random_action(ground::ClosedLoop& loop);
-  void go_to(ground::ClosedLoop& loop);
-  void fly_mission(ground::ClosedLoop& loop, bool from_ground);
-  void fly_trajectory(ground::ClosedLoop& loop);
-  void begin_setpoints(ground::ClosedLoop& loop);
-  void send_setpoint(ground::ClosedLoop& loop);
-  void land(ground::ClosedLoop& loop);
+  bool ask(simulation::ClosedLoop& loop, const control::Request& request, const std::string& what);
+  void arm(simulation::ClosedLoop& loop);
+  void take_off(simulation::ClosedLoop& loop);
+  void start_random_action(simulation::ClosedLoop& loop);
+  void go_to(simulation::ClosedLoop& loop);
+  void fly_mission(simulation::ClosedLoop& loop, bool from_ground);
+  void fly_trajectory(simulation::ClosedLoop& loop);
+  void begin_setpoints(simulation::ClosedLoop& loop);
+  void send_setpoint(simulation::ClosedLoop& loop);
+  void land(simulation::ClosedLoop& loop);
   void wait(double seconds) { next_ns_ = now_ns_ + static_cast<std::int64_t>(seconds * 1e9); }
 
   control::Limits limits_;
   Log log_;
-  plant::RandomStream random_;
+  math::RandomStream random_;
   std::int64_t now_ns_ = 0;
   std::int64_t next_ns_;
   int take_offs_ = 0;

@@ -27,7 +27,7 @@ using tests::eventually;
 using tests::Program;
 using Clock = std::chrono::steady_clock;
 using ControlMode = control::Mode;
-namespace msg = comms::msg;
+namespace msg = messages::msg;
 
 constexpr double kHeight_m = 1.0;
 constexpr double kHalfSide_m = 0.5;
@@ -80,7 +80,7 @@ class FailingFlight {
         folder_(folder),
         mission_(write_laps(folder)),
         observer_(node("observer")),
-        watcher_(std::make_unique<comms::Node>(node("watcher"))) {
+        watcher_(std::make_unique<dds::Node>(node("watcher"))) {
     hear_commands();
   }
 
@@ -139,8 +139,8 @@ class FailingFlight {
   }
 
  private:
-  comms::NodeSettings node(const char* name) const {
-    comms::NodeSettings settings;
+  dds::NodeSettings node(const char* name) const {
+    dds::NodeSettings settings;
     settings.name = name;
     settings.domain = lock_.domain();
     return settings;
@@ -178,13 +178,13 @@ class FailingFlight {
     };
     switch (level_) {
       case plant::ControlLevel::kActuators:
-        return subscribe(comms::topics::kActuatorCommand);
+        return subscribe(messages::topics::kActuatorCommand);
       case plant::ControlLevel::kRates:
-        return subscribe(comms::topics::kRatesSetpoint);
+        return subscribe(messages::topics::kRatesSetpoint);
       case plant::ControlLevel::kAttitude:
-        return subscribe(comms::topics::kAttitudeSetpoint);
+        return subscribe(messages::topics::kAttitudeSetpoint);
       case plant::ControlLevel::kTrajectory:
-        return subscribe(comms::topics::kTrajectorySetpoint);
+        return subscribe(messages::topics::kTrajectorySetpoint);
     }
   }
   Clock::time_point commanded() const {
@@ -275,7 +275,7 @@ class FailingFlight {
   const double speed_;
   const std::filesystem::path folder_;
   const std::string mission_;
-  comms::DomainLock lock_;
+  dds::DomainLock lock_;
   std::array<std::unique_ptr<Program>, 4> programs_;
   int records_ = 0;
   ground::Client observer_;
@@ -283,8 +283,8 @@ class FailingFlight {
   ProcessResult result_;
   double fastest_fall_m_s_ = 0.0;
   std::atomic<Clock::rep> commanded_{0};
-  std::unique_ptr<comms::Node> watcher_;
-  comms::Subscription commands_;
+  std::unique_ptr<dds::Node> watcher_;
+  dds::Subscription commands_;
 };
 
 }  // namespace

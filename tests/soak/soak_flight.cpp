@@ -64,8 +64,8 @@ class Run {
   }
 
  private:
-  static ground::World world(const SoakSetup& setup, std::uint64_t seed) {
-    ground::World world = ground::draw(setup.dispersion, setup.nominal, seed).world;
+  static simulation::World world(const SoakSetup& setup, std::uint64_t seed) {
+    simulation::World world = simulation::draw(setup.dispersion, setup.nominal, seed).world;
     world.simulation.faults =
         draw_faults(seed, kFirstFault_s, kFlight_s, world.vehicle, setup.control.limits);
     return world;
@@ -156,8 +156,8 @@ class Run {
 
   const control::Limits& limits_;
   const Log& log_;
-  ground::World world_;
-  ground::ClosedLoop loop_;
+  simulation::World world_;
+  simulation::ClosedLoop loop_;
   Pilot pilot_;
   SoakFlight flight_;
   double last_step_s_ = 0.0;
@@ -171,14 +171,12 @@ class Run {
 
 SoakSetup load_setup(const std::string& control) {
   SoakSetup setup;
-  setup.nominal.vehicle =
-      runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, "kaylion"));
+  setup.nominal.vehicle = io::load_vehicle(io::configuration_file(io::kinds::kVehicle, "kaylion"));
   setup.nominal.simulation =
-      runtime::load_simulation_settings(runtime::configuration_file(runtime::kinds::kSimulation, "default"));
-  setup.control =
-      runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, control));
-  setup.dispersion = ground::load_dispersion_file(
-      runtime::configuration_file(runtime::kinds::kDispersion, "kaylion"), setup.nominal);
+      io::load_simulation_settings(io::configuration_file(io::kinds::kSimulation, "default"));
+  setup.control = io::load_control_settings(io::configuration_file(io::kinds::kControl, control));
+  setup.dispersion = simulation::load_dispersion_file(
+      io::configuration_file(io::kinds::kDispersion, "kaylion"), setup.nominal);
   return setup;
 }
 

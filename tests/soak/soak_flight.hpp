@@ -17,8 +17,8 @@ namespace swiftlet::soak {
 
 // Vehicle, world and settings. The controller is designed on nominal.vehicle.
 struct SoakSetup {
-  ground::World nominal;
-  ground::Dispersion dispersion;
+  simulation::World nominal;
+  simulation::Dispersion dispersion;
   control::ControlSettings control;
 };
 // Loads vehicle "kaylion", simulation "default" and the control settings of this name.

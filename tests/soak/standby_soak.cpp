@@ -94,7 +94,7 @@ std::vector<Takeover> fly(int number, const Part& part, int kills, int first, st
   const TemporaryFolder folder;
   std::vector<std::string> plant;
   if (!options.plant_simulation.empty()) plant = {"--simulation", options.plant_simulation};
-  comms::NodeSettings network;
+  dds::NodeSettings network;
   if (options.security) network.security = make_security_keys(folder.path() / "keys", network.vehicle);
   RedundantFlight flight(folder.path(), plant, network);
   std::uniform_int_distribution<int> failover_priority(0, 1000);

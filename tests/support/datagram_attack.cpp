@@ -186,7 +186,7 @@ void DatagramMutator::set_source(Bytes& bytes) {
 }
 
 Bytes DatagramMutator::known_killer(const Bytes& from) {
-  comms::GuidPrefix source = kAlice;
+  rtps::GuidPrefix source = kAlice;
   if (from.size() >= kRtpsHeaderBytes) std::copy_n(from.begin() + 8, source.size(), source.begin());
   const ByteWriter sedp = ByteWriter().bytes(kSedpReader).bytes(kSedpWriter);
   RtpsMessage message(source);
@@ -223,17 +223,17 @@ Bytes DatagramMutator::known_killer(const Bytes& from) {
 
 // A goodbye, or numbers that a writer or reader has not reached.
 Bytes DatagramMutator::forgery(const Bytes& from) {
-  comms::GuidPrefix source = kAlice;
+  rtps::GuidPrefix source = kAlice;
   if (from.size() >= kRtpsHeaderBytes) std::copy_n(from.begin() + 8, source.size(), source.begin());
   RtpsMessage message(source);
-  const comms::EntityId writer{0, 0, static_cast<std::uint8_t>(1 + below(30)), 0x03};
+  const rtps::EntityId writer{0, 0, static_cast<std::uint8_t>(1 + below(30)), 0x03};
   const auto next =
       static_cast<std::uint32_t>(2 + below(4));  // plausible: the first announcement has number 1
   const auto ahead = static_cast<std::uint32_t>(next + below(2) * below(1'000'000));
   switch (below(3)) {
     case 0: {
       ByteWriter body = data_fields(kSpdpReader, kSpdpWriter, next);
-      body.parameter(0x0070, guid(source, comms::kParticipantEntity))
+      body.parameter(0x0070, guid(source, rtps::kParticipantEntity))
           .parameter(0x0071, ByteWriter().u32(0x03000000))
           .sentinel();
       message.add(0x15, 2, body);
@@ -242,7 +242,7 @@ Bytes DatagramMutator::forgery(const Bytes& from) {
     case 1:
       message.add(0x07, 0,
                   ByteWriter()
-                      .bytes(comms::kUnknownEntity)
+                      .bytes(rtps::kUnknownEntity)
                       .bytes(writer)
                       .number(0, ahead)
                       .number(0, ahead)

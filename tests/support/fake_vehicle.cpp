@@ -18,25 +18,25 @@ constexpr std::chrono::milliseconds kPatience{200};  // for a control that has a
 
 }  // namespace
 
-FakeVehicle::FakeVehicle(const plant::Vehicle& parameters, const comms::NodeSettings& network,
+FakeVehicle::FakeVehicle(const plant::Vehicle& parameters, const dds::NodeSettings& network,
                          plant::ControlLevel level)
     : parameters_(parameters),
       level_(level),
       node_(network),
-      imu_(node_.publish(comms::topics::kImu)),
-      mocap_(node_.publish(comms::topics::kMocapPose)),
-      battery_(node_.publish(comms::topics::kBattery)) {
+      imu_(node_.publish(messages::topics::kImu)),
+      mocap_(node_.publish(messages::topics::kMocapPose)),
+      battery_(node_.publish(messages::topics::kBattery)) {
   if (level_ == plant::ControlLevel::kAttitude) {
-    info_ = node_.publish(comms::topics::kVehicleInfo);
-    subscription_ = node_.subscribe<comms::msg::AttitudeSetpoint>(
-        comms::topics::kAttitudeSetpoint, [this](const comms::msg::AttitudeSetpoint& setpoint) {
+    info_ = node_.publish(messages::topics::kVehicleInfo);
+    subscription_ = node_.subscribe<messages::msg::AttitudeSetpoint>(
+        messages::topics::kAttitudeSetpoint, [this](const messages::msg::AttitudeSetpoint& setpoint) {
           const std::lock_guard lock(mutex_);
           attitude_ = setpoint;
           note_answer(setpoint.imu_sequence_number());
         });
   } else {
-    subscription_ = node_.subscribe<comms::msg::ActuatorCommand>(
-        comms::topics::kActuatorCommand, [this](const comms::msg::ActuatorCommand& command) {
+    subscription_ = node_.subscribe<messages::msg::ActuatorCommand>(
+        messages::topics::kActuatorCommand, [this](const messages::msg::ActuatorCommand& command) {
           const std::lock_guard lock(mutex_);
           commands_.push_back(command);
           note_answer(command.imu_sequence_number());
@@ -50,17 +50,17 @@ FakeVehicle::~FakeVehicle() {
   thread_.join();
 }
 
-std::vector<comms::msg::ActuatorCommand> FakeVehicle::commands() const {
+std::vector<messages::msg::ActuatorCommand> FakeVehicle::commands() const {
   const std::lock_guard lock(mutex_);
   return commands_;
 }
 
 bool FakeVehicle::attitude_commanded() const {
   const std::lock_guard lock(mutex_);
-  return attitude_.rotor_state() == comms::msg::ActuatorCommand_Constants::ROTORS_RUNNING;
+  return attitude_.rotor_state() == messages::msg::ActuatorCommand_Constants::ROTORS_RUNNING;
 }
 
-std::optional<comms::msg::ActuatorCommand> FakeVehicle::last_command() const {
+std::optional<messages::msg::ActuatorCommand> FakeVehicle::last_command() const {
   const std::lock_guard lock(mutex_);
   return commands_.empty() ? std::nullopt : std::optional(commands_.back());
 }
@@ -92,10 +92,10 @@ void FakeVehicle::move() {
   {
     const std::lock_guard lock(mutex_);
     const bool running = !commands_.empty() && commands_.back().rotor_state() ==
-                                                   comms::msg::ActuatorCommand_Constants::ROTORS_RUNNING;
+                                                   messages::msg::ActuatorCommand_Constants::ROTORS_RUNNING;
     if (running)
       wanted_speed = plant::steady_speed_from_throttle(parameters_, kSupplyV, commands_.back().throttle()[0]);
-    if (attitude_.rotor_state() == comms::msg::ActuatorCommand_Constants::ROTORS_RUNNING)
+    if (attitude_.rotor_state() == messages::msg::ActuatorCommand_Constants::ROTORS_RUNNING)
       thrust_n = attitude_.thrust_n();
   }
   rotor_speed_ += (wanted_speed - rotor_speed_) * kPeriodS / parameters_.motor.time_constant_s;
@@ -113,7 +113,7 @@ void FakeVehicle::publish() {
   const std::uint64_t sequence = ++imu_sequence_;
   const auto stamp_ns = static_cast<std::int64_t>(sequence) * kPeriodNs;
   if (seen_by_mocap && sequence % kImuPerFrame == 0) {
-    comms::msg::MocapPose pose;
+    messages::msg::MocapPose pose;
     pose.stamp_ns(stamp_ns);
     pose.sequence_number(++mocap_sequence_);
     pose.tracked(tracked);
@@ -122,14 +122,14 @@ void FakeVehicle::publish() {
     mocap_.publish(pose);
   }
   if (sequence % kImuPerBattery == 1) {
-    comms::msg::Battery battery;
+    messages::msg::Battery battery;
     battery.stamp_ns(stamp_ns);
     battery.sequence_number(++battery_sequence_);
     battery.voltage_v(kSupplyV);
     battery.state_of_charge(0.8);
     battery_.publish(battery);
   }
-  comms::msg::Imu imu;
+  messages::msg::Imu imu;
   imu.stamp_ns(stamp_ns);
   imu.sequence_number(sequence);
   imu.specific_force_frd({0.0, 0.0, -(up_acceleration_ + plant::kGravity)});
@@ -138,8 +138,8 @@ void FakeVehicle::publish() {
 }
 
 void FakeVehicle::publish_info() {
-  comms::msg::VehicleInfo info;
-  info.wire_version(comms::kWireVersion);
+  messages::msg::VehicleInfo info;
+  info.wire_version(messages::kWireVersion);
   info.stamp_ns(static_cast<std::int64_t>(samples()) * kPeriodNs);
   info.sequence_number(samples() / kImuPerInfo);
   info.name("rail");
@@ -147,7 +147,7 @@ void FakeVehicle::publish_info() {
   info.mass_kg(parameters_.mass_kg);
   info.imu_rate_hz(1e9 / static_cast<double>(kPeriodNs));
   info.rotors_running(reports_rotors && attitude_commanded());
-  info.control_levels(comms::msg::VehicleInfo_Constants::LEVEL_ATTITUDE);
+  info.control_levels(messages::msg::VehicleInfo_Constants::LEVEL_ATTITUDE);
   info_.publish(info);
 }
 

@@ -23,7 +23,7 @@ namespace swiftlet::tests {
 class FakeVehicle {
  public:
   // level: actuators or attitude. At actuators it publishes no vehicle_info, so that control assumes that level.
-  FakeVehicle(const plant::Vehicle& parameters, const comms::NodeSettings& network,
+  FakeVehicle(const plant::Vehicle& parameters, const dds::NodeSettings& network,
               plant::ControlLevel level = plant::ControlLevel::kActuators);
   ~FakeVehicle();
   FakeVehicle(const FakeVehicle&) = delete;
@@ -36,8 +36,8 @@ class FakeVehicle {
   std::atomic<bool> reports_rotors{true};  // in vehicle_info, when they run
 
   // Actuator commands received, in order.
-  std::vector<comms::msg::ActuatorCommand> commands() const;
-  std::optional<comms::msg::ActuatorCommand> last_command() const;
+  std::vector<messages::msg::ActuatorCommand> commands() const;
+  std::optional<messages::msg::ActuatorCommand> last_command() const;
   double height_m() const { return height_m_; }
   double highest_m() const { return highest_m_; }
   std::uint64_t samples() const { return imu_sequence_; }
@@ -69,15 +69,15 @@ class FakeVehicle {
   std::condition_variable answer_;
   std::uint64_t answered_ = 0;  // newest IMU sample that a command answers
   bool is_answered_ = false;    // the last sample
-  std::vector<comms::msg::ActuatorCommand> commands_;
-  comms::msg::AttitudeSetpoint attitude_;  // the last one received
+  std::vector<messages::msg::ActuatorCommand> commands_;
+  messages::msg::AttitudeSetpoint attitude_;  // the last one received
 
-  comms::Node node_;
-  comms::Publisher<comms::msg::Imu> imu_;
-  comms::Publisher<comms::msg::MocapPose> mocap_;
-  comms::Publisher<comms::msg::Battery> battery_;
-  comms::Publisher<comms::msg::VehicleInfo> info_;
-  comms::Subscription subscription_;
+  dds::Node node_;
+  dds::Publisher<messages::msg::Imu> imu_;
+  dds::Publisher<messages::msg::MocapPose> mocap_;
+  dds::Publisher<messages::msg::Battery> battery_;
+  dds::Publisher<messages::msg::VehicleInfo> info_;
+  dds::Subscription subscription_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

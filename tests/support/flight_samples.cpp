@@ -11,8 +11,8 @@
 namespace swiftlet::tests {
 namespace {
 
-namespace msg = comms::msg;
-namespace topics = comms::topics;
+namespace msg = messages::msg;
+namespace topics = messages::topics;
 
 double norm(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
 
@@ -24,7 +24,7 @@ constexpr double kSide_m = 2.0;
 
 }  // namespace
 
-FlightSamples::FlightSamples(comms::Node& node) {
+FlightSamples::FlightSamples(dds::Node& node) {
   const auto keep = [this](auto& samples, std::int64_t stamp_ns, const auto& sample) {
     const std::lock_guard<std::mutex> lock(mutex_);
     samples[stamp_ns] = sample;

@@ -31,7 +31,7 @@ struct FlightMetrics {
 // Receives what a node hears of its vehicle. Thread-safe.
 class FlightSamples {
  public:
-  explicit FlightSamples(comms::Node& node);
+  explicit FlightSamples(dds::Node& node);
 
   // Of the vehicle's newest sample; 0: none yet.
   std::int64_t stamp_ns() const;
@@ -48,11 +48,11 @@ class FlightSamples {
 
   std::optional<double> deviation_m(std::int64_t stamp_ns) const;  // with the lock held
 
-  mutable std::mutex mutex_;                     // guards all maps
-  std::map<std::int64_t, comms::msg::Imu> imu_;  // by stamp
+  mutable std::mutex mutex_;                        // guards all maps
+  std::map<std::int64_t, messages::msg::Imu> imu_;  // by stamp
   std::map<std::int64_t, Truth> truth_;
-  std::map<std::int64_t, comms::msg::Reference> reference_;
-  std::vector<comms::Subscription> subscriptions_;  // last: the callbacks use the members above
+  std::map<std::int64_t, messages::msg::Reference> reference_;
+  std::vector<dds::Subscription> subscriptions_;  // last: the callbacks use the members above
 };
 
 // Laps of a square with sides of 2 m at 1 m height, with vertical take-off and landing. Every side takes

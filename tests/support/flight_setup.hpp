@@ -9,12 +9,11 @@
 namespace swiftlet::tests {
 
 struct FlightSetup {
-  plant::Vehicle nominal = runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml"));
+  plant::Vehicle nominal = io::load_vehicle(io::find_config("vehicles/kaylion.yaml"));
   plant::Vehicle flown = nominal;  // of which the controller does not know
   plant::SimulationSettings simulation =
-      runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
-  control::ControlSettings control =
-      runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml"));
+      io::load_simulation_settings(io::find_config("simulation/default.yaml"));
+  control::ControlSettings control = io::load_control_settings(io::find_config("control/motor_lag.yaml"));
 };
 
 }  // namespace swiftlet::tests

@@ -31,7 +31,7 @@ Eigen::Vector3d wave(double time_s) {
 Eigen::Vector3d levelling(const Eigen::Quaterniond& q) {
   const Eigen::Vector3d nose = q * Eigen::Vector3d::UnitX();
   const Eigen::Quaterniond level(Eigen::AngleAxisd(std::atan2(nose.y(), nose.x()), Eigen::Vector3d::UnitZ()));
-  return plant::rotation_vector(q.conjugate() * level);
+  return math::rotation_vector(q.conjugate() * level);
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ HandPose HandPath::Motion::at(double time_s) const {
   const double part = smooth((time_s - begin_s) / duration_s);
   const Eigen::Vector3d turn =
       waves ? wave(std::clamp(time_s - begin_s, 0.0, duration_s)) : Eigen::Vector3d(part * turned_frd);
-  return {from.position_ned + part * moved_ned, from.q_ned_from_frd * plant::rotation(turn)};
+  return {from.position_ned + part * moved_ned, from.q_ned_from_frd * math::rotation(turn)};
 }
 
 double HandPath::move(HandStep step, double begin_s) {
@@ -84,7 +84,7 @@ HandPose HandPath::at(double time_s) const {
 Eigen::Vector3d HandPath::body_rates_frd(double time_s) const {
   const Eigen::Quaterniond before = at(time_s - kDifference_s).q_ned_from_frd;
   const Eigen::Quaterniond after = at(time_s + kDifference_s).q_ned_from_frd;
-  return plant::rotation_vector(before.conjugate() * after) / (2.0 * kDifference_s);
+  return math::rotation_vector(before.conjugate() * after) / (2.0 * kDifference_s);
 }
 
 Eigen::Vector3d HandPath::specific_force_frd(double time_s) const {

@@ -17,15 +17,15 @@ constexpr std::int64_t kTimesRealTime = 4;
 
 }  // namespace
 
-HeldVehicle::HeldVehicle(const comms::NodeSettings& network)
+HeldVehicle::HeldVehicle(const dds::NodeSettings& network)
     : path_({{0.3, 0.1, -0.1}, Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ()))}),
       imu_({}, kSeed),
       mocap_({}, kSeed),
       node_(network),
-      imu_publisher_(node_.publish(comms::topics::kImu)),
-      mocap_publisher_(node_.publish(comms::topics::kMocapPose)),
-      battery_publisher_(node_.publish(comms::topics::kBattery)),
-      info_publisher_(node_.publish(comms::topics::kVehicleInfo)),
+      imu_publisher_(node_.publish(messages::topics::kImu)),
+      mocap_publisher_(node_.publish(messages::topics::kMocapPose)),
+      battery_publisher_(node_.publish(messages::topics::kBattery)),
+      info_publisher_(node_.publish(messages::topics::kVehicleInfo)),
       thread_([this] { run(); }) {}
 
 HeldVehicle::~HeldVehicle() {
@@ -51,16 +51,16 @@ void HeldVehicle::publish(std::int64_t stamp_ns) {
   time_s_ = 1e-9 * static_cast<double>(stamp_ns);
   const plant::ImuSample sample =
       imu_.sample(stamp_ns, path_.specific_force_frd(time_s_), path_.body_rates_frd(time_s_));
-  imu_publisher_.publish(comms::to_message(sample));
+  imu_publisher_.publish(messages::to_message(sample));
   const HandPose pose = path_.at(time_s_);
   if (const auto frame = mocap_.update(stamp_ns, pose.position_ned, pose.q_ned_from_frd))
-    mocap_publisher_.publish(comms::to_message(*frame));
+    mocap_publisher_.publish(messages::to_message(*frame));
   if (stamp_ns % kBattery_ns == 0)
     battery_publisher_.publish(
-        comms::to_message(plant::BatterySample{stamp_ns, ++batteries_, 4.1, 0.1, 0.9}));
+        messages::to_message(plant::BatterySample{stamp_ns, ++batteries_, 4.1, 0.1, 0.9}));
   if (stamp_ns % kInfo_ns != 0) return;
-  comms::msg::VehicleInfo info;
-  info.wire_version(comms::kWireVersion);
+  messages::msg::VehicleInfo info;
+  info.wire_version(messages::kWireVersion);
   info.stamp_ns(stamp_ns);
   info.name("held");
   info.rotor_count(4);

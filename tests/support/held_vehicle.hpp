@@ -16,7 +16,7 @@ namespace swiftlet::tests {
 
 class HeldVehicle {
  public:
-  explicit HeldVehicle(const comms::NodeSettings& network);
+  explicit HeldVehicle(const dds::NodeSettings& network);
   ~HeldVehicle();
   HeldVehicle(const HeldVehicle&) = delete;
   HeldVehicle& operator=(const HeldVehicle&) = delete;
@@ -34,11 +34,11 @@ class HeldVehicle {
   plant::Mocap mocap_;
   std::uint64_t batteries_ = 0;
 
-  comms::Node node_;
-  comms::Publisher<comms::msg::Imu> imu_publisher_;
-  comms::Publisher<comms::msg::MocapPose> mocap_publisher_;
-  comms::Publisher<comms::msg::Battery> battery_publisher_;
-  comms::Publisher<comms::msg::VehicleInfo> info_publisher_;
+  dds::Node node_;
+  dds::Publisher<messages::msg::Imu> imu_publisher_;
+  dds::Publisher<messages::msg::MocapPose> mocap_publisher_;
+  dds::Publisher<messages::msg::Battery> battery_publisher_;
+  dds::Publisher<messages::msg::VehicleInfo> info_publisher_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -46,7 +46,7 @@ class Online : public testing::Test {
     return std::make_unique<Program>(program, on_network(std::move(words)), folder_.path());
   }
 
-  comms::DomainLock lock_;
+  dds::DomainLock lock_;
   TemporaryFolder folder_;
 };
 
@@ -127,8 +127,8 @@ class OnlineFlight : public Online {
     ASSERT_TRUE(landed.done()) << landed.reason;
   }
 
-  comms::NodeSettings settings() const {
-    comms::NodeSettings settings = settings_of("test", lock_);
+  dds::NodeSettings settings() const {
+    dds::NodeSettings settings = settings_of("test", lock_);
     settings.vehicle = "kl7";
     return settings;
   }

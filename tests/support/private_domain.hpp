@@ -7,8 +7,8 @@
 namespace swiftlet::tests {
 
 // name: of the process, such as "control". Only over the loopback interface.
-inline comms::NodeSettings settings_of(const char* name, const comms::DomainLock& lock) {
-  comms::NodeSettings settings;
+inline dds::NodeSettings settings_of(const char* name, const dds::DomainLock& lock) {
+  dds::NodeSettings settings;
   settings.name = name;
   settings.domain = lock.domain();
   return settings;

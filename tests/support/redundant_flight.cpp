@@ -14,14 +14,14 @@ namespace swiftlet::tests {
 namespace {
 
 using namespace std::chrono_literals;
-namespace msg = comms::msg;
-namespace topics = comms::topics;
+namespace msg = messages::msg;
+namespace topics = messages::topics;
 
 }  // namespace
 
 RedundantFlight::RedundantFlight(const std::filesystem::path& folder,
                                  const std::vector<std::string>& plant_options,
-                                 const comms::NodeSettings& network_settings,
+                                 const dds::NodeSettings& network_settings,
                                  const std::vector<std::string>& mocap_options)
     : folder_(folder),
       network_key_file_(network_settings.network_key_file),
@@ -49,8 +49,8 @@ std::vector<std::string> RedundantFlight::on_network(std::vector<std::string> wo
   return words;
 }
 
-comms::NodeSettings RedundantFlight::node_settings(const char* name) const {
-  comms::NodeSettings settings;
+dds::NodeSettings RedundantFlight::node_settings(const char* name) const {
+  dds::NodeSettings settings;
   settings.name = name;
   settings.domain = lock_.domain();
   settings.network_key_file = network_key_file_;

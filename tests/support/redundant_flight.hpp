@@ -39,7 +39,7 @@ class RedundantFlight {
   // Without options by the wall clock; simulated_time.hpp has those for simulated time.
   explicit RedundantFlight(const std::filesystem::path& folder,
                            const std::vector<std::string>& plant_options = {},
-                           const comms::NodeSettings& network = {},
+                           const dds::NodeSettings& network = {},
                            const std::vector<std::string>& mocap_options = {});
 
   // Starts a controller and waits for its state. Throws std::runtime_error if none arrives.
@@ -59,7 +59,7 @@ class RedundantFlight {
   // By the controller_state messages of the last 0.5 s.
   int active_count() const;
   int standby_count() const;
-  std::map<std::uint64_t, comms::msg::ControllerState> recent_states() const;
+  std::map<std::uint64_t, messages::msg::ControllerState> recent_states() const;
 
   // Waits for the predicate; throws std::runtime_error with `what` after 30 s.
   void wait(const char* what, const std::function<bool()>& predicate) const;
@@ -71,7 +71,7 @@ class RedundantFlight {
   ground::Client& client() { return client_; }
   std::vector<std::string> network() const;  // as command line arguments
   std::vector<std::string> on_network(std::vector<std::string> words) const;
-  comms::NodeSettings node_settings(const char* name) const;
+  dds::NodeSettings node_settings(const char* name) const;
 
   // Of the vehicle's newest sample.
   std::int64_t stamp_ns() const { return samples_.stamp_ns(); }
@@ -84,14 +84,14 @@ class RedundantFlight {
 
  private:
   struct ReceivedState {
-    comms::msg::ControllerState message;
+    messages::msg::ControllerState message;
     ground::Clock::time_point at;
   };
 
   std::set<std::uint64_t> known_ids() const;  // of all controllers that were ever heard
   int count(std::uint8_t role) const;
 
-  comms::DomainLock lock_;
+  dds::DomainLock lock_;
   std::filesystem::path folder_;
   const std::string network_key_file_;
   const std::string security_;
@@ -102,9 +102,9 @@ class RedundantFlight {
   std::map<std::uint64_t, ReceivedState> states_;  // by controller
 
   ground::Client client_;
-  comms::Node node_;
+  dds::Node node_;
   FlightSamples samples_;
-  comms::Subscription controller_states_;  // last: its callback uses the members above
+  dds::Subscription controller_states_;  // last: its callback uses the members above
 };
 
 }  // namespace swiftlet::tests

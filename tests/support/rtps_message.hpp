@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "swiftlet/services/dds/datagram/rtps_ids.hpp"
+#include "swiftlet/services/rtps/rtps_ids.hpp"
 
 namespace swiftlet::tests {
 
@@ -49,19 +49,19 @@ class ByteWriter {
   Bytes bytes_;
 };
 
-constexpr comms::GuidPrefix kAlice{0x01, 0x0f, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
-constexpr comms::GuidPrefix kBob{0x01, 0x0f, 1, 2, 3, 4, 5, 6, 7, 8, 9, 11};
+constexpr rtps::GuidPrefix kAlice{0x01, 0x0f, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
+constexpr rtps::GuidPrefix kBob{0x01, 0x0f, 1, 2, 3, 4, 5, 6, 7, 8, 9, 11};
 
-constexpr comms::EntityId kSpdpWriter{0x00, 0x01, 0x00, 0xc2};
-constexpr comms::EntityId kSpdpReader{0x00, 0x01, 0x00, 0xc7};
-constexpr comms::EntityId kSedpWriter{0x00, 0x00, 0x03, 0xc2};
-constexpr comms::EntityId kSedpReader{0x00, 0x00, 0x03, 0xc7};
-constexpr comms::EntityId kUserWriter{0x00, 0x00, 0x01, 0x03};
-constexpr comms::EntityId kUserReader{0x00, 0x00, 0x02, 0x04};
+constexpr rtps::EntityId kSpdpWriter{0x00, 0x01, 0x00, 0xc2};
+constexpr rtps::EntityId kSpdpReader{0x00, 0x01, 0x00, 0xc7};
+constexpr rtps::EntityId kSedpWriter{0x00, 0x00, 0x03, 0xc2};
+constexpr rtps::EntityId kSedpReader{0x00, 0x00, 0x03, 0xc7};
+constexpr rtps::EntityId kUserWriter{0x00, 0x00, 0x01, 0x03};
+constexpr rtps::EntityId kUserReader{0x00, 0x00, 0x02, 0x04};
 
 class RtpsMessage {
  public:
-  explicit RtpsMessage(const comms::GuidPrefix& source = kAlice) {
+  explicit RtpsMessage(const rtps::GuidPrefix& source = kAlice) {
     bytes_.bytes(std::string("RTPS")).u8(2).u8(3).u8(0x01).u8(0x0f).bytes(source);
   }
   // length: as the header states it; by default the length of the body.
@@ -80,7 +80,7 @@ class RtpsMessage {
 };
 
 // The fields of DATA before its inline QoS.
-inline ByteWriter data_fields(const comms::EntityId& reader, const comms::EntityId& writer,
+inline ByteWriter data_fields(const rtps::EntityId& reader, const rtps::EntityId& writer,
                               std::uint32_t number, unsigned octets_to_inline_qos = 16) {
   ByteWriter out;
   out.u16(0).u16(octets_to_inline_qos).bytes(reader).bytes(writer).number(0, number);
@@ -102,7 +102,7 @@ inline ByteWriter fragment_fields(std::uint32_t first, unsigned count, unsigned 
   return out;
 }
 
-inline ByteWriter guid(const comms::GuidPrefix& prefix, const comms::EntityId& entity) {
+inline ByteWriter guid(const rtps::GuidPrefix& prefix, const rtps::EntityId& entity) {
   ByteWriter out;
   out.bytes(prefix).bytes(entity);
   return out;
@@ -115,15 +115,15 @@ inline ByteWriter lease(std::uint32_t seconds) {
 }
 
 // The parameters of an announcement that every participant sends, without the end of the list.
-inline ByteWriter participant_parameters(const comms::GuidPrefix& participant, std::uint32_t lease_s = 20) {
+inline ByteWriter participant_parameters(const rtps::GuidPrefix& participant, std::uint32_t lease_s = 20) {
   ByteWriter out;
   out.u16(0x0300).u16(0);  // PL_CDR_LE
   out.parameter(0x0015, ByteWriter().u32(0x0302)).parameter(0x0016, ByteWriter().u32(0x0f01));
-  out.parameter(0x0050, guid(participant, comms::kParticipantEntity)).parameter(0x0002, lease(lease_s));
+  out.parameter(0x0050, guid(participant, rtps::kParticipantEntity)).parameter(0x0002, lease(lease_s));
   return out;
 }
 
-inline RtpsMessage announcement(const comms::GuidPrefix& source, ByteWriter parameters) {
+inline RtpsMessage announcement(const rtps::GuidPrefix& source, ByteWriter parameters) {
   ByteWriter body = data_fields(kSpdpReader, kSpdpWriter, 1);
   body.bytes(parameters.sentinel().take());
   return RtpsMessage(source).add(0x15, 4, body);

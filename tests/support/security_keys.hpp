@@ -15,10 +15,10 @@ namespace swiftlet::tests {
 // Makes the folder, with all roles of one vehicle, for a day. Returns its path.
 inline std::string make_security_keys(const std::filesystem::path& folder, const std::string& vehicle) {
   const auto permissions = [&](const std::string& role) {
-    return comms::permissions_document(role, runtime::subject_of(role), {vehicle});
+    return messages::permissions_document(role, io::subject_of(role), {vehicle});
   };
-  runtime::make_security_folder({folder}, {std::begin(comms::kRoles), std::end(comms::kRoles)},
-                                {comms::governance_document(), permissions}, 1);
+  io::make_security_folder({folder}, {std::begin(messages::kRoles), std::end(messages::kRoles)},
+                           {messages::governance_document(), permissions}, 1);
   return folder;
 }
 

@@ -13,16 +13,16 @@ using ground::View;
 
 SeparateProcesses::SeparateProcesses()
     : client_(std::make_unique<ground::Client>(node("ground"))),
-      watcher_(std::make_unique<comms::Node>(node("watcher"))),
+      watcher_(std::make_unique<dds::Node>(node("watcher"))),
       telemetry_(std::make_unique<TelemetryLog>(*watcher_)) {
   status_ =
-      watcher_->subscribe<msg::ControlStatus>(comms::topics::kControlStatus, [this](const auto& status) {
+      watcher_->subscribe<msg::ControlStatus>(messages::topics::kControlStatus, [this](const auto& status) {
         mode_log_.put(std::string(ground::mode_name(status.mode())) + ": " + status.reason().c_str());
       });
 }
 
-comms::NodeSettings SeparateProcesses::node(const std::string& name) const {
-  comms::NodeSettings settings;
+dds::NodeSettings SeparateProcesses::node(const std::string& name) const {
+  dds::NodeSettings settings;
   settings.name = name;
   settings.domain = lock_.domain();
   return settings;

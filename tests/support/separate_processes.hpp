@@ -28,7 +28,7 @@ class SeparateProcesses : public testing::Test {
 
   SeparateProcesses();
 
-  comms::NodeSettings node(const std::string& name) const;
+  dds::NodeSettings node(const std::string& name) const;
   // Starts a program on this domain.
   std::unique_ptr<Program> start(const std::string& program, std::vector<std::string> arguments = {}) const;
   // In simulated time.
@@ -58,14 +58,14 @@ class SeparateProcesses : public testing::Test {
   bool wait_until_on_ground() const;
   double distance_m(double x, double y, double z) const;
 
-  comms::DomainLock lock_;
+  dds::DomainLock lock_;
   TemporaryFolder folder_;
   std::unique_ptr<Program> plant_, mocap_, control_;
   std::unique_ptr<ground::Client> client_;
-  std::unique_ptr<comms::Node> watcher_;
+  std::unique_ptr<dds::Node> watcher_;
   std::unique_ptr<TelemetryLog> telemetry_;  // since the last clear_history()
   Inbox<std::string> mode_log_;
-  comms::Subscription status_;
+  dds::Subscription status_;
 };
 
 // Of one row of ground truth.

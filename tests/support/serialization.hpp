@@ -10,14 +10,14 @@
 
 namespace swiftlet::tests {
 
-using Payload = comms::rtps::SerializedPayload_t;
+using Payload = dds::fastrtps::SerializedPayload_t;
 
 // The message as it is sent, with its encapsulation.
 template <class PubSubType>
 std::vector<unsigned char> serialized(typename PubSubType::type message) {
   PubSubType type;
-  Payload payload(comms::serialized_size(type, &message));
-  comms::serialize(type, &message, payload);
+  Payload payload(dds::serialized_size(type, &message));
+  dds::serialize(type, &message, payload);
   return {payload.data, payload.data + payload.length};
 }
 
@@ -27,11 +27,11 @@ inline bool deserialize(eprosima::fastdds::dds::TopicDataType& type, const std::
   Payload payload(static_cast<std::uint32_t>(size));
   payload.length = static_cast<std::uint32_t>(size);
   std::copy_n(bytes, size, payload.data);
-  return comms::deserialize(type, payload, message);
+  return dds::deserialize(type, payload, message);
 }
 
 // Poses as another type by name and sends raw bytes.
-class RawType final : public comms::PayloadType {
+class RawType final : public dds::PayloadType {
  public:
   using Bytes = std::vector<unsigned char>;
 

@@ -4,10 +4,10 @@
 
 namespace swiftlet::tests {
 
-namespace topics = comms::topics;
-namespace msg = comms::msg;
+namespace topics = messages::topics;
+namespace msg = messages::msg;
 
-SpoilingRelay::SpoilingRelay(const comms::NodeSettings& from, const comms::NodeSettings& to, Spoil spoil)
+SpoilingRelay::SpoilingRelay(const dds::NodeSettings& from, const dds::NodeSettings& to, Spoil spoil)
     : spoil_(std::move(spoil)),
       from_(from),
       to_(to),
@@ -29,7 +29,7 @@ SpoilingRelay::SpoilingRelay(const comms::NodeSettings& from, const comms::NodeS
 }
 
 template <class T>
-comms::Subscription SpoilingRelay::pass(const comms::Topic<T>& topic, comms::Publisher<T>& publisher) {
+dds::Subscription SpoilingRelay::pass(const messages::Topic<T>& topic, dds::Publisher<T>& publisher) {
   return from_.subscribe<T>(topic, [&publisher](const T& message) { publisher.publish(message); });
 }
 

@@ -12,9 +12,9 @@ namespace swiftlet::tests {
 // Thread-safe.
 class TelemetryLog {
  public:
-  explicit TelemetryLog(comms::Node& node) {
-    truth_ = node.subscribe<comms::msg::GroundTruth>(
-        comms::topics::kGroundTruth, [this](const comms::msg::GroundTruth& truth) {
+  explicit TelemetryLog(dds::Node& node) {
+    truth_ = node.subscribe<messages::msg::GroundTruth>(
+        messages::topics::kGroundTruth, [this](const messages::msg::GroundTruth& truth) {
           const std::lock_guard<std::mutex> lock(mutex_);
           // Lockstep repeats a sample whose answer is late.
           if (!flight_.truth.empty() && flight_.truth.back().stamp_ns >= truth.stamp_ns()) return;
@@ -22,8 +22,8 @@ class TelemetryLog {
                                    truth.q_ned_from_frd(), truth.body_rates_frd(), truth.rotor_speeds(),
                                    truth.rotor_count(), truth.supply_voltage_v(), truth.on_ground()});
         });
-    reference_ = node.subscribe<comms::msg::Reference>(
-        comms::topics::kReference, [this](const comms::msg::Reference& reference) {
+    reference_ = node.subscribe<messages::msg::Reference>(
+        messages::topics::kReference, [this](const messages::msg::Reference& reference) {
           const std::lock_guard<std::mutex> lock(mutex_);
           if (!flight_.reference.empty() && flight_.reference.back().stamp_ns >= reference.stamp_ns()) return;
           flight_.reference.push_back({reference.stamp_ns(), reference.mode(), reference.position_ned(),
@@ -46,7 +46,7 @@ class TelemetryLog {
  private:
   mutable std::mutex mutex_;  // guards flight_
   record::Flight flight_;
-  comms::Subscription truth_, reference_;  // last: their callbacks use the members above
+  dds::Subscription truth_, reference_;  // last: their callbacks use the members above
 };
 
 }  // namespace swiftlet::tests

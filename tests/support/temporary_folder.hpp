@@ -27,7 +27,7 @@ class TemporaryFolder {
   }
 
  private:
-  runtime::TemporaryFolder folder_ = runtime::TemporaryFolder::of_the_system("swiftlet-test");
+  io::TemporaryFolder folder_ = io::TemporaryFolder::of_the_system("swiftlet-test");
 };
 
 }  // namespace swiftlet::tests

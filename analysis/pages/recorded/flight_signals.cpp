@@ -107,7 +107,7 @@ class MotionAt {
 
 // NED, rad: from b to a.
 Vector3d rotation_between(const Quaterniond& a, const Quaterniond& b) {
-  return plant::rotation_vector((a * b.conjugate()).normalized());
+  return math::rotation_vector((a * b.conjugate()).normalized());
 }
 
 template <class Row>
@@ -119,7 +119,7 @@ void add_path(const std::vector<Row>& flown, std::int64_t zero_ns, FlightLog& fl
     rows.add(kAxes, motion.position);
     rows.add(kVelocityAxes, motion.velocity);
     rows.add("speed", motion.velocity.norm());
-    rows.add(kEuler, math::kDegPerRad * control::euler_angles(motion.attitude).vector());
+    rows.add(kEuler, math::kDegPerRad * math::euler_angles(motion.attitude).vector());
     rows.add(kRates, motion.rates);
     const std::array<double, 4> q = {motion.attitude.w(), motion.attitude.x(), motion.attitude.y(),
                                      motion.attitude.z()};
@@ -147,7 +147,7 @@ void add_reference(const record::Flight& recorded, const std::vector<Row>& flown
     rows.begin(row.stamp_ns);
     rows.add(kAxes, position);
     rows.add(kVelocityAxes, velocity);
-    rows.add(kEuler, math::kDegPerRad * control::euler_angles(quaternion(row.q_ned_from_frd)).vector());
+    rows.add(kEuler, math::kDegPerRad * math::euler_angles(quaternion(row.q_ned_from_frd)).vector());
     rows.add("thrust", row.thrust_n);
     if (is_landing(row)) continue;
     const std::optional<Motion> motion = flown(row.stamp_ns);

@@ -39,11 +39,10 @@ PoseDeviation pose_deviation(const mcap::Reader& file, const std::string& vehicl
   PoseDeviation deviation;
   const std::optional<std::string> settings = mcap::attached_file(file, vehicle, "control.yaml");
   if (!settings) return deviation;
-  for (const auto& [key, value] : runtime::flatten_yaml(*settings, file.name() + "/control.yaml")) {
-    if (key == "estimator.mocap_position_m")
-      deviation.position_m = runtime::parse_number(value).value_or(0.0);
+  for (const auto& [key, value] : io::flatten_yaml(*settings, file.name() + "/control.yaml")) {
+    if (key == "estimator.mocap_position_m") deviation.position_m = io::parse_number(value).value_or(0.0);
     if (key == "estimator.mocap_orientation_rad")
-      deviation.rotation_rad = runtime::parse_number(value).value_or(0.0);
+      deviation.rotation_rad = io::parse_number(value).value_or(0.0);
   }
   return deviation;
 }
@@ -53,8 +52,7 @@ PoseDeviation pose_deviation(const mcap::Reader& file, const std::string& vehicl
 FlightLog flight_log(const mcap::Reader& file, const std::string& vehicle, const record::Flight& recorded,
                      const std::string& name) {
   if (recorded.truth.empty() && recorded.estimate.empty())
-    throw runtime::ConfigError(file.name(), 0, vehicle,
-                               "holds no flight: has neither estimate nor ground_truth");
+    throw io::ConfigError(file.name(), 0, vehicle, "holds no flight: has neither estimate nor ground_truth");
   const auto recorder = record::metadata_of(file, "swiftlet/recorder");
   const auto time = recorder.find("time");
   const RecordedClock clock{zero_of(recorded), time != recorder.end() && time->second == "vehicle"};

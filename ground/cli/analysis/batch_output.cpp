@@ -21,11 +21,11 @@ constexpr std::uintmax_t kRunBytes = 1'500;  // a row of batch.csv and its part 
 
 // Returns a sentence if a file cannot be written whole.
 std::string write_files(const std::filesystem::path& folder, const BatchReport& report,
-                        ProgressLine& progress) {
+                        io::ProgressLine& progress) {
   std::string fault;
   try {
     write_batch_csv(folder / "batch.csv", report);
-    runtime::write_atomically(folder / "batch.html", batch_page(report));
+    io::write_atomically(folder / "batch.html", batch_page(report));
   } catch (const std::exception& error) {
     fault = error.what();
   }
@@ -42,7 +42,7 @@ std::string write_files(const std::filesystem::path& folder, const BatchReport& 
 
 std::uintmax_t batch_bytes(std::size_t runs) { return kPictureBytes + kRunBytes * runs; }
 
-void print_batch(const BatchReport& report, bool json, ProgressLine& progress) {
+void print_batch(const BatchReport& report, bool json, io::ProgressLine& progress) {
   progress.close();
   std::printf("%s", json ? (to_json(report).dump() + "\n").c_str() : to_text(report).c_str());
   if (report.interrupted())
@@ -50,12 +50,12 @@ void print_batch(const BatchReport& report, bool json, ProgressLine& progress) {
                              report.batch.requested));
 }
 
-int finish_batch(const BatchReport& report, bool json, ProgressLine& progress) {
+int finish_batch(const BatchReport& report, bool json, io::ProgressLine& progress) {
   const std::string record_fault = write_files(report.folder, report, progress);
   print_batch(report, json, progress);
   if (!record_fault.empty())
     progress.say("swiftlet: the record " + report.folder + " is incomplete: " + record_fault);
-  return report.completed() && record_fault.empty() ? kDone : kFailed;
+  return report.completed() && record_fault.empty() ? io::kDone : io::kFailed;
 }
 
 }  // namespace swiftlet::ground

@@ -13,9 +13,9 @@ namespace swiftlet::ground {
 std::uintmax_t batch_bytes(std::size_t runs);
 
 // Closes the progress line, and prints the table or, with `json`, one JSON object; says if the batch was cancelled.
-void print_batch(const BatchReport& report, bool json, ProgressLine& progress);
+void print_batch(const BatchReport& report, bool json, io::ProgressLine& progress);
 
 // Writes batch.csv and batch.png into report.folder, and prints the report. Returns the exit code.
-int finish_batch(const BatchReport& report, bool json, ProgressLine& progress);
+int finish_batch(const BatchReport& report, bool json, io::ProgressLine& progress);
 
 }  // namespace swiftlet::ground

@@ -16,23 +16,24 @@
 namespace swiftlet::ground {
 
 int run_gains(const GainsOptions& options) {
-  const std::string file = runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle).string();
-  const plant::Vehicle vehicle = runtime::load_vehicle(file);
+  const std::string file = io::configuration_file(io::kinds::kVehicle, options.vehicle).string();
+  const plant::Vehicle vehicle = io::load_vehicle(file);
   const control::ControlSettings settings =
-      runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control));
+      io::load_control_settings(io::configuration_file(io::kinds::kControl, options.control));
   if (options.level.value_or(plant::ControlLevel::kActuators) != plant::ControlLevel::kActuators) {
     const LevelGains gains = level_gains(vehicle, settings, *options.level, options.delay_s);
     std::printf("%s%s", options.json ? level_gains_json(gains).c_str() : level_gains_table(gains).c_str(),
                 options.json ? "\n" : "");
-    return kDone;
+    return io::kDone;
   }
   const control::ControlDesign design = control::design(vehicle, settings);
   for (const plant::Violation& loop : control::unstable_loops(design)) {
     std::fprintf(stderr, "swiftlet: not flyable: %s: %s\n", loop.key.c_str(), loop.message.c_str());
   }
-  const plant::VehicleUncertainty uncertainty = runtime::load_vehicle_uncertainty(file);
-  const Dispersion dispersion =
-      uncertainty.parameters.empty() ? Dispersion{} : dispersion_of(uncertainty, vehicle, file);
+  const plant::VehicleUncertainty uncertainty = io::load_vehicle_uncertainty(file);
+  const simulation::Dispersion dispersion = uncertainty.parameters.empty()
+                                                ? simulation::Dispersion{}
+                                                : simulation::dispersion_of(uncertainty, vehicle, file);
   const MarginStudy margins = study_margins(design, vehicle, dispersion, options.samples, options.seed);
   const FlownDelays flown_delay_s = control::flown_delay_margins(design, settings);
   if (options.json) {
@@ -40,20 +41,20 @@ int run_gains(const GainsOptions& options) {
   } else {
     std::printf("%s", gains_table(design, margins, flown_delay_s, vehicle.name, settings.name).c_str());
   }
-  return kDone;
+  return io::kDone;
 }
 
-Command add_gains_command(runtime::CommandLine root) {
+io::Command add_gains_command(runtime::CommandLine root) {
   const auto options = std::make_shared<GainsOptions>();
-  const runtime::CommandLine app = root.add_subcommand("gains", purpose_of("gains"));
+  const runtime::CommandLine app = root.add_subcommand("gains", io::purpose_of("gains"));
   app.footer(
       "example: swiftlet gains --vehicle config/vehicles/kaylion.yaml --json\nexample: swiftlet gains "
       "--vehicle crazyflie2 --level attitude --delay 0.04");
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
-      .type_name(runtime::kinds::kVehicle.value)
+      .type_name(io::kinds::kVehicle.value)
       .show_default();
   app.add_option("--control", options->control, "control settings file, or the name of one in config/control")
-      .type_name(runtime::kinds::kControl.value)
+      .type_name(io::kinds::kControl.value)
       .show_default();
   app.add_option("--samples", options->samples,
                  "number of vehicles sampled from the uncertainty in the vehicle file, for the margins")

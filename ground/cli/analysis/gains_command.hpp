@@ -22,7 +22,7 @@ struct GainsOptions {
 };
 
 // Prints the JSON or the table, and names unstable loops on standard error. Returns kDone. Throws
-// runtime::ConfigError for an invalid file.
+// io::ConfigError for an invalid file.
 int run_gains(const GainsOptions& options);
 
 }  // namespace swiftlet::ground

@@ -7,19 +7,19 @@
 
 int main(int argc, char** argv) {
   using namespace swiftlet;
-  return ground::run_commands(argc, argv, runtime::version_text(), [](runtime::CommandLine root) {
+  return io::run_commands(argc, argv, runtime::version_text(), [](runtime::CommandLine root) {
     const runtime::CommandLine sim = root.add_subcommand("sim", ground::kSimPurpose);
-    const std::vector<ground::Command> simulations = {
-        ground::add_sim_batch_command(sim, runtime::version_text()), ground::add_sim_merge_command(sim),
-        ground::add_sim_open_loop_command(sim)};
+    const std::vector<io::Command> simulations = {ground::add_sim_batch_command(sim, runtime::version_text()),
+                                                  ground::add_sim_merge_command(sim),
+                                                  ground::add_sim_open_loop_command(sim)};
     const runtime::CommandLine mission = root.add_subcommand("mission", ground::kMissionPurpose);
-    const ground::Command plot = ground::add_mission_plot_command(mission);
-    return std::vector<ground::Command>{
+    const io::Command plot = ground::add_mission_plot_command(mission);
+    return std::vector<io::Command>{
         ground::add_log_command(root),
         ground::add_report_command(root),
         ground::add_gains_command(root),
         ground::add_tune_command(root),
-        {sim, [simulations] { return ground::run_given(simulations); }},
+        {sim, [simulations] { return io::run_given(simulations); }},
         {mission, plot.run},
     };
   });

@@ -35,9 +35,9 @@ struct ReportOptions {
   bool json = false;
 };
 
-void write_page(const std::vector<RecordedFlight>& recorded, const std::string& page) {
+void write_page(const std::vector<analysis::RecordedFlight>& recorded, const std::string& page) {
   std::vector<pages::FlightLog> flights;
-  for (const RecordedFlight& one : recorded) {
+  for (const analysis::RecordedFlight& one : recorded) {
     flights.push_back(pages::flight_log(mcap::Reader(one.file.string()), one.vehicle, one.flown, one.name));
     if (one.file.filename() == record::kFlightFile)
       pages::add_process_logs(fs::absolute(one.file).parent_path(), flights.back());
@@ -46,7 +46,7 @@ void write_page(const std::vector<RecordedFlight>& recorded, const std::string& 
   for (std::size_t i = 0; i < flights.size(); ++i) title += (i == 0 ? " " : ", ") + flights[i].name;
   const std::string note = "Time is 0 at take-off. Errors count from take-off to landing.";
   const std::string text = pages::flight_page(title, note, flights);
-  runtime::write_atomically(page, text);
+  io::write_atomically(page, text);
   std::printf("report: wrote %s, %zu %s, %.1f MB\n", page.c_str(), flights.size(),
               flights.size() == 1 ? "flight" : "flights", static_cast<double>(text.size()) / 1e6);
 }
@@ -63,32 +63,34 @@ void show(const std::string& page) {
 
 int report(const ReportOptions& options) {
   std::vector<fs::path> records(options.records.begin(), options.records.end());
-  if (records.empty()) records.push_back(newest_record("flights"));
+  if (records.empty()) records.push_back(analysis::newest_record("flights"));
   std::vector<std::string> files;
   for (const fs::path& record : records) files.push_back(record::flight_file(record).file);
   if (!options.page.empty()) require_new(options.page, options.replace, files);
-  std::vector<RecordedFlight> flights;
+  std::vector<analysis::RecordedFlight> flights;
   for (const fs::path& record : records) {
-    for (RecordedFlight& flight : load_record(record)) flights.push_back(std::move(flight));
+    for (analysis::RecordedFlight& flight : analysis::load_record(record))
+      flights.push_back(std::move(flight));
   }
   if (!options.page.empty()) {
     write_page(flights, options.page);
-    return kDone;
+    return io::kDone;
   }
-  const std::string text = options.json ? comparison_json(flights).dump(2) + "\n" : comparison_table(flights);
+  const std::string text =
+      options.json ? analysis::comparison_json(flights).dump(2) + "\n" : analysis::comparison_table(flights);
   std::fputs(text.c_str(), stdout);
-  if (options.json || records.size() > 1 || !fs::is_directory(records.front())) return kDone;
+  if (options.json || records.size() > 1 || !fs::is_directory(records.front())) return io::kDone;
   const std::string page = fs::path(files.front()).parent_path() / kPage;
   write_page(flights, page);
   show(page);
-  return kDone;
+  return io::kDone;
 }
 
 }  // namespace
 
-Command add_report_command(runtime::CommandLine root) {
+io::Command add_report_command(runtime::CommandLine root) {
   const auto options = std::make_shared<ReportOptions>();
-  const runtime::CommandLine app = root.add_subcommand("report", purpose_of("report"));
+  const runtime::CommandLine app = root.add_subcommand("report", io::purpose_of("report"));
   app.add_option("RECORD", options->records,
                  "records of one or of several vehicles, or MCAP files of recorded messages; default: the "
                  "newest record in "

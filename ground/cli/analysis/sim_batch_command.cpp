@@ -51,17 +51,17 @@ Shard shard_of(const BatchOptions& options) {
   if (options.shard.empty()) return {};
   const Shard shard = parse_shard(options.shard);
   if (shard.count > options.runs)
-    throw InputError(fmt::format("shard '{}': {} cannot be shared by {} shards", options.shard,
-                                 counted(options.runs, "run"), shard.count));
+    throw io::InputError(fmt::format("shard '{}': {} cannot be shared by {} shards", options.shard,
+                                     io::counted(options.runs, "run"), shard.count));
   return shard;
 }
 
 // Writes the result of a shard for `swiftlet sim merge`. One that was cancelled leaves no file.
-int finish_shard(const ShardResult& result, bool json, ProgressLine& progress) {
+int finish_shard(const ShardResult& result, bool json, io::ProgressLine& progress) {
   const BatchReport& report = result.report;
   if (!report.interrupted()) write_shard(report.folder, result);
   print_batch(report, json, progress);
-  return report.interrupted() ? kFailed : kDone;
+  return report.interrupted() ? io::kFailed : io::kDone;
 }
 
 int sim_batch(const BatchOptions& options) {
@@ -69,8 +69,8 @@ int sim_batch(const BatchOptions& options) {
   LaunchConfiguration plan = plan_flight(options.flight);
   const std::uint64_t first_seed = plan.seed;
   if (first_seed > std::numeric_limits<std::uint64_t>::max() - options.runs)
-    throw InputError("--seed " + std::to_string(first_seed) + ": too large for " +
-                     std::to_string(options.runs) + " runs");
+    throw io::InputError("--seed " + std::to_string(first_seed) + ": too large for " +
+                         std::to_string(options.runs) + " runs");
   plan.seed += shard.first_run(options.runs);
   const std::size_t runs = shard.run_count(options.runs);
   const std::map<std::string, std::string> inputs = read_inputs(plan);
@@ -78,7 +78,7 @@ int sim_batch(const BatchOptions& options) {
   require_space(plan.folder, batch_bytes(runs), "--out");
   const RecordFolder folder(plan.folder, existing_record(options.flight), "--out", plan.input_files());
   plan.folder = folder.path();
-  ProgressLine progress;
+  io::ProgressLine progress;
   for (const std::string& assumption : plan.mission.assumptions)
     progress.say(plan.mission.name + ": " + assumption);
   const Interrupts interrupts;
@@ -98,12 +98,12 @@ int sim_batch(const BatchOptions& options) {
 
 }  // namespace
 
-Command add_sim_batch_command(runtime::CommandLine sim, const std::string& version) {
+io::Command add_sim_batch_command(runtime::CommandLine sim, const std::string& version) {
   const auto options = std::make_shared<BatchOptions>();
   FlyOptions& flight = options->flight;
   flight.launch_mode = LaunchMode::kInProcess;
   flight.program = version;
-  const runtime::CommandLine app = sim.add_subcommand("batch", purpose_of("sim batch"));
+  const runtime::CommandLine app = sim.add_subcommand("batch", io::purpose_of("sim batch"));
   add_mission_options(app, flight);
   add_dispersion_option(app, flight).required();
   app.add_option("--runs", options->runs, "number of runs; the first uses --seed, each further run adds one")

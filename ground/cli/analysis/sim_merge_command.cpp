@@ -30,15 +30,15 @@ int sim_merge(const MergeOptions& options) {
   const RecordFolder folder(
       options.out, options.replace ? ExistingRecord::kReplaced : ExistingRecord::kRefused, "--out", folders);
   report.folder = folder.path().string();
-  ProgressLine progress;
+  io::ProgressLine progress;
   return finish_batch(report, options.json, progress);
 }
 
 }  // namespace
 
-Command add_sim_merge_command(runtime::CommandLine sim) {
+io::Command add_sim_merge_command(runtime::CommandLine sim) {
   const auto options = std::make_shared<MergeOptions>();
-  const runtime::CommandLine app = sim.add_subcommand("merge", purpose_of("sim merge"));
+  const runtime::CommandLine app = sim.add_subcommand("merge", io::purpose_of("sim merge"));
   app.add_option("shards", options->shards,
                  "folders that `swiftlet sim batch --shard` wrote, all of one batch")
       .type_name("FOLDER")

@@ -23,27 +23,29 @@ struct OpenLoopOptions {
 
 int run_open_loop(const OpenLoopOptions& options) {
   const plant::Vehicle vehicle =
-      runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
+      io::load_vehicle(io::configuration_file(io::kinds::kVehicle, options.vehicle));
   const int rotors = vehicle.rotor_count();
-  const std::vector<PulseWidths> pulses =
-      read_pulses(runtime::load_csv(options.pulses, pulse_columns(rotors), 2), vehicle);
+  const std::vector<simulation::PulseWidths> pulses =
+      simulation::read_pulses(io::load_csv(options.pulses, simulation::pulse_columns(rotors), 2), vehicle);
   plant::VehicleState initial;
   if (!options.initial.empty())
-    initial = read_state(runtime::load_csv(options.initial, state_columns(rotors)), rotors);
+    initial =
+        simulation::read_state(io::load_csv(options.initial, simulation::state_columns(rotors)), rotors);
 
-  const std::vector<MotionRow> rows = simulate_open_loop(vehicle, options.supply_voltage_v, initial, pulses);
-  write_motion(options.out, rows, rotors);
+  const std::vector<simulation::MotionRow> rows =
+      simulation::simulate_open_loop(vehicle, options.supply_voltage_v, initial, pulses);
+  simulation::write_motion(options.out, rows, rotors);
   std::fprintf(stderr, "swiftlet: simulated %s for %.3f s at %g V, %zu rows in %s\n", vehicle.name.c_str(),
                static_cast<double>(pulses.back().time_ns - pulses.front().time_ns) * 1e-9,
                options.supply_voltage_v, rows.size(), options.out.c_str());
-  return kDone;
+  return io::kDone;
 }
 
 }  // namespace
 
-Command add_sim_open_loop_command(runtime::CommandLine sim) {
+io::Command add_sim_open_loop_command(runtime::CommandLine sim) {
   const auto options = std::make_shared<OpenLoopOptions>();
-  const runtime::CommandLine open_loop = sim.add_subcommand("open-loop", purpose_of("sim open-loop"));
+  const runtime::CommandLine open_loop = sim.add_subcommand("open-loop", io::purpose_of("sim open-loop"));
   open_loop.footer(
       "--pwm has the columns t,pwm1,pwm2,...: seconds and microseconds, held until the next row; the time of "
       "the last row\n"
@@ -54,7 +56,7 @@ Command add_sim_open_loop_command(runtime::CommandLine sim) {
       "ms.\nThere is no ground, drag or noise, and the supply is ideal.\n\n"
       "example: swiftlet sim open-loop --vehicle kaylion --pwm pulses.csv --supply 3.7 --out motion.csv");
   open_loop.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
-      .type_name(runtime::kinds::kVehicle.value)
+      .type_name(io::kinds::kVehicle.value)
       .required();
   open_loop.add_option("--pwm", options->pulses, "pulse widths, CSV file").required();
   open_loop.add_option("--supply", options->supply_voltage_v, "supply voltage v_s of Eq. (9), V")

@@ -5,7 +5,7 @@
 
 namespace swiftlet::ground {
 
-Command add_tune_delay_command(runtime::CommandLine tune);
-Command add_tune_plot_command(runtime::CommandLine tune);
+io::Command add_tune_delay_command(runtime::CommandLine tune);
+io::Command add_tune_plot_command(runtime::CommandLine tune);
 
 }  // namespace swiftlet::ground

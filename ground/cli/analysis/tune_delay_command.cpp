@@ -36,7 +36,7 @@ struct TuneDelayOptions {
   std::string output = "slow.yaml";
 };
 
-std::string table(const DelayDesign& design, double delay_s) {
+std::string table(const analysis::DelayDesign& design, double delay_s) {
   std::string text = fmt::format("for a delay of {:.0f} ms: {:.0f} % of the bandwidth of every loop\n",
                                  1e3 * delay_s, 100.0 * design.factor);
   text += "tolerated delay, ms:";
@@ -48,38 +48,37 @@ std::string table(const DelayDesign& design, double delay_s) {
 }
 
 int design_delay(const TuneDelayOptions& options) {
-  const std::filesystem::path vehicle_file =
-      runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle);
-  const std::filesystem::path control_file =
-      runtime::configuration_file(runtime::kinds::kControl, options.control);
-  refuse_overwriting({{"--out", options.output}}, {vehicle_file, control_file});
+  const std::filesystem::path vehicle_file = io::configuration_file(io::kinds::kVehicle, options.vehicle);
+  const std::filesystem::path control_file = io::configuration_file(io::kinds::kControl, options.control);
+  io::refuse_overwriting({{"--out", options.output}}, {vehicle_file, control_file});
   if (options.level == plant::ControlLevel::kTrajectory)
-    throw InputError("--level trajectory: the vehicle closes all loops, control none");
-  const std::string text = runtime::read_text_file(control_file);
-  DelayDesign design;
+    throw io::InputError("--level trajectory: the vehicle closes all loops, control none");
+  const std::string text = io::read_text_file(control_file);
+  analysis::DelayDesign design;
   try {
-    const plant::Vehicle vehicle = runtime::load_vehicle(vehicle_file);
-    design = design_for_delay(vehicle, runtime::parse_control_settings(text, control_file), options.delay_s,
-                              {options.level, vehicle_loops(vehicle)});
+    const plant::Vehicle vehicle = io::load_vehicle(vehicle_file);
+    design = analysis::design_for_delay(vehicle, io::parse_control_settings(text, control_file),
+                                        options.delay_s, {options.level, vehicle_loops(vehicle)});
   } catch (const std::invalid_argument& e) {
-    throw InputError(e.what());
+    throw io::InputError(e.what());
   }
   design.settings.name = std::filesystem::path(options.output).stem();
-  const std::string slowed_text = runtime::with_scalars(text, control_file, slowed_values(design.settings));
+  const std::string slowed_text =
+      io::with_scalars(text, control_file, analysis::slowed_values(design.settings));
   // Refuses a name that is none.
-  const control::ControlSettings written = runtime::parse_control_settings(slowed_text, options.output);
-  if (slowed_values(written) != slowed_values(design.settings))
-    throw InputError(control_file.string() +
-                     ": its values cannot be replaced in place; write each on a line of its own");
-  runtime::write_atomically(options.output, slowed_text);
+  const control::ControlSettings written = io::parse_control_settings(slowed_text, options.output);
+  if (analysis::slowed_values(written) != analysis::slowed_values(design.settings))
+    throw io::InputError(control_file.string() +
+                         ": its values cannot be replaced in place; write each on a line of its own");
+  io::write_atomically(options.output, slowed_text);
   std::printf("%s", table(design, options.delay_s).c_str());
   std::fprintf(stderr, "wrote %s\n", options.output.c_str());
-  return kDone;
+  return io::kDone;
 }
 
 }  // namespace
 
-Command add_tune_delay_command(runtime::CommandLine tune) {
+io::Command add_tune_delay_command(runtime::CommandLine tune) {
   const auto options = std::make_shared<TuneDelayOptions>();
   const runtime::CommandLine app =
       tune.add_subcommand("delay", "Make slower gains that tolerate a delay of the loop");
@@ -93,10 +92,10 @@ Command add_tune_delay_command(runtime::CommandLine tune) {
       .required();
   app.add_option("--control", options->control,
                  "control settings file, or the name of one in config/control, to begin with")
-      .type_name(runtime::kinds::kControl.value)
+      .type_name(io::kinds::kControl.value)
       .show_default();
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
-      .type_name(runtime::kinds::kVehicle.value)
+      .type_name(io::kinds::kVehicle.value)
       .show_default();
   add_level_option(app, options->level);
   app.add_option("-o,--out", options->output, "output file; the settings are named after it").show_default();

@@ -33,22 +33,23 @@ struct TunePlotOptions {
 };
 
 // The delay that a flight measured: its sense-to-actuate latency, of which 99 % are below it.
-LoopDelay measured_delay(const std::string& folder) {
+analysis::LoopDelay measured_delay(const std::string& folder) {
   const std::string file = folder + "/report.json";
-  const nlohmann::json report = nlohmann::json::parse(runtime::read_text_file(file), nullptr, false);
+  const nlohmann::json report = nlohmann::json::parse(io::read_text_file(file), nullptr, false);
   const auto number = [&](const nlohmann::json::json_pointer& key) {
     if (report.is_discarded() || !report.contains(key) || !report.at(key).is_number())
-      throw InputError(file + ": " + key.to_string() + " is missing; is this the record of a flight?");
+      throw io::InputError(file + ": " + key.to_string() + " is missing; is this the record of a flight?");
     return report.at(key).get<double>();
   };
   const double latency_us = number(nlohmann::json::json_pointer("/sense_to_actuate_us/p99"));
   const double rate_hz = number(nlohmann::json::json_pointer("/imu_rate_hz"));
   if (!(latency_us > 0.0) || !(rate_hz > 0.0))
-    throw InputError(file + ": no latency was measured; fly in real time, not in lockstep or in one process");
+    throw io::InputError(file +
+                         ": no latency was measured; fly in real time, not in lockstep or in one process");
   return {0.5 / rate_hz, 1e-6 * latency_us, folder};
 }
 
-LoopDelay delay_of(const TunePlotOptions& options) {
+analysis::LoopDelay delay_of(const TunePlotOptions& options) {
   if (!options.flight.empty()) return measured_delay(options.flight);
   return {0.5 / options.imu_rate_hz, options.delay_s.value_or(0.0)};
 }
@@ -56,8 +57,7 @@ LoopDelay delay_of(const TunePlotOptions& options) {
 std::vector<control::ControlSettings> load_all(const TunePlotOptions& options) {
   std::vector<control::ControlSettings> out;
   for (const std::string& name : options.control) {
-    out.push_back(
-        runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, name)));
+    out.push_back(io::load_control_settings(io::configuration_file(io::kinds::kControl, name)));
     for (std::size_t i = 0; i + 1 < out.size(); ++i)
       if (out[i].name == out.back().name) out.back().name += " (" + name + ")";
   }
@@ -65,27 +65,27 @@ std::vector<control::ControlSettings> load_all(const TunePlotOptions& options) {
 }
 
 int plot_tuning(const TunePlotOptions& options) {
-  const std::filesystem::path vehicle_file =
-      runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle);
+  const std::filesystem::path vehicle_file = io::configuration_file(io::kinds::kVehicle, options.vehicle);
   std::vector<std::filesystem::path> inputs = {vehicle_file};
   for (const std::string& name : options.control)
-    inputs.push_back(runtime::configuration_file(runtime::kinds::kControl, name));
-  refuse_overwriting({{"--out", options.output}}, inputs);
-  const plant::Vehicle vehicle = runtime::load_vehicle(vehicle_file);
-  const TuningStudy study = study_tuning(vehicle, load_all(options), delay_of(options));
-  std::printf("%s", (options.json ? tuning_json(study) + "\n" : tuning_table(study)).c_str());
-  const std::string fault = draw_tuning(options.output, study);
+    inputs.push_back(io::configuration_file(io::kinds::kControl, name));
+  io::refuse_overwriting({{"--out", options.output}}, inputs);
+  const plant::Vehicle vehicle = io::load_vehicle(vehicle_file);
+  const analysis::TuningStudy study = analysis::study_tuning(vehicle, load_all(options), delay_of(options));
+  std::printf("%s",
+              (options.json ? analysis::tuning_json(study) + "\n" : analysis::tuning_table(study)).c_str());
+  const std::string fault = analysis::draw_tuning(options.output, study);
   if (!fault.empty()) {
     std::fprintf(stderr, "swiftlet: tune plot: %s\n", fault.c_str());
-    return kFailed;
+    return io::kFailed;
   }
   std::fprintf(stderr, "wrote %s\n", options.output.c_str());
-  return kDone;
+  return io::kDone;
 }
 
 }  // namespace
 
-Command add_tune_plot_command(runtime::CommandLine tune) {
+io::Command add_tune_plot_command(runtime::CommandLine tune) {
   const auto options = std::make_shared<TunePlotOptions>();
   const runtime::CommandLine app = tune.add_subcommand(
       "plot", "Draw step responses and Bode diagrams of control settings over each other");
@@ -94,10 +94,10 @@ Command add_tune_plot_command(runtime::CommandLine tune) {
       "example: swiftlet tune plot motor_lag mine.yaml --flight flights/A -o tuning.png");
   app.add_option("control", options->control,
                  "control settings files, or the names of such in config/control")
-      .type_name(runtime::kinds::kControl.value)
+      .type_name(io::kinds::kControl.value)
       .required();
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
-      .type_name(runtime::kinds::kVehicle.value)
+      .type_name(io::kinds::kVehicle.value)
       .show_default();
   app.add_option("-o,--out", options->output, "output file, PNG").show_default();
   app.add_option(

@@ -3,10 +3,10 @@
 
 namespace swiftlet::ground {
 
-Command add_check_command(runtime::CommandLine root) {
-  const runtime::CommandLine check = root.add_subcommand("check", purpose_of("check"));
+io::Command add_check_command(runtime::CommandLine root) {
+  const runtime::CommandLine check = root.add_subcommand("check", io::purpose_of("check"));
   check.require_subcommand(1, 1);
-  const Command vehicle = add_check_vehicle_command(check);
+  const io::Command vehicle = add_check_vehicle_command(check);
   return {check, vehicle.run};
 }
 

@@ -31,7 +31,7 @@ namespace {
 constexpr std::chrono::milliseconds kRecordedStep{50};
 
 struct CheckVehicleOptions {
-  comms::NodeSettings network;
+  dds::NodeSettings network;
   std::string vehicle = "kaylion";
   double time_s = 2.0;
   double timeout_s = 5.0;
@@ -53,10 +53,10 @@ void confirm(const CheckVehicleOptions& options, const OperatorDialog& dialog) {
   const std::string state =
       options.props_off ? "all propellers are off" : "the vehicle is tethered and nobody is near";
   if (!dialog.has_terminal())
-    throw InputError("check vehicle: " + option + ": confirm with --yes that " + state +
-                     "; the rotors will turn");
+    throw io::InputError("check vehicle: " + option + ": confirm with --yes that " + state +
+                         "; the rotors will turn");
   const std::string typed = dialog.ask_line("The rotors will turn. Type yes if " + state + ":", [] {});
-  if (typed != "yes") throw InputError("check vehicle: not confirmed, nothing was sent");
+  if (typed != "yes") throw io::InputError("check vehicle: not confirmed, nothing was sent");
 }
 
 StandingExamination examine_at_rest(SampleRecorder& recorder, const CheckVehicleOptions& options,
@@ -165,7 +165,7 @@ CheckResults examine(const CheckVehicleOptions& options, const plant::Vehicle& v
 
 int check(const CheckVehicleOptions& options) {
   const plant::Vehicle vehicle =
-      runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
+      io::load_vehicle(io::configuration_file(io::kinds::kVehicle, options.vehicle));
   const Interrupts interrupts;
   const OperatorDialog dialog([&] { return interrupts.count() > 0; });
   CheckResults results;
@@ -180,18 +180,18 @@ int check(const CheckVehicleOptions& options) {
   } else {
     print_table(stdout, options.network.vehicle, results);
   }
-  return any_failed(results) ? kFailed : kDone;
+  return any_failed(results) ? io::kFailed : io::kDone;
 }
 
 }  // namespace
 
-Command add_check_vehicle_command(runtime::CommandLine check_line) {
+io::Command add_check_vehicle_command(runtime::CommandLine check_line) {
   const auto options = std::make_shared<CheckVehicleOptions>();
   const runtime::CommandLine app = check_line.add_subcommand(
       "vehicle", "Test a connected vehicle without flying: streams, stamps, axes, units, commands, rotors");
   add_network_options(app, options->network);
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
-      .type_name(runtime::kinds::kVehicle.value)
+      .type_name(io::kinds::kVehicle.value)
       .show_default();
   app.add_option("--time", options->time_s, "time for which the standing vehicle is recorded, s")
       .range(1.0, 600.0)

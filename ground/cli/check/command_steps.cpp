@@ -37,7 +37,7 @@ constexpr auto kOwnStall = 100ms;  // this process stood still: samples may wait
 // Commands, and notes what was commanded when. All times are seconds of the vehicle.
 class CommandSequence {
  public:
-  CommandSequence(const SampleRecorder& recorder, const comms::NodeSettings& network,
+  CommandSequence(const SampleRecorder& recorder, const dds::NodeSettings& network,
                   const plant::Vehicle& vehicle, const OperatorDialog& dialog)
       : recorder_(recorder),
         dialog_(dialog),
@@ -155,7 +155,7 @@ void require_no_controller(const SampleRecorder& recorder) {
   if (!other.empty()) throw std::runtime_error("refused to command the vehicle: " + other);
 }
 
-CommandPhases command_without_propellers(const SampleRecorder& recorder, const comms::NodeSettings& network,
+CommandPhases command_without_propellers(const SampleRecorder& recorder, const dds::NodeSettings& network,
                                          const plant::Vehicle& vehicle, const OperatorDialog& dialog) {
   require_no_controller(recorder);
   CommandSequence sequence(recorder, network, vehicle, dialog);
@@ -177,7 +177,7 @@ CommandPhases command_without_propellers(const SampleRecorder& recorder, const c
   return sequence.phases();
 }
 
-CommandPhases command_on_tether(const SampleRecorder& recorder, const comms::NodeSettings& network,
+CommandPhases command_on_tether(const SampleRecorder& recorder, const dds::NodeSettings& network,
                                 const plant::Vehicle& vehicle, const OperatorDialog& dialog) {
   require_no_controller(recorder);
   const double hover_n = vehicle.mass_kg * plant::kGravity / vehicle.rotor_count();

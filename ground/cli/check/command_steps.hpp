@@ -14,11 +14,11 @@ namespace swiftlet::ground {
 
 // Without propellers: rotors off, idle, each rotor by itself, a lower term, silence. At a terminal asks which rotor
 // turns, and in which direction.
-CommandPhases command_without_propellers(const SampleRecorder& recorder, const comms::NodeSettings& network,
+CommandPhases command_without_propellers(const SampleRecorder& recorder, const dds::NodeSettings& network,
                                          const plant::Vehicle& vehicle, const OperatorDialog& dialog);
 
 // Tethered, with propellers: half the thrust of hover, and each rotor raised for a moment.
-CommandPhases command_on_tether(const SampleRecorder& recorder, const comms::NodeSettings& network,
+CommandPhases command_on_tether(const SampleRecorder& recorder, const dds::NodeSettings& network,
                                 const plant::Vehicle& vehicle, const OperatorDialog& dialog);
 
 // Throws std::runtime_error if somebody commands the vehicle.

@@ -13,13 +13,13 @@ namespace swiftlet::ground {
 namespace {
 
 using namespace std::chrono_literals;
-namespace topics = comms::topics;
-namespace msg = comms::msg;
+namespace topics = messages::topics;
+namespace msg = messages::msg;
 
 constexpr auto kClockPeriod = 50ms;
 constexpr std::int64_t kAlive_ns = 1'000'000'000;  // since the last sign of a controller
 
-comms::NodeSettings listening(comms::NodeSettings settings) {
+dds::NodeSettings listening(dds::NodeSettings settings) {
   settings.name = "ground";
   return settings;
 }
@@ -29,48 +29,48 @@ std::uint64_t random_number() {
   return (static_cast<std::uint64_t>(device()) << 32U) | device();
 }
 
-comms::Fault convert(const msg::Imu& message, ImuReport& out) {
-  const comms::Fault fault = comms::from_message(message, out.imu);
-  out.obeyed = comms::from_message(message.obeyed());
+messages::Fault convert(const msg::Imu& message, ImuReport& out) {
+  const messages::Fault fault = messages::from_message(message, out.imu);
+  out.obeyed = messages::from_message(message.obeyed());
   out.lockstep = message.lockstep().mocap_pose() > 0 || message.lockstep().battery() > 0;
   return fault;
 }
-comms::Fault convert(const msg::VehicleOdometry& message, OdometryReport& out) {
-  const comms::Fault fault = comms::from_message(message, out.odometry);
-  out.obeyed = comms::from_message(message.obeyed());
+messages::Fault convert(const msg::VehicleOdometry& message, OdometryReport& out) {
+  const messages::Fault fault = messages::from_message(message, out.odometry);
+  out.obeyed = messages::from_message(message.obeyed());
   out.lockstep = message.lockstep().mocap_pose() > 0 || message.lockstep().battery() > 0;
   return fault;
 }
 template <class Message, class Sample>
-comms::Fault convert(const Message& message, Sample& out) {
-  return comms::from_message(message, out);
+messages::Fault convert(const Message& message, Sample& out) {
+  return messages::from_message(message, out);
 }
 
-std::string conflict_of(const comms::Subscription& subscription) {
+std::string conflict_of(const dds::Subscription& subscription) {
   const auto conflict = subscription.source_conflict();
   return conflict ? conflict->used.to_string() + " and " + conflict->ignored.to_string() : "";
 }
 
 template <class Sample>
-void add_state(TopicRecord<Sample>& record, const comms::Subscription& subscription) {
+void add_state(TopicRecord<Sample>& record, const dds::Subscription& subscription) {
   record.published = subscription.matched() > 0;
   record.conflict = conflict_of(subscription);
 }
 
 }  // namespace
 
-SampleRecorder::SampleRecorder(const comms::NodeSettings& settings)
+SampleRecorder::SampleRecorder(const dds::NodeSettings& settings)
     : vehicle_(settings.vehicle),
       client_(random_number()),
       node_(listening(settings)),
       clock_(node_.publish(topics::kClockRequest)) {
   recording_.begin_ns = now_ns();
-  node_.on_peer([this](const comms::PeerEvent& event) { count_peer(event); });
+  node_.on_peer([this](const dds::PeerEvent& event) { count_peer(event); });
   const auto subscribe = [this](const auto& topic, auto& record) {
     using Message = typename std::decay_t<decltype(topic)>::Message;
     return node_.subscribe<Message>(
-        topic, [this, &record](const Message& message) { take(record, message); }, comms::Delivery::kSamples,
-        comms::kSourceSilence);
+        topic, [this, &record](const Message& message) { take(record, message); }, dds::Delivery::kSamples,
+        dds::kSourceSilence);
   };
   imu_ = subscribe(topics::kImu, recording_.imu);
   odometry_ = subscribe(topics::kVehicleOdometry, recording_.odometry);
@@ -85,7 +85,7 @@ SampleRecorder::SampleRecorder(const comms::NodeSettings& settings)
                               info.mass_kg(),
                               info.imu_rate_hz(),
                               plant::ControlLevels::from_bits(info.control_levels()),
-                              comms::fault_of_wire_version(info.wire_version(), "the vehicle")};
+                              messages::fault_of_wire_version(info.wire_version(), "the vehicle")};
     recording_.rotors_running.push_back({info.rotors_running(), now_ns()});
   });
   clock_replies_ =
@@ -107,7 +107,7 @@ template <class Message, class Sample>
 void SampleRecorder::take(TopicRecord<Sample>& record, const Message& message) {
   Received<Sample> received;
   received.received_ns = now_ns();
-  const comms::Fault fault = convert(message, received.sample);
+  const messages::Fault fault = convert(message, received.sample);
   const std::lock_guard lock(mutex_);
   if (!fault) {
     record.samples.push_back(received);
@@ -127,7 +127,7 @@ void SampleRecorder::take_command(const msg::ActuatorCommand& command) {
   }
 }
 
-void SampleRecorder::count_peer(const comms::PeerEvent& event) {
+void SampleRecorder::count_peer(const dds::PeerEvent& event) {
   if (event.name != "control") return;
   const std::lock_guard lock(mutex_);
   controllers_ += event.alive ? 1 : -1;

@@ -20,7 +20,7 @@ namespace swiftlet::ground {
 class SampleRecorder {
  public:
   // settings.vehicle names the vehicle. Throws std::runtime_error if the network cannot be joined.
-  explicit SampleRecorder(const comms::NodeSettings& settings);
+  explicit SampleRecorder(const dds::NodeSettings& settings);
   SampleRecorder(const SampleRecorder&) = delete;
   SampleRecorder& operator=(const SampleRecorder&) = delete;
 
@@ -48,8 +48,8 @@ class SampleRecorder {
  private:
   template <class Message, class Sample>
   void take(TopicRecord<Sample>& record, const Message& message);
-  void take_command(const comms::msg::ActuatorCommand& command);
-  void count_peer(const comms::PeerEvent& event);
+  void take_command(const messages::msg::ActuatorCommand& command);
+  void count_peer(const dds::PeerEvent& event);
   void ask_clock();
 
   const std::string vehicle_;
@@ -66,11 +66,11 @@ class SampleRecorder {
   };
   std::vector<HeardCommand> commands_;  // the last of each term
 
-  comms::Node node_;
+  dds::Node node_;
   std::uint64_t clock_requests_ = 0;
-  comms::Publisher<comms::msg::ClockRequest> clock_;
+  dds::Publisher<messages::msg::ClockRequest> clock_;
   // Last: their callbacks use all members above.
-  comms::Subscription imu_, odometry_, battery_, mocap_, rotor_speeds_, info_, clock_replies_,
+  dds::Subscription imu_, odometry_, battery_, mocap_, rotor_speeds_, info_, clock_replies_,
       controller_states_, actuator_commands_;
 };
 

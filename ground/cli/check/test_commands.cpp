@@ -17,22 +17,22 @@ constexpr std::uint64_t kLastCommands = 50;
 constexpr auto kLastTime = 500ms;
 constexpr auto kLastPeriod = 10ms;  // without IMU samples
 
-comms::NodeSettings commanding(comms::NodeSettings settings) {
+dds::NodeSettings commanding(dds::NodeSettings settings) {
   settings.name = "check";
   return settings;
 }
 
 }  // namespace
 
-TestCommands::TestCommands(const comms::NodeSettings& settings, int rotor_count, std::uint32_t term)
+TestCommands::TestCommands(const dds::NodeSettings& settings, int rotor_count, std::uint32_t term)
     : term_(term),
       rotor_count_(rotor_count),
       renewed_ns_(runtime::monotonic_ns()),
       node_(commanding(settings)),
-      publisher_(node_.publish(comms::topics::kActuatorCommand)),
-      imu_(node_.subscribe<comms::msg::Imu>(
-          comms::topics::kImu, [this](const comms::msg::Imu& imu) { answer(imu); }, comms::Delivery::kSamples,
-          comms::kSourceSilence)) {}
+      publisher_(node_.publish(messages::topics::kActuatorCommand)),
+      imu_(node_.subscribe<messages::msg::Imu>(
+          messages::topics::kImu, [this](const messages::msg::Imu& imu) { answer(imu); },
+          dds::Delivery::kSamples, dds::kSourceSilence)) {}
 
 TestCommands::~TestCommands() {
   off();
@@ -80,7 +80,7 @@ void TestCommands::renew() {
 }
 
 // Runs in the subscription's thread.
-void TestCommands::answer(const comms::msg::Imu& imu) {
+void TestCommands::answer(const messages::msg::Imu& imu) {
   const std::lock_guard lock(mutex_);
   newest_ = Sample{imu.stamp_ns(), imu.sequence_number()};
   if (runtime::monotonic_ns() - renewed_ns_ > kPatience_ns) order_ = {};
@@ -97,7 +97,7 @@ void TestCommands::send() {
   command.rotor_count = rotor_count_;
   command.throttle = order_.throttle;
   command.term = order_.lower_term ? lower_term() : term_;
-  publisher_.publish(comms::to_message(command));
+  publisher_.publish(messages::to_message(command));
   ++commands_in_order_;
   sent_.notify_all();
 }

@@ -19,7 +19,7 @@ class TestCommands {
   static constexpr std::int64_t kPatience_ns = 1'000'000'000;
 
   // Sends rotors off at first. term: of the commands, as that of a controller. Throws std::runtime_error.
-  TestCommands(const comms::NodeSettings& settings, int rotor_count, std::uint32_t term);
+  TestCommands(const dds::NodeSettings& settings, int rotor_count, std::uint32_t term);
   // Sends rotors off until a few commands have been sent, for half a second at most.
   ~TestCommands();
   TestCommands(const TestCommands&) = delete;
@@ -43,7 +43,7 @@ class TestCommands {
   };
 
   void set(const Order& order);
-  void answer(const comms::msg::Imu& imu);
+  void answer(const messages::msg::Imu& imu);
   void send();  // answers the newest sample; the caller holds mutex_
 
   const std::uint32_t term_;
@@ -60,9 +60,9 @@ class TestCommands {
   std::uint64_t commands_ = 0;
   std::uint64_t commands_in_order_ = 0;  // since set()
 
-  comms::Node node_;
-  comms::Publisher<comms::msg::ActuatorCommand> publisher_;
-  comms::Subscription imu_;  // last: its callback uses all members above
+  dds::Node node_;
+  dds::Publisher<messages::msg::ActuatorCommand> publisher_;
+  dds::Subscription imu_;  // last: its callback uses all members above
 };
 
 // A term that vehicle and controllers accept: above the one that the vehicle obeyed last, below that of the next

@@ -15,19 +15,19 @@ struct FleetCheckOptions {
 
 int check_fleet_file(const FleetCheckOptions& options) {
   const FleetCheck check =
-      check_fleet(load_fleet_file(runtime::configuration_file(runtime::kinds::kFleet, options.file)));
+      check_fleet(load_fleet_file(io::configuration_file(io::kinds::kFleet, options.file)));
   for (const FleetVehicle& one : check.vehicles) {
     for (const std::string& assumption : one.mission.assumptions)
       std::fprintf(stderr, "%s: %s: %s\n", one.member.name.c_str(), one.mission.name.c_str(),
                    assumption.c_str());
   }
   std::printf("%s", options.json ? (check_json(check) + "\n").c_str() : check_table(check).c_str());
-  return check.feasible() ? kDone : kFailed;
+  return check.feasible() ? io::kDone : io::kFailed;
 }
 
 }  // namespace
 
-Command add_fleet_check_command(runtime::CommandLine fleet) {
+io::Command add_fleet_check_command(runtime::CommandLine fleet) {
   const auto options = std::make_shared<FleetCheckOptions>();
   const runtime::CommandLine app = fleet.add_subcommand(
       "check",
@@ -36,7 +36,7 @@ Command add_fleet_check_command(runtime::CommandLine fleet) {
       "example: swiftlet fleet check swap6\nExit codes: 0 the fleet can be flown, 1 it cannot, 2 a file is "
       "invalid.");
   app.add_option("file", options->file, "fleet file, or the name of one in config/fleets")
-      .type_name(runtime::kinds::kFleet.value)
+      .type_name(io::kinds::kFleet.value)
       .required();
   app.add_flag("--json", options->json, "print JSON");
   return {app, [options] { return check_fleet_file(*options); }};

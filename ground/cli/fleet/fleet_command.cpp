@@ -7,14 +7,14 @@
 
 namespace swiftlet::ground {
 
-Command add_fleet_command(runtime::CommandLine root, const std::string& version) {
-  const runtime::CommandLine fleet = root.add_subcommand("fleet", purpose_of("fleet"));
+io::Command add_fleet_command(runtime::CommandLine root, const std::string& version) {
+  const runtime::CommandLine fleet = root.add_subcommand("fleet", io::purpose_of("fleet"));
   fleet.require_subcommand(1, 1);
   fleet.footer("example: swiftlet fleet check swap6 && swiftlet fleet fly swap6");
-  const std::vector<Command> commands = {
+  const std::vector<io::Command> commands = {
       add_fleet_check_command(fleet), add_fleet_plot_command(fleet), add_fleet_fly_command(fleet, version),
       add_fleet_goto_command(fleet),  add_fleet_land_command(fleet), add_fleet_stop_command(fleet)};
-  return {fleet, [commands] { return run_given(commands); }};
+  return {fleet, [commands] { return io::run_given(commands); }};
 }
 
 }  // namespace swiftlet::ground

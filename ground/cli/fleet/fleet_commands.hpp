@@ -7,12 +7,12 @@
 
 namespace swiftlet::ground {
 
-Command add_fleet_check_command(runtime::CommandLine fleet);
-Command add_fleet_plot_command(runtime::CommandLine fleet);
-Command add_fleet_goto_command(runtime::CommandLine fleet);
-Command add_fleet_land_command(runtime::CommandLine fleet);
-Command add_fleet_stop_command(runtime::CommandLine fleet);
+io::Command add_fleet_check_command(runtime::CommandLine fleet);
+io::Command add_fleet_plot_command(runtime::CommandLine fleet);
+io::Command add_fleet_goto_command(runtime::CommandLine fleet);
+io::Command add_fleet_land_command(runtime::CommandLine fleet);
+io::Command add_fleet_stop_command(runtime::CommandLine fleet);
 // version: of the program, for the record.
-Command add_fleet_fly_command(runtime::CommandLine fleet, const std::string& version);
+io::Command add_fleet_fly_command(runtime::CommandLine fleet, const std::string& version);
 
 }  // namespace swiftlet::ground

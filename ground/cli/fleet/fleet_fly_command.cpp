@@ -39,7 +39,7 @@ std::vector<FleetVehicle> by_vehicle_file(std::vector<FleetVehicle> vehicles) {
 
 FlyOptions options_of(const FleetVehicle& vehicle, const FleetCheck& check, FlyOptions options) {
   options.mission = vehicle.member.mission_file.string();
-  static_cast<FileOptions&>(options.reading) = vehicle.reading;
+  static_cast<io::FileOptions&>(options.reading) = vehicle.reading;
   options.vehicle = vehicle.member.vehicle_file.string();
   options.control = check.fleet.control_file.string();
   options.simulation = check.fleet.simulation_file.string();
@@ -50,10 +50,10 @@ FlyOptions options_of(const FleetVehicle& vehicle, const FleetCheck& check, FlyO
 
 int fly_fleet(const FleetFlyOptions& options) {
   if (options.flight.trace && options.flight.clock != runtime::Clock::kLockstep)
-    throw InputError("--trace: requires --clock lockstep");
+    throw io::InputError("--trace: requires --clock lockstep");
   const FleetCheck check =
-      check_fleet(load_fleet_file(runtime::configuration_file(runtime::kinds::kFleet, options.file)));
-  if (!check.feasible()) throw InputError(check.fleet.file.string() + ": " + check.refusal());
+      check_fleet(load_fleet_file(io::configuration_file(io::kinds::kFleet, options.file)));
+  if (!check.feasible()) throw io::InputError(check.fleet.file.string() + ": " + check.refusal());
   FlyOptions flight = options.flight;
   std::vector<std::string> names;
   std::vector<LaunchConfiguration> plans;
@@ -87,13 +87,13 @@ int fly_fleet(const FleetFlyOptions& options) {
 
 }  // namespace
 
-Command add_fleet_fly_command(runtime::CommandLine fleet, const std::string& version) {
+io::Command add_fleet_fly_command(runtime::CommandLine fleet, const std::string& version) {
   const auto options = std::make_shared<FleetFlyOptions>();
   options->flight.program = version;
   const runtime::CommandLine app = fleet.add_subcommand(
       "fly", "Check a fleet file, start plant, mocap and control on this computer, fly all and report");
   app.add_option("file", options->file, "fleet file, or the name of one in config/fleets")
-      .type_name(runtime::kinds::kFleet.value)
+      .type_name(io::kinds::kFleet.value)
       .required();
   add_record_options(app, options->flight);
   add_network_options(app, options->flight.network, Vehicles::kSeveral);

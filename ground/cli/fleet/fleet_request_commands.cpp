@@ -74,20 +74,20 @@ std::vector<std::string> names_in(const Context& context, const FleetRequestOpti
   std::this_thread::sleep_for(std::chrono::duration<double>(options.look_s));
   std::vector<std::string> names = context.discovered_vehicles();
   if (!options.names.empty()) {
-    for (const std::string& name : comms::vehicles_of_list(options.names)) {
+    for (const std::string& name : messages::vehicles_of_list(options.names)) {
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
   }
   if (names.empty())
     throw std::runtime_error(fmt::format("no vehicle found in domain {} within {:g} s{}",
                                          options.network.domain, options.look_s,
-                                         comms::search_text(options.network)));
+                                         dds::search_text(options.network)));
   return names;
 }
 
 bool is_wanted(const std::string& name, const FleetRequestOptions& options) {
   if (options.names.empty()) return true;
-  const std::vector<std::string> wanted = comms::vehicles_of_list(options.names);
+  const std::vector<std::string> wanted = messages::vehicles_of_list(options.names);
   return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
 
@@ -148,10 +148,10 @@ FormationVehicle formation_vehicle(const Seen& vehicle) {
 void require_holding(const std::vector<Seen>& seen, const FleetRequestOptions& options) {
   for (const Seen& vehicle : seen) {
     if (vehicle.flies() && vehicle.state.mode != Mode::kHolding)
-      throw InputError(fmt::format("{} is {}; hold it first: nothing was sent", vehicle.name,
-                                   control::to_string(vehicle.state.mode)));
+      throw io::InputError(fmt::format("{} is {}; hold it first: nothing was sent", vehicle.name,
+                                       control::to_string(vehicle.state.mode)));
     if (!options.names.empty() && vehicle.is_wanted && !vehicle.flies())
-      throw InputError(vehicle.name + " does not fly: nothing was sent");
+      throw io::InputError(vehicle.name + " does not fly: nothing was sent");
   }
 }
 
@@ -162,11 +162,11 @@ RequestOptions request_to(const std::vector<std::string>& names, const FleetRequ
   return request;
 }
 
-// With the safety of the fleet file, and the names of its vehicles unless some are named. Throws runtime::ConfigError.
+// With the safety of the fleet file, and the names of its vehicles unless some are named. Throws io::ConfigError.
 template <typename T>
 T with_fleet(T options) {
   if (options.fleet.empty()) return options;
-  const FleetFile fleet = load_fleet_file(runtime::configuration_file(runtime::kinds::kFleet, options.fleet));
+  const FleetFile fleet = load_fleet_file(io::configuration_file(io::kinds::kFleet, options.fleet));
   options.safety = fleet.safety;
   if (!options.names.empty()) return options;
   for (const FleetMember& member : fleet.vehicles)
@@ -177,10 +177,9 @@ T with_fleet(T options) {
 int go_to(const FleetGotoOptions& given) {
   const FleetGotoOptions options = with_fleet(given);
   if (options.z_ned_m.has_value() == options.height_m.has_value())
-    throw InputError("goto: needs either z (down: negative is up) or --height (up, above the ground)");
+    throw io::InputError("goto: needs either z (down: negative is up) or --height (up, above the ground)");
   const control::Limits limits =
-      runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control))
-          .limits;
+      io::load_control_settings(io::configuration_file(io::kinds::kControl, options.control)).limits;
   std::vector<Seen> seen;
   {
     const Context context(options.network);
@@ -193,7 +192,7 @@ int go_to(const FleetGotoOptions& given) {
     vehicles.push_back(formation_vehicle(vehicle));
     if (vehicles.back().is_member) members.push_back(vehicle.name);
   }
-  if (members.empty()) throw InputError("no vehicle flies: nothing was sent");
+  if (members.empty()) throw io::InputError("no vehicle flies: nothing was sent");
   const Eigen::Vector3d centre(options.north_m, options.east_m,
                                options.z_ned_m.value_or(-options.height_m.value_or(0.0)));
   const std::vector<Eigen::Vector3d> targets = formation_targets(vehicles, centre);
@@ -201,12 +200,12 @@ int go_to(const FleetGotoOptions& given) {
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     if (!vehicles[i].is_member) continue;
     const control::Outcome above = control::check_above_ground(vehicles[i].name.c_str(), targets[i].z());
-    if (!above.accepted) throw InputError(std::string(above.reason) + ": nothing was sent");
+    if (!above.accepted) throw io::InputError(std::string(above.reason) + ": nothing was sent");
     target_of[vehicles[i].name] = targets[i];
   }
   const FormationMove move{options.speed, limits, options.skew_s.value_or(FormationMove().skew_s)};
   const std::string refusal = formation_refusal(vehicles, targets, move, options.safety);
-  if (!refusal.empty()) throw InputError(refusal + ": nothing was sent");
+  if (!refusal.empty()) throw io::InputError(refusal + ": nothing was sent");
   VehicleRequest request{
       "goto", [&](Vehicle& vehicle) {
         return vehicle.go_to({target_of.at(vehicle.name()), std::nullopt, options.speed}, options.timeout());
@@ -249,7 +248,7 @@ Landing land(const std::vector<Seen>& seen, const FleetLandOptions& options) {
   const int code =
       run_request(request_to(names, options),
                   {"land", [&](Vehicle& vehicle) { return vehicle.land(options.speed, options.timeout()); }});
-  if (code != kDone) landing.failed = true;
+  if (code != io::kDone) landing.failed = true;
   return landing;
 }
 
@@ -268,7 +267,7 @@ int land(const FleetLandOptions& given) {
   }
   Landing landing = land(first.seen, options);
   if (missing.empty() && landing.sent == 0 && !landing.failed)
-    throw InputError("no vehicle flies: nothing was sent");
+    throw io::InputError("no vehicle flies: nothing was sent");
   if (!missing.empty() && !first.seen.empty()) {
     std::vector<std::string> names = missing;
     for (const Seen& vehicle : first.seen) names.push_back(vehicle.name);
@@ -283,7 +282,7 @@ int land(const FleetLandOptions& given) {
   for (const std::string& name : missing)
     std::fprintf(stderr, "swiftlet: land: %s: was not landed: mode and position are not known\n",
                  name.c_str());
-  return landing.failed || !missing.empty() ? kFailed : kDone;
+  return landing.failed || !missing.empty() ? io::kFailed : io::kDone;
 }
 
 int stop(const FleetStopOptions& options) {
@@ -292,16 +291,16 @@ int stop(const FleetStopOptions& options) {
     const Context context(options.network);
     names = names_in(context, options);
   } else {
-    names = comms::vehicles_of_list(options.names);  // without looking for others: it is urgent
+    names = messages::vehicles_of_list(options.names);  // without looking for others: it is urgent
   }
   if (!options.yes) {
     if (isatty(STDIN_FILENO) == 0 || isatty(STDERR_FILENO) == 0)
-      throw InputError("stop: requires --yes without a terminal: vehicles in the air fall");
+      throw io::InputError("stop: requires --yes without a terminal: vehicles in the air fall");
     std::fprintf(stderr, "The rotors turn off at once, also in the air: %s fall.\nType stop to do it: ",
                  fmt::format("{}", fmt::join(names, ",")).c_str());
     std::string typed;
     std::getline(std::cin, typed);
-    if (typed != "stop") throw InputError("stop: not confirmed, nothing was sent");
+    if (typed != "stop") throw io::InputError("stop: not confirmed, nothing was sent");
   }
   return run_request(request_to(names, options),
                      {"stop", [&](Vehicle& vehicle) { return vehicle.stop(options.timeout()); },
@@ -316,7 +315,7 @@ runtime::CommandLine add_subcommand(runtime::CommandLine fleet, const std::strin
   app.remove_option("--vehicle-name");
   app.add_option("--vehicle-name", options->names,
                  "only these, a list such as kl1,kl2; default: all that are seen")
-      .check([](const std::string& names) { return comms::fault_of_vehicle_list(names); }, "NAMES");
+      .check([](const std::string& names) { return messages::fault_of_vehicle_list(names); }, "NAMES");
   app.add_option("--time", options->look_s, "how long to look for vehicles, s")
       .range(0.2, 60.0)
       .show_default();
@@ -328,7 +327,7 @@ void add_safety_options(runtime::CommandLine app, FleetRequestOptions& options) 
       app.add_option("--fleet", options.fleet,
                      "fleet file, or the name of one in config/fleets: its safety, and its vehicles unless "
                      "--vehicle-name names some")
-          .type_name(runtime::kinds::kFleet.value);
+          .type_name(io::kinds::kFleet.value);
   app.add_option("--radius-xy", options.safety.radius_xy_m, "half of the distance that two keep across, m")
       .range(0.01, 10.0)
       .show_default()
@@ -341,7 +340,7 @@ void add_safety_options(runtime::CommandLine app, FleetRequestOptions& options) 
 
 }  // namespace
 
-Command add_fleet_goto_command(runtime::CommandLine fleet) {
+io::Command add_fleet_goto_command(runtime::CommandLine fleet) {
   const auto options = std::make_shared<FleetGotoOptions>();
   const runtime::CommandLine app = add_subcommand(
       fleet, "goto",
@@ -364,13 +363,13 @@ Command add_fleet_goto_command(runtime::CommandLine fleet) {
   app.add_option("--control", options->control,
                  "control settings of the vehicles, or the name of a file in config/control: its limits "
                  "say how long they take")
-      .type_name(runtime::kinds::kControl.value)
+      .type_name(io::kinds::kControl.value)
       .show_default();
   add_safety_options(app, *options);
   return {app, [options] { return go_to(*options); }};
 }
 
-Command add_fleet_land_command(runtime::CommandLine fleet) {
+io::Command add_fleet_land_command(runtime::CommandLine fleet) {
   const auto options = std::make_shared<FleetLandOptions>();
   const runtime::CommandLine app =
       add_subcommand(fleet, "land", "Land all vehicles that fly where they are, but none on another one",
@@ -383,7 +382,7 @@ Command add_fleet_land_command(runtime::CommandLine fleet) {
   return {app, [options] { return land(*options); }};
 }
 
-Command add_fleet_stop_command(runtime::CommandLine fleet) {
+io::Command add_fleet_stop_command(runtime::CommandLine fleet) {
   const auto options = std::make_shared<FleetStopOptions>();
   options->look_s = 1.0;
   const runtime::CommandLine app = add_subcommand(

@@ -43,7 +43,7 @@ struct CalibrateOptions {
   std::optional<double> from_s;
   std::optional<double> until_s;
   identification::AlignmentPriors priors;
-  comms::NodeSettings network;
+  dds::NodeSettings network;
   bool dry_run = false;
   bool json = false;
 };
@@ -185,16 +185,17 @@ int calibrate_by_flight(const CalibrateOptions& options, const std::string& file
         std::pair{"--mocap-interface", source.interface}, std::pair{"--frame", source.frame},
         std::pair{"--file", source.file}}) {
     if (!given.empty())
-      throw InputError(
+      throw io::InputError(
           fmt::format("{}: not with --hover or --log, whose poses come from swiftlet-mocap", name));
   }
   const mocap::Room room = mocap::parse_room(text, file);
   const mocap::VehicleBody* const body = mocap::find(room, options.vehicle);
-  if (body == nullptr) throw InputError(file + ": vehicles: does not have the vehicle " + options.vehicle);
+  if (body == nullptr)
+    throw io::InputError(file + ": vehicles: does not have the vehicle " + options.vehicle);
   identification::FlightLog log;
   if (options.hover) {
     runtime::StopSignal stop;
-    comms::NodeSettings network = options.network;
+    dds::NodeSettings network = options.network;
     network.vehicle = options.vehicle;
     std::fprintf(stderr, "Recording %s for %g s.\n", options.vehicle.c_str(), options.time_s);
     log = receive_motion(network, options.time_s, stop);
@@ -204,17 +205,18 @@ int calibrate_by_flight(const CalibrateOptions& options, const std::string& file
   const identification::BodyAlignment found = identification::align_body(log, options.priors);
   const FlightCalibration calibration = calibrated(*body, found);
   print(options, calibration, found);
-  if (options.dry_run) return kDone;
-  runtime::write_atomically(
+  if (options.dry_run) return io::kDone;
+  io::write_atomically(
       file, with_calibration(text, file, options.vehicle, calibration.misalignment, calibration.lever_arm));
   std::fprintf(stderr, "wrote %s\n", file.c_str());
-  return kDone;
+  return io::kDone;
 }
 
 int calibrate(const CalibrateOptions& options) {
-  if (options.source.room.empty()) throw InputError("--room is required: it says which body the vehicle is");
-  const std::string file = runtime::configuration_file(runtime::kinds::kRoom, options.source.room);
-  const std::string text = runtime::read_text_file(file);
+  if (options.source.room.empty())
+    throw io::InputError("--room is required: it says which body the vehicle is");
+  const std::string file = io::configuration_file(io::kinds::kRoom, options.source.room);
+  const std::string text = io::read_text_file(file);
   with_calibration(text, file, options.vehicle, {},
                    {});  // refuses a file without the keys before anything is asked for
   if (options.hover || !options.log.empty()) return calibrate_by_flight(options, file, text);
@@ -237,15 +239,15 @@ int calibrate(const CalibrateOptions& options) {
   const LeverArm arm = lever_arm_of(turn.poses, misalignment, turn.seconds);
 
   print(options, misalignment, arm);
-  if (options.dry_run) return kDone;
-  runtime::write_atomically(file, with_calibration(text, file, options.vehicle, misalignment, arm));
+  if (options.dry_run) return io::kDone;
+  io::write_atomically(file, with_calibration(text, file, options.vehicle, misalignment, arm));
   std::fprintf(stderr, "wrote %s\n", file.c_str());
-  return kDone;
+  return io::kDone;
 }
 
 }  // namespace
 
-Command add_mocap_calibrate_command(runtime::CommandLine mocap) {
+io::Command add_mocap_calibrate_command(runtime::CommandLine mocap) {
   const auto options = std::make_shared<CalibrateOptions>();
   const runtime::CommandLine app =
       mocap.add_subcommand("calibrate", "Align a body with its vehicle, and write that into the room file");

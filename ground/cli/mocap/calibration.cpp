@@ -37,8 +37,8 @@ Quaterniond mean_of(const BodyPoses& poses) {
   for (int iteration = 0; iteration < 3; ++iteration) {
     Vector3d sum = Vector3d::Zero();
     for (const mocap::NedPose& pose : poses)
-      sum += plant::rotation_vector(mean.conjugate() * pose.q_ned_from_frd);
-    mean = (mean * plant::rotation(sum / static_cast<double>(poses.size()))).normalized();
+      sum += math::rotation_vector(mean.conjugate() * pose.q_ned_from_frd);
+    mean = (mean * math::rotation(sum / static_cast<double>(poses.size()))).normalized();
   }
   return mean;
 }
@@ -56,7 +56,7 @@ Misalignment misalignment_of(const BodyPoses& poses, double seconds) {
   Vector3d variance = Vector3d::Zero();
   double scatter_m2 = 0.0;
   for (const mocap::NedPose& pose : poses) {
-    variance += plant::rotation_vector(mean.conjugate() * pose.q_ned_from_frd).cwiseAbs2() / (count - 1.0);
+    variance += math::rotation_vector(mean.conjugate() * pose.q_ned_from_frd).cwiseAbs2() / (count - 1.0);
     scatter_m2 += (pose.position_ned - centre).squaredNorm() / count;
   }
   if (scatter_m2 > kRestM * kRestM || variance.sum() > kRestRad * kRestRad)
@@ -65,7 +65,7 @@ Misalignment misalignment_of(const BodyPoses& poses, double seconds) {
         "{:.0f} mrad are allowed",
         1e3 * std::sqrt(scatter_m2), 1e3 * std::sqrt(variance.sum()), 1e3 * kRestM, 1e3 * kRestRad));
   Misalignment misalignment;
-  misalignment.vector = plant::rotation_vector(mean.conjugate());
+  misalignment.vector = math::rotation_vector(mean.conjugate());
   misalignment.deviation = (variance * correlation(poses.size(), seconds) / count).cwiseSqrt();
   return misalignment;
 }
@@ -74,7 +74,7 @@ LeverArm lever_arm_of(const BodyPoses& poses, const Misalignment& misalignment, 
   require_enough(poses);
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
-  const Quaterniond turn = plant::rotation(misalignment.vector);
+  const Quaterniond turn = math::rotation(misalignment.vector);
   Matrix6 normal = Matrix6::Zero();
   Vector6 right = Vector6::Zero();
   for (const mocap::NedPose& pose : poses) {
@@ -121,7 +121,7 @@ std::string with_calibration(const std::string& text, const std::string& file_na
     values.emplace_back("vehicles." + vehicle + ".misalignment_rad" + index,
                         number_text(misalignment.vector[i]));
   }
-  return runtime::with_scalars(text, file_name, values);
+  return io::with_scalars(text, file_name, values);
 }
 
 }  // namespace swiftlet::ground

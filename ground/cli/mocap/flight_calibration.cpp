@@ -47,8 +47,8 @@ FlightCalibration calibrated(const mocap::VehicleBody& before, const identificat
     throw std::runtime_error("the flight tells nothing about the body: " + out.advice.front());
   // With the body's attitude B and position b, and the room file's M and l, the poses were
   //   R = B M, p = b + R l; the vehicle is at R' = R dM = B M dM, p' = p + R' dl = b + R' (dM^-1 l + dl).
-  const Quaterniond correction = plant::rotation(turn);
-  out.misalignment.vector = plant::rotation_vector(plant::rotation(before.misalignment) * correction);
+  const Quaterniond correction = math::rotation(turn);
+  out.misalignment.vector = math::rotation_vector(math::rotation(before.misalignment) * correction);
   out.misalignment.deviation = found.misalignment.deviation;
   out.lever_arm.frd = correction.conjugate() * before.lever_arm_frd + arm;
   out.lever_arm.deviation = found.lever_arm.deviation;

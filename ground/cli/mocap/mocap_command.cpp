@@ -50,7 +50,7 @@ double receive(mocap::Source& source, BodyStatisticsList& statistics, double tim
 }
 
 nlohmann::ordered_json json_of(const mocap::Body& body, const BodyStatistics& seen, double time_s) {
-  nlohmann::ordered_json json = {{"body", runtime::printable(body.name)},
+  nlohmann::ordered_json json = {{"body", io::printable(body.name)},
                                  {"id", body.id},
                                  {"rate_hz", static_cast<double>(seen.frames) / time_s},
                                  {"tracked", seen.frames > 0 && seen.last.tracked},
@@ -87,7 +87,7 @@ nlohmann::ordered_json json_of(const mocap::Source& source, const BodyStatistics
 }
 
 std::string line_of(const mocap::Body& body, const BodyStatistics& seen, double time_s) {
-  std::string line = fmt::format("{:<20} {:>6} {:>8.1f}", runtime::printable(body.name), body.id,
+  std::string line = fmt::format("{:<20} {:>6} {:>8.1f}", io::printable(body.name), body.id,
                                  static_cast<double>(seen.frames) / time_s);
   line += seen.latencies == 0
               ? fmt::format(" {:>8} {:>8}", "-", "-")
@@ -129,10 +129,10 @@ int list_bodies(const MocapOptions& options) {
   BodyStatisticsList statistics;
   const double time_s = receive(*source, statistics, options.time_s, stop);
   print(*source, statistics, time_s, options.json);
-  if (!source->bodies().empty()) return kDone;
+  if (!source->bodies().empty()) return io::kDone;
   std::fprintf(stderr, "swiftlet: mocap list: no body within %g s: %s\n", options.time_s,
                source->description().c_str());
-  return kFailed;
+  return io::kFailed;
 }
 
 int watch_bodies(const MocapOptions& options) {
@@ -149,12 +149,12 @@ int watch_bodies(const MocapOptions& options) {
     print(*source, statistics, time_s, options.json);
     statistics.clear();
   }
-  if (source->statistics().frames > 0) return kDone;
+  if (source->statistics().frames > 0) return io::kDone;
   std::fprintf(stderr, "swiftlet: mocap watch: no frame arrived: %s\n", source->description().c_str());
-  return kFailed;
+  return io::kFailed;
 }
 
-Command add_list(const runtime::CommandLine& mocap) {
+io::Command add_list(const runtime::CommandLine& mocap) {
   const auto options = std::make_shared<MocapOptions>();
   options->time_s = 2.0;
   const runtime::CommandLine app =
@@ -166,7 +166,7 @@ Command add_list(const runtime::CommandLine& mocap) {
   return {app, [options] { return list_bodies(*options); }};
 }
 
-Command add_watch(const runtime::CommandLine& mocap) {
+io::Command add_watch(const runtime::CommandLine& mocap) {
   const auto options = std::make_shared<MocapOptions>();
   const runtime::CommandLine app =
       mocap.add_subcommand("watch", "Show the rate, latency and losses of each body, until interrupted");
@@ -191,19 +191,19 @@ std::unique_ptr<mocap::Source> open_mocap_source(const mocap::SourceOptions& opt
   try {
     return mocap::open_source(mocap::room_of(options, vehicles));
   } catch (const std::invalid_argument& error) {
-    throw InputError(error.what());
+    throw io::InputError(error.what());
   }
 }
 
-Command add_mocap_command(runtime::CommandLine root) {
-  const runtime::CommandLine mocap = root.add_subcommand("mocap", purpose_of("mocap"));
+io::Command add_mocap_command(runtime::CommandLine root) {
+  const runtime::CommandLine mocap = root.add_subcommand("mocap", io::purpose_of("mocap"));
   mocap.require_subcommand(1, 1);
   mocap.footer(
       "Talks to the motion capture directly; neither vehicle nor DDS is needed (docs/swap-mocap.md).\n\n"
       "example: swiftlet mocap list --source natnet");
-  const std::vector<Command> commands = {add_list(mocap), add_watch(mocap),
-                                         add_mocap_calibrate_command(mocap)};
-  return {mocap, [commands] { return run_given(commands); }};
+  const std::vector<io::Command> commands = {add_list(mocap), add_watch(mocap),
+                                             add_mocap_calibrate_command(mocap)};
+  return {mocap, [commands] { return io::run_given(commands); }};
 }
 
 }  // namespace swiftlet::ground

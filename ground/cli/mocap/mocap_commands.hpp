@@ -19,6 +19,6 @@ std::unique_ptr<mocap::Source> open_mocap_source(const mocap::SourceOptions& opt
 // Whether a signal asked to end; does not wait.
 bool is_interrupted(runtime::StopSignal& stop);
 
-Command add_mocap_calibrate_command(runtime::CommandLine mocap);
+io::Command add_mocap_calibrate_command(runtime::CommandLine mocap);
 
 }  // namespace swiftlet::ground

@@ -77,14 +77,13 @@ FlightLog read_motion(const std::string& file, const std::string& vehicle, std::
   const record::FlightFile from = record::flight_file(file);
   const fs::path& path = from.file;
   if (!from.vehicle.empty() && from.vehicle != vehicle)
-    throw runtime::ConfigError(file, 0, "", "is a flight of " + from.vehicle + ", not of " + vehicle);
+    throw io::ConfigError(file, 0, "", "is a flight of " + from.vehicle + ", not of " + vehicle);
   if (path.extension() == ".mcap") {
     log = read_mcap(path.string(), vehicle);
   } else {
     // The commands, which a vehicle file translates, are not used.
-    const plant::Vehicle any =
-        runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, "kaylion"));
-    log = read_flight_log(path, any, BodyAxes::kDetected).log;
+    const plant::Vehicle any = io::load_vehicle(io::configuration_file(io::kinds::kVehicle, "kaylion"));
+    log = analysis::read_flight_log(path, any, analysis::BodyAxes::kDetected).log;
   }
   if (log.poses.empty())
     throw std::runtime_error(file +
@@ -93,7 +92,7 @@ FlightLog read_motion(const std::string& file, const std::string& vehicle, std::
   return cut(log, from_s.value_or(-kEver_s), until_s.value_or(kEver_s));
 }
 
-FlightLog receive_motion(const comms::NodeSettings& settings, double time_s, runtime::StopSignal& stop) {
+FlightLog receive_motion(const dds::NodeSettings& settings, double time_s, runtime::StopSignal& stop) {
   SampleRecorder recorder(settings);
   const auto interrupted = [&] { return is_interrupted(stop); };
   const auto record = [&](std::chrono::milliseconds time) {

@@ -18,7 +18,7 @@ identification::FlightLog read_motion(const std::string& file, const std::string
 
 // Receives for this time of the vehicle's clock, from the first sample of both on; at most ten times as long. Throws
 // std::runtime_error if one of them does not come, or if interrupted.
-identification::FlightLog receive_motion(const comms::NodeSettings& settings, double time_s,
+identification::FlightLog receive_motion(const dds::NodeSettings& settings, double time_s,
                                          runtime::StopSignal& stop);
 
 }  // namespace swiftlet::ground

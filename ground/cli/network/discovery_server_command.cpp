@@ -28,12 +28,12 @@ namespace {
 constexpr std::chrono::milliseconds kLook{50};  // at the server, whether it has ended
 
 // "10.0.0.1:11811", as other hosts name the server; from its number on with ';' before it.
-std::string option_value(const comms::DiscoveryServerSettings& settings) {
+std::string option_value(const dds::DiscoveryServerSettings& settings) {
   std::string address = "127.0.0.1";
-  for (const runtime::Interface& it : runtime::interfaces_up()) {
+  for (const io::Interface& it : io::interfaces_up()) {
     if (!settings.on_loopback() && !it.is_loopback) address = it.address;
   }
-  if (!settings.interfaces.empty()) address = runtime::addresses_of_interfaces(settings.interfaces).front();
+  if (!settings.interfaces.empty()) address = io::addresses_of_interfaces(settings.interfaces).front();
   const std::string list = std::string(static_cast<std::size_t>(settings.number), ';') + address + ":" +
                            std::to_string(settings.port);
   return settings.number == 0 ? list : "'" + list + "'";
@@ -42,7 +42,7 @@ std::string option_value(const comms::DiscoveryServerSettings& settings) {
 // Counts the processes and prints a line for each event. Thread-safe: the events come from another thread.
 class Register {
  public:
-  void on(const comms::DiscoveryServerEvent& event) {
+  void on(const dds::DiscoveryServerEvent& event) {
     const std::lock_guard<std::mutex> lock(mutex_);
     present_ += event.alive ? 1 : -1;
     joined_ += event.alive ? 1 : 0;
@@ -78,12 +78,11 @@ class Register {
   int present_ = 0;
 };
 
-int serve(const comms::DiscoveryServerSettings& settings) {
+int serve(const dds::DiscoveryServerSettings& settings) {
   runtime::StopSignal stop;
   Register processes;
-  comms::DiscoveryServer server(settings,
-                                [&](const comms::DiscoveryServerEvent& event) { processes.on(event); });
-  if (stop.wait_for(comms::DiscoveryServer::kStartTime)) return kDone;
+  dds::DiscoveryServer server(settings, [&](const dds::DiscoveryServerEvent& event) { processes.on(event); });
+  if (stop.wait_for(dds::DiscoveryServer::kStartTime)) return io::kDone;
   server.serve();
   processes.begin(fmt::format(
       "discovery server {} of domain {} listens on UDP port {}{}; start the others with --domain {} "
@@ -92,12 +91,12 @@ int serve(const comms::DiscoveryServerSettings& settings) {
       settings.domain, option_value(settings)));
   stop.wait();
   std::printf("%s\n", processes.summary().c_str());
-  return kDone;
+  return io::kDone;
 }
 
 // Runs the server in a child process, and another one when an assertion of Fast DDS has ended it (participant_session.hpp). Called
 // before this process has another thread.
-int keep_serving(const comms::DiscoveryServerSettings& settings) {
+int keep_serving(const dds::DiscoveryServerSettings& settings) {
   runtime::StopSignal stop;
   const pid_t own = ::getpid();
   while (true) {
@@ -105,7 +104,7 @@ int keep_serving(const comms::DiscoveryServerSettings& settings) {
     if (child < 0) throw std::system_error(errno, std::generic_category(), "cannot start a process");
     if (child == 0) {
       ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-      return ::getppid() == own ? serve(settings) : kFailed;
+      return ::getppid() == own ? serve(settings) : io::kFailed;
     }
     int status = 0;
     while (::waitpid(child, &status, WNOHANG) == 0) {
@@ -115,7 +114,7 @@ int keep_serving(const comms::DiscoveryServerSettings& settings) {
       break;
     }
     if (WIFEXITED(status)) return WEXITSTATUS(status);
-    if (stop.requested()) return kFailed;
+    if (stop.requested()) return io::kFailed;
     std::fprintf(stderr,
                  "swiftlet: discovery-server: the server was ended by signal %d (%s) and is started again; "
                  "flights go on, "
@@ -126,10 +125,11 @@ int keep_serving(const comms::DiscoveryServerSettings& settings) {
 
 }  // namespace
 
-Command add_discovery_server_command(runtime::CommandLine root) {
-  const auto settings = std::make_shared<comms::DiscoveryServerSettings>();
-  settings->port = runtime::kDiscoveryServerPort;
-  const runtime::CommandLine app = root.add_subcommand("discovery-server", purpose_of("discovery-server"));
+io::Command add_discovery_server_command(runtime::CommandLine root) {
+  const auto settings = std::make_shared<dds::DiscoveryServerSettings>();
+  settings->port = io::kDiscoveryServerPort;
+  const runtime::CommandLine app =
+      root.add_subcommand("discovery-server", io::purpose_of("discovery-server"));
   app.add_option("--domain", settings->domain, "DDS domain")
       .environment("ROS_DOMAIN_ID")
       .range(0, 232)
@@ -137,13 +137,13 @@ Command add_discovery_server_command(runtime::CommandLine root) {
   app.add_option("--port", settings->port, "UDP port").range(1, 65535).show_default();
   app.add_option("--number", settings->number,
                  "place of this server in the list of --discovery-server, from 0, if there are several")
-      .range(0, runtime::kMaxDiscoveryServers - 1)
+      .range(0, io::kMaxDiscoveryServers - 1)
       .show_default();
   app.add_option("--interface", settings->interfaces,
                  "listen on this network interface only; may be repeated")
       .repeated()
-      .check(runtime::fault_of_interface, "NAME|ADDRESS");
-  comms::add_network_key_option(app, settings->network_key_file);
+      .check(io::fault_of_interface, "NAME|ADDRESS");
+  dds::add_network_key_option(app, settings->network_key_file);
   app.add_flag("--open-network", settings->open_network,
                "serve other hosts without --network-key too; default: this host only");
   app.footer(

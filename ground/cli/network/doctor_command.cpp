@@ -3,10 +3,10 @@
 
 namespace swiftlet::ground {
 
-Command add_doctor_command(runtime::CommandLine root) {
-  const runtime::CommandLine doctor = root.add_subcommand("doctor", purpose_of("doctor"));
+io::Command add_doctor_command(runtime::CommandLine root) {
+  const runtime::CommandLine doctor = root.add_subcommand("doctor", io::purpose_of("doctor"));
   doctor.require_subcommand(1, 1);
-  const Command network = add_doctor_network_command(doctor);
+  const io::Command network = add_doctor_network_command(doctor);
   return {doctor, network.run};
 }
 

@@ -18,16 +18,16 @@ namespace {
 using nlohmann::ordered_json;
 
 struct DoctorNetworkOptions {
-  comms::NodeSettings network;
+  dds::NodeSettings network;
   double time_s = 3.0;
   bool json = false;
 };
 
 // With the options of the interface; otherwise all to other hosts.
-std::vector<runtime::Interface> used_interfaces(const comms::NodeSettings& settings) {
-  std::vector<runtime::Interface> used = runtime::interfaces_up();
+std::vector<io::Interface> used_interfaces(const dds::NodeSettings& settings) {
+  std::vector<io::Interface> used = io::interfaces_up();
   const std::vector<std::string>& chosen = settings.network.interfaces;
-  const auto is_unused = [&](const runtime::Interface& it) {
+  const auto is_unused = [&](const io::Interface& it) {
     if (settings.on_loopback()) return !it.is_loopback;
     if (chosen.empty()) return it.is_loopback;
     return std::count(chosen.begin(), chosen.end(), it.name) +
@@ -38,16 +38,16 @@ std::vector<runtime::Interface> used_interfaces(const comms::NodeSettings& setti
   return used;
 }
 
-std::vector<std::string> peer_addresses(const comms::NetworkSettings& network) {
+std::vector<std::string> peer_addresses(const dds::NetworkSettings& network) {
   std::vector<std::string> hosts;
-  for (const std::string& peer : network.peers) hosts.push_back(runtime::parse_host_address(peer).host);
+  for (const std::string& peer : network.peers) hosts.push_back(io::parse_host_address(peer).host);
   if (!network.discovery_servers.empty()) {
-    for (const auto& server : runtime::parse_discovery_servers(network.discovery_servers))
+    for (const auto& server : io::parse_discovery_servers(network.discovery_servers))
       hosts.push_back(server.address.host);
   }
   std::vector<std::string> addresses;
   for (const std::string& host : hosts) {
-    for (const std::string& address : runtime::ipv4_addresses_of(host)) addresses.push_back(address);
+    for (const std::string& address : io::ipv4_addresses_of(host)) addresses.push_back(address);
   }
   return addresses;
 }
@@ -57,29 +57,29 @@ NetworkFacts examine(const DoctorNetworkOptions& options) {
   facts.settings = options.network;
   facts.interfaces = used_interfaces(options.network);
   std::vector<std::string> addresses;
-  for (const runtime::Interface& it : facts.interfaces) addresses.push_back(it.address);
-  const comms::Participant participant(options.network);  // discovers while the probe runs
-  comms::NetworkProbe probe(options.network.domain, addresses, peer_addresses(options.network.network));
+  for (const io::Interface& it : facts.interfaces) addresses.push_back(it.address);
+  const dds::Participant participant(options.network);  // discovers while the probe runs
+  ground::NetworkProbe probe(options.network.domain, addresses, peer_addresses(options.network.network));
   facts.probe = probe.run(std::chrono::milliseconds(static_cast<std::int64_t>(options.time_s * 1e3)));
   facts.processes = participant.processes_seen();
   facts.qos_conflicts = participant.qos_conflicts_seen();
   return facts;
 }
 
-const char* multicast_text(const comms::ProbedHost& host) {
+const char* multicast_text(const ground::ProbedHost& host) {
   if (host.multicast_heard && host.multicast_answered) return "multicast both ways";
   if (host.multicast_heard) return "multicast from there only";
   return host.multicast_answered ? "multicast to there only" : "no multicast";
 }
 
 void print(const NetworkFacts& facts) {
-  for (const runtime::Interface& it : facts.interfaces) {
+  for (const io::Interface& it : facts.interfaces) {
     const auto& heard = facts.probe.own_multicast;
     fmt::print(
         "interface {} ({}): MTU {} bytes, multicast {}\n", it.name, it.address, it.mtu_bytes,
         std::count(heard.begin(), heard.end(), it.address) > 0 ? "sent and received" : "does not come back");
   }
-  for (const comms::ProbedHost& host : facts.probe.hosts) {
+  for (const ground::ProbedHost& host : facts.probe.hosts) {
     fmt::print("host {} ({}): {}; {} of {} datagrams answered", host.name, host.address, multicast_text(host),
                host.answered, host.sent);
     if (host.answered > 0) {
@@ -91,13 +91,12 @@ void print(const NetworkFacts& facts) {
     }
     fmt::print("\n");
   }
-  for (const comms::ProcessIdentity& process : facts.processes)
-    fmt::print("process {}\n", process.to_string());
+  for (const dds::ProcessIdentity& process : facts.processes) fmt::print("process {}\n", process.to_string());
   for (const NetworkFinding& finding : findings(facts))
     fmt::print("{}: {}\n", finding.is_fault ? "FAULT" : "hint", finding.sentence);
 }
 
-ordered_json to_json(const comms::ProbedHost& host) {
+ordered_json to_json(const ground::ProbedHost& host) {
   ordered_json json = {{"host", host.name},
                        {"address", host.address},
                        {"multicast_from_there", host.multicast_heard},
@@ -127,7 +126,7 @@ ordered_json to_json(const comms::ProbedHost& host) {
 ordered_json to_json(const NetworkFacts& facts) {
   ordered_json json = {{"domain", facts.settings.domain}};
   json["interfaces"] = ordered_json::array();
-  for (const runtime::Interface& it : facts.interfaces) {
+  for (const io::Interface& it : facts.interfaces) {
     const auto& heard = facts.probe.own_multicast;
     json["interfaces"].push_back({{"name", it.name},
                                   {"address", it.address},
@@ -135,9 +134,9 @@ ordered_json to_json(const NetworkFacts& facts) {
                                   {"own_multicast", std::count(heard.begin(), heard.end(), it.address) > 0}});
   }
   json["hosts"] = ordered_json::array();
-  for (const comms::ProbedHost& host : facts.probe.hosts) json["hosts"].push_back(to_json(host));
+  for (const ground::ProbedHost& host : facts.probe.hosts) json["hosts"].push_back(to_json(host));
   json["processes"] = ordered_json::array();
-  for (const comms::ProcessIdentity& it : facts.processes)
+  for (const dds::ProcessIdentity& it : facts.processes)
     json["processes"].push_back({{"name", it.name}, {"host", it.host}, {"process", it.pid}});
   json["faults"] = ordered_json::array();
   json["hints"] = ordered_json::array();
@@ -154,12 +153,12 @@ int diagnose(const DoctorNetworkOptions& options) {
     print(facts);
   }
   const std::vector<NetworkFinding> found = findings(facts);
-  return !found.empty() && found.front().is_fault ? kFailed : kDone;
+  return !found.empty() && found.front().is_fault ? io::kFailed : io::kDone;
 }
 
 }  // namespace
 
-Command add_doctor_network_command(runtime::CommandLine doctor) {
+io::Command add_doctor_network_command(runtime::CommandLine doctor) {
   const auto options = std::make_shared<DoctorNetworkOptions>();
   const runtime::CommandLine app = doctor.add_subcommand(
       "network",

@@ -7,13 +7,13 @@
 
 namespace swiftlet::ground {
 
-Command add_keys_command(runtime::CommandLine root) {
-  const runtime::CommandLine keys = root.add_subcommand("keys", purpose_of("keys"));
+io::Command add_keys_command(runtime::CommandLine root) {
+  const runtime::CommandLine keys = root.add_subcommand("keys", io::purpose_of("keys"));
   keys.require_subcommand(1, 1);
   keys.footer("example: swiftlet keys network lab.key");
-  const std::vector<Command> commands = {add_keys_network_command(keys), add_keys_create_command(keys),
-                                         add_keys_renew_command(keys), add_keys_revoke_command(keys)};
-  return {keys, [commands] { return run_given(commands); }};
+  const std::vector<io::Command> commands = {add_keys_network_command(keys), add_keys_create_command(keys),
+                                             add_keys_renew_command(keys), add_keys_revoke_command(keys)};
+  return {keys, [commands] { return io::run_given(commands); }};
 }
 
 }  // namespace swiftlet::ground

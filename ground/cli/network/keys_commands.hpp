@@ -5,9 +5,9 @@
 
 namespace swiftlet::ground {
 
-Command add_keys_create_command(runtime::CommandLine keys);
-Command add_keys_network_command(runtime::CommandLine keys);
-Command add_keys_renew_command(runtime::CommandLine keys);
-Command add_keys_revoke_command(runtime::CommandLine keys);
+io::Command add_keys_create_command(runtime::CommandLine keys);
+io::Command add_keys_network_command(runtime::CommandLine keys);
+io::Command add_keys_renew_command(runtime::CommandLine keys);
+io::Command add_keys_revoke_command(runtime::CommandLine keys);
 
 }  // namespace swiftlet::ground

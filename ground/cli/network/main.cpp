@@ -7,9 +7,9 @@
 
 int main(int argc, char** argv) {
   using namespace swiftlet;
-  return ground::run_commands(argc, argv, runtime::version_text(), [](runtime::CommandLine root) {
-    return std::vector<ground::Command>{ground::add_doctor_command(root),
-                                        ground::add_discovery_server_command(root),
-                                        ground::add_keys_command(root)};
+  return io::run_commands(argc, argv, runtime::version_text(), [](runtime::CommandLine root) {
+    return std::vector<io::Command>{ground::add_doctor_command(root),
+                                    ground::add_discovery_server_command(root),
+                                    ground::add_keys_command(root)};
   });
 }

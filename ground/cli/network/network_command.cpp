@@ -21,26 +21,26 @@ struct NetworkKeyOptions {
 int make(const std::string& file) {
   std::error_code fault;
   if (std::filesystem::exists(file, fault))
-    throw InputError(file + " exists; --exchange add begins to exchange its key");
-  if (fault) throw InputError(file + ": cannot be read: " + fault.message());
-  runtime::write_network_keys(file, {runtime::random_network_key()});
+    throw io::InputError(file + " exists; --exchange add begins to exchange its key");
+  if (fault) throw io::InputError(file + ": cannot be read: " + fault.message());
+  io::write_network_keys(file, {io::random_network_key()});
   std::printf("made %s; copy it to each host, and start every process with --network-key %s\n", file.c_str(),
               file.c_str());
-  return kDone;
+  return io::kDone;
 }
 
 int exchange_key(const std::string& file, ExchangeStep step) {
-  runtime::NetworkKeys keys = runtime::read_network_keys(file);
-  const bool in_exchange = keys.size() == runtime::kMostNetworkKeys;
+  io::NetworkKeys keys = io::read_network_keys(file);
+  const bool in_exchange = keys.size() == io::kMostNetworkKeys;
   if (step == ExchangeStep::kAdd && in_exchange)
-    throw InputError(
+    throw io::InputError(
         file +
         " has two keys already; --exchange switch sends with the other one, --exchange drop removes it");
   if (step != ExchangeStep::kAdd && !in_exchange)
-    throw InputError(file + " has one key; --exchange add adds the next one");
+    throw io::InputError(file + " has one key; --exchange add adds the next one");
   const char* next = "";
   if (step == ExchangeStep::kAdd) {
-    keys.push_back(runtime::random_network_key());
+    keys.push_back(io::random_network_key());
     next = "accepts a second key too";
   } else if (step == ExchangeStep::kSwitch) {
     std::swap(keys.front(), keys.back());
@@ -49,17 +49,17 @@ int exchange_key(const std::string& file, ExchangeStep step) {
     keys.pop_back();
     next = "accepts one key only";
   }
-  runtime::write_network_keys(file, keys);
+  io::write_network_keys(file, keys);
   std::printf(
       "%s: a process that starts with it %s; copy it to each host, and restart the processes, one after the "
       "other\n",
       file.c_str(), next);
-  return kDone;
+  return io::kDone;
 }
 
 }  // namespace
 
-Command add_keys_network_command(runtime::CommandLine keys) {
+io::Command add_keys_network_command(runtime::CommandLine keys) {
   const auto options = std::make_shared<NetworkKeyOptions>();
   const runtime::CommandLine app =
       keys.add_subcommand("network", "Make the key that all processes of a network share, or exchange it");

@@ -10,23 +10,23 @@
 namespace swiftlet::ground {
 namespace {
 
-using comms::ProbedHost;
+using ground::ProbedHost;
 
 constexpr int kUsualMtu_bytes = 1500;
 constexpr double kClockOffset_ms = 100.0;  // more confuses who compares logs
 constexpr double kRoundTrip_ms = 10.0;     // a period of the motion capture
 
 std::string ports_text(int domain) {
-  const comms::DiscoveryPorts ports = comms::discovery_ports(domain);
+  const dds::DiscoveryPorts ports = dds::discovery_ports(domain);
   return fmt::format("UDP {} to {} and 7000 to 7399", ports.first - 10, ports.last() + 1);
 }
 
 void judge_interfaces(const NetworkFacts& facts, std::vector<NetworkFinding>& found) {
   const bool reaches_others = std::any_of(facts.interfaces.begin(), facts.interfaces.end(),
-                                          [](const runtime::Interface& it) { return !it.is_loopback; });
+                                          [](const io::Interface& it) { return !it.is_loopback; });
   if (!reaches_others && !facts.settings.on_loopback())
     found.push_back({true, "no interface to other hosts is up: they cannot be reached"});
-  for (const runtime::Interface& it : facts.interfaces) {
+  for (const io::Interface& it : facts.interfaces) {
     if (it.mtu_bytes > 0 && it.mtu_bytes < kUsualMtu_bytes)
       found.push_back(
           {false, fmt::format("{} has an MTU of {} bytes: longer datagrams are sent in fragments, and "
@@ -42,7 +42,7 @@ bool uses_multicast(const NetworkFacts& facts) {
 void judge_multicast(const NetworkFacts& facts, std::vector<NetworkFinding>& found) {
   if (!uses_multicast(facts)) return;
   const std::vector<std::string>& heard = facts.probe.own_multicast;
-  for (const runtime::Interface& it : facts.interfaces) {
+  for (const io::Interface& it : facts.interfaces) {
     if (!it.is_loopback && std::count(heard.begin(), heard.end(), it.address) == 0)
       found.push_back(
           {true, fmt::format("multicast that was sent on {} ({}) did not come back{}: use --peer or "

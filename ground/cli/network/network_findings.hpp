@@ -11,11 +11,11 @@
 namespace swiftlet::ground {
 
 struct NetworkFacts {
-  comms::NodeSettings settings;
-  std::vector<runtime::Interface> interfaces;  // those that are used
-  comms::ProbeReport probe;
-  std::vector<comms::ProcessIdentity> processes;  // discovered over DDS
-  std::vector<std::string> qos_conflicts;         // sentences
+  dds::NodeSettings settings;
+  std::vector<io::Interface> interfaces;  // those that are used
+  ground::ProbeReport probe;
+  std::vector<dds::ProcessIdentity> processes;  // discovered over DDS
+  std::vector<std::string> qos_conflicts;       // sentences
 };
 
 struct NetworkFinding {

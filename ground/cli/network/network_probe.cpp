@@ -18,7 +18,7 @@
 #include "swiftlet/services/clocks/clock_filter.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::ground {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -142,7 +142,7 @@ struct Partner {
   sockaddr_in address{};
   std::map<int, Clock::time_point> asked;
   std::vector<double> round_trips_ms{};
-  ClockFilter clock{};
+  clocks::ClockFilter clock{};
   bool gone = false;
 };
 
@@ -283,7 +283,7 @@ struct NetworkProbe::Impl {
   static void report_clock(Partner& partner) {
     partner.host.clock_steps = partner.clock.steps();
     if (!partner.clock.estimate()) return;
-    const ClockEstimate& clock = *partner.clock.estimate();
+    const clocks::ClockEstimate& clock = *partner.clock.estimate();
     const std::int64_t now_ns = ns(Clock::now());
     const std::int64_t own_offset_ns = runtime::system_ns() - now_ns;
     partner.host.clock_offset_ms = 1e-6 * static_cast<double>(clock.offset_at(now_ns) - own_offset_ns);
@@ -319,4 +319,4 @@ ProbeReport NetworkProbe::run(std::chrono::milliseconds time) {
   return impl_->report();
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::ground

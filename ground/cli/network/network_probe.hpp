@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace swiftlet::comms {
+namespace swiftlet::ground {
 
 // UDP ports of a domain, next to those of DDS.
 constexpr int probe_multicast_port(int domain) { return 7408 + 250 * domain; }
@@ -58,4 +58,4 @@ class NetworkProbe {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::ground

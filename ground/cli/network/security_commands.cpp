@@ -26,7 +26,7 @@ struct SecurityOptions {
   int days = 365;
 };
 
-std::vector<std::string> all_roles() { return {std::begin(comms::kRoles), std::end(comms::kRoles)}; }
+std::vector<std::string> all_roles() { return {std::begin(messages::kRoles), std::end(messages::kRoles)}; }
 
 // Runs what throws std::runtime_error for bad input.
 template <class Function>
@@ -34,19 +34,19 @@ void on_input(const Function& function) {
   try {
     function();
   } catch (const std::runtime_error& error) {
-    throw InputError(error.what());
+    throw io::InputError(error.what());
   }
 }
 
 int create(const SecurityOptions& options) {
-  const runtime::SecurityFolder folder{options.folder};
+  const io::SecurityFolder folder{options.folder};
   const std::vector<std::string> roles = all_roles();
-  const std::vector<std::string> vehicles = comms::vehicles_of_list(options.vehicles);
+  const std::vector<std::string> vehicles = messages::vehicles_of_list(options.vehicles);
   const auto permissions = [&](const std::string& role) {
-    return comms::permissions_document(role, runtime::subject_of(role), vehicles);
+    return messages::permissions_document(role, io::subject_of(role), vehicles);
   };
   on_input([&] {
-    runtime::make_security_folder(folder, roles, {comms::governance_document(), permissions}, options.days);
+    io::make_security_folder(folder, roles, {messages::governance_document(), permissions}, options.days);
   });
   std::printf(
       "made %s; copy ca.pem, revoked.pem, governance.p7s and the folder of its role to each host, never "
@@ -58,26 +58,26 @@ int create(const SecurityOptions& options) {
       "  observer   tools that only read\n"
       "then start every process with --security %s\n",
       options.folder.c_str(), options.folder.c_str());
-  return kDone;
+  return io::kDone;
 }
 
 int renew(const SecurityOptions& options) {
-  const runtime::SecurityFolder folder{options.folder};
+  const io::SecurityFolder folder{options.folder};
   std::string end;
-  on_input([&] { end = runtime::renew_identity(folder, options.role, options.days); });
+  on_input([&] { end = io::renew_identity(folder, options.role, options.days); });
   std::printf("renewed %s, valid until %s; copy it to its host, and restart the processes there\n",
               (folder.path / options.role).c_str(), end.c_str());
-  return kDone;
+  return io::kDone;
 }
 
 int revoke(const SecurityOptions& options) {
-  const runtime::SecurityFolder folder{options.folder};
-  on_input([&] { runtime::revoke_role(folder, options.role); });
+  const io::SecurityFolder folder{options.folder};
+  on_input([&] { io::revoke_role(folder, options.role); });
   std::printf(
       "revoked every certificate of %s; copy %s to each host, and restart the processes there; "
       "`swiftlet keys renew` makes the next one\n",
       (folder.path / options.role).c_str(), folder.revoked().c_str());
-  return kDone;
+  return io::kDone;
 }
 
 void add_folder(runtime::CommandLine app, SecurityOptions& options) {
@@ -99,20 +99,20 @@ void add_days(runtime::CommandLine app, SecurityOptions& options) {
 
 }  // namespace
 
-Command add_keys_create_command(runtime::CommandLine keys) {
+io::Command add_keys_create_command(runtime::CommandLine keys) {
   const auto options = std::make_shared<SecurityOptions>();
   const runtime::CommandLine app = keys.add_subcommand(
       "create", "Make an authority, and for each role a key, a certificate and signed permissions");
   add_folder(app, *options);
   app.add_option("--vehicle", options->vehicles, "the vehicles of the network, such as kl1 or kl1..kl16")
       .required()
-      .check(comms::fault_of_vehicle_list, "NAME[,NAME...]");
+      .check(messages::fault_of_vehicle_list, "NAME[,NAME...]");
   add_days(app, *options);
   app.footer("example: swiftlet keys create lab --vehicle kl1 && swiftlet fly --security lab");
   return {app, [options] { return create(*options); }};
 }
 
-Command add_keys_renew_command(runtime::CommandLine keys) {
+io::Command add_keys_renew_command(runtime::CommandLine keys) {
   const auto options = std::make_shared<SecurityOptions>();
   const runtime::CommandLine app =
       keys.add_subcommand("renew", "Make a new key and certificate of a role; the old one stays valid");
@@ -123,7 +123,7 @@ Command add_keys_renew_command(runtime::CommandLine keys) {
   return {app, [options] { return renew(*options); }};
 }
 
-Command add_keys_revoke_command(runtime::CommandLine keys) {
+io::Command add_keys_revoke_command(runtime::CommandLine keys) {
   const auto options = std::make_shared<SecurityOptions>();
   const runtime::CommandLine app =
       keys.add_subcommand("revoke", "Declare all certificates of a role invalid");

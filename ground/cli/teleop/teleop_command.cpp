@@ -124,7 +124,7 @@ class Session {
   }
 
   std::string fly_without_terminal() {
-    ProgressLine progress;
+    io::ProgressLine progress;
     while (true) {
       progress.update(sticks().centred() ? 0 : 1, "teleop: " + status_text() + "; " + command_text());
       std::this_thread::sleep_for(kTick);
@@ -240,39 +240,39 @@ void print(const Session& session, const VehicleState& end, const std::string& f
 int teleop(const TeleopOptions& options) {
   const bool at_terminal = isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0;
   if (!at_terminal && options.joystick.empty())
-    throw InputError("teleop: requires a terminal, or --joystick DEVICE");
+    throw io::InputError("teleop: requires a terminal, or --joystick DEVICE");
   std::unique_ptr<InputDevice> joystick;
   try {
     if (!options.joystick.empty()) joystick = std::make_unique<InputDevice>(options.joystick);
   } catch (const std::runtime_error& error) {
-    throw InputError("teleop: --joystick: " + std::string(error.what()));
+    throw io::InputError("teleop: --joystick: " + std::string(error.what()));
   }
   Vehicle vehicle(options.network);
   const Result found = vehicle.connect(options.timeout());
   if (!found.accepted()) {
     std::fprintf(stderr, "swiftlet: teleop: %s\n", found.reason.c_str());
-    return kFailed;
+    return io::kFailed;
   }
   const Mode mode = vehicle.state().mode;
   if (!is_flying(mode)) {
     std::fprintf(stderr, "swiftlet: teleop: %s is %s; take off first: swiftlet arm && swiftlet takeoff 1\n",
                  vehicle.name().c_str(), control::to_string(mode));
-    return kFailed;
+    return io::kFailed;
   }
   const Interrupts interrupts;
   Session session(vehicle, options, std::move(joystick), interrupts);
   const std::string fault = session.fly(at_terminal);
   vehicle.wait_until([](const VehicleState& state) { return state.mode != Mode::kSetpoint; }, kModeTimeout);
   print(session, vehicle.state(), fault, options.json);
-  return fault.empty() ? kDone : kFailed;
+  return fault.empty() ? io::kDone : io::kFailed;
 }
 
 }  // namespace
 
-Command add_teleop_command(runtime::CommandLine root) {
+io::Command add_teleop_command(runtime::CommandLine root) {
   const auto options = std::make_shared<TeleopOptions>();
   const runtime::CommandLine app = add_vehicle_subcommand(
-      root, "teleop", purpose_of("teleop"),
+      root, "teleop", io::purpose_of("teleop"),
       "swiftlet teleop --speed 0.3    (after swiftlet arm && swiftlet takeoff 1)", options);
   app.footer(
       "Arrows: forward, back, left and right, as seen from the vehicle. w, s: up, down. q, e: turn. Space: "

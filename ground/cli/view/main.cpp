@@ -7,7 +7,7 @@
 
 int main(int argc, char** argv) {
   using namespace swiftlet;
-  return ground::run_commands(argc, argv, runtime::version_text(), [](runtime::CommandLine root) {
-    return std::vector<ground::Command>{ground::add_view_command(root, runtime::version_text())};
+  return io::run_commands(argc, argv, runtime::version_text(), [](runtime::CommandLine root) {
+    return std::vector<io::Command>{ground::add_view_command(root, runtime::version_text())};
   });
 }

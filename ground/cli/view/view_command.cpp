@@ -21,7 +21,7 @@ namespace {
 using namespace std::chrono_literals;
 
 struct ViewOptions {
-  comms::NodeSettings network;
+  dds::NodeSettings network;
   bool named = false;
   ViewSettings view;
   int port = ViewSettings::kDefaultPort;
@@ -33,7 +33,7 @@ int serve(const ViewOptions& options) {
   const Context context(options.network);
   ViewSettings settings = options.view;
   settings.port = static_cast<std::uint16_t>(options.port);
-  if (options.named) settings.vehicles = comms::vehicles_of_list(options.network.vehicle);
+  if (options.named) settings.vehicles = messages::vehicles_of_list(options.network.vehicle);
   const auto say = [](const std::string& sentence) {
     std::fprintf(stderr, "swiftlet: view: %s\n", sentence.c_str());
   };
@@ -51,15 +51,15 @@ int serve(const ViewOptions& options) {
                "view: open this URL in a browser or connect Foxglove to it, with ws:// in place of http://; "
                "end with Ctrl-C\n");
   while (interrupts.count() == 0) std::this_thread::sleep_for(50ms);
-  return kDone;
+  return io::kDone;
 }
 
 }  // namespace
 
-Command add_view_command(runtime::CommandLine root, const std::string& version) {
+io::Command add_view_command(runtime::CommandLine root, const std::string& version) {
   const auto options = std::make_shared<ViewOptions>();
   options->view.program = version;
-  const runtime::CommandLine app = root.add_subcommand("view", purpose_of("view"));
+  const runtime::CommandLine app = root.add_subcommand("view", io::purpose_of("view"));
   add_network_options(app, options->network, Vehicles::kSeveral);
   runtime::Option name = app.option("--vehicle-name");
   name.when_given([options] { options->named = true; }).show_default("all of the domain");

@@ -21,7 +21,7 @@ void OnboardEstimator::predict(const ImuSample& sample, double dt_s) {
   gyro_ = sample.body_rates_frd;
   now_.stamp_ns = sample.stamp_ns;
   if (!initialised()) return;
-  now_.q_ned_from_frd = renormalised(now_.q_ned_from_frd * rotation(body_rates_frd() * dt_s));
+  now_.q_ned_from_frd = math::renormalised(now_.q_ned_from_frd * math::rotation(body_rates_frd() * dt_s));
   const Eigen::Vector3d acceleration_ned =
       now_.q_ned_from_frd * (sample.specific_force_frd - force_bias_frd_) +
       kGravity * Eigen::Vector3d::UnitZ();
@@ -58,7 +58,8 @@ void OnboardEstimator::correct(const PoseSample& pose) {
   if (!initialised()) return set(pose);
   const Pose& then = past(pose.stamp_ns);
   const Eigen::Vector3d step_ned = pose.position_ned - then.position_ned;
-  const Eigen::Vector3d turn_frd = rotation_vector(then.q_ned_from_frd.conjugate() * pose.q_ned_from_frd);
+  const Eigen::Vector3d turn_frd =
+      math::rotation_vector(then.q_ned_from_frd.conjugate() * pose.q_ned_from_frd);
   if (step_ned.norm() > kLargestStep_m || turn_frd.norm() > kLargestTurn_rad) {
     if (++skipped_ >= kSkippedUntilReset) set(pose);
     return;
@@ -71,7 +72,8 @@ void OnboardEstimator::correct(const PoseSample& pose) {
   now_.position_ned += 3.0 * correction_ned;
   velocity_ned_ += 3.0 * kPositionPole * correction_ned;
   force_bias_frd_ -= kPositionPole * kPositionPole * (now_.q_ned_from_frd.conjugate() * correction_ned);
-  now_.q_ned_from_frd = renormalised(now_.q_ned_from_frd * rotation(2.0 * kAttitudePole * dt_s * turn_frd));
+  now_.q_ned_from_frd =
+      math::renormalised(now_.q_ned_from_frd * math::rotation(2.0 * kAttitudePole * dt_s * turn_frd));
   gyro_bias_ -= kAttitudePole * kAttitudePole * dt_s * turn_frd;
   history_[newest_] = now_;
 }

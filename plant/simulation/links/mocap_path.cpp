@@ -53,11 +53,11 @@ void MocapPath::disturb(PoseSample& frame, std::int64_t now_ns) {
   if (const Fault* swap = faults_.active(FaultKind::kMocapSwap, now_ns)) {
     frame.tracked = true;
     frame.position_ned = swap->position_ned + other_body_error_m_ * other_body_noise_.in_unit_ball();
-    frame.q_ned_from_frd = rotation({0.0, 0.0, swap->yaw_rad});
+    frame.q_ned_from_frd = math::rotation({0.0, 0.0, swap->yaw_rad});
   }
   if (const Fault* jump = faults_.active(FaultKind::kMocapJump, now_ns); jump != nullptr && frame.tracked) {
     frame.position_ned += jump->position_ned;
-    frame.q_ned_from_frd = frame.q_ned_from_frd * rotation(jump->rotation_frd);
+    frame.q_ned_from_frd = frame.q_ned_from_frd * math::rotation(jump->rotation_frd);
   }
   if (faults_.active(FaultKind::kMocapFreeze, now_ns) == nullptr) {
     if (frame.tracked) last_tracked_ = frame;

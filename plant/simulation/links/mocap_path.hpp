@@ -30,7 +30,7 @@ class MocapPath {
   FaultSchedule faults_;
   bool faultless_;
   double other_body_error_m_;
-  RandomStream other_body_noise_;
+  math::RandomStream other_body_noise_;
   DelayLine<PoseSample> delayed_;
   std::optional<PoseSample> last_tracked_;  // repeated by kMocapFreeze
   std::int64_t last_ns_ = 0;

@@ -26,7 +26,7 @@ class RadioLink {
 
  private:
   RadioSettings settings_;
-  RandomStream random_;
+  math::RandomStream random_;
 };
 
 // A link and the packets that are on the way.

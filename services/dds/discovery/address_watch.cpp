@@ -5,17 +5,17 @@
 
 #include "swiftlet/io/text.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
-std::optional<std::string> AddressWatch::change(const std::vector<runtime::Interface>& interfaces,
+std::optional<std::string> AddressWatch::change(const std::vector<io::Interface>& interfaces,
                                                 const NetworkSettings& network) {
   const std::string none = "this host has no IPv4 address but that of the loopback interface";
   std::vector<std::string> found;
-  for (const runtime::Interface& it : interfaces) {
+  for (const io::Interface& it : interfaces) {
     if (!it.is_loopback) found.push_back(it.address + " of " + it.name);
   }
   std::sort(found.begin(), found.end());
-  const std::string now = runtime::joined(found, ", ");
+  const std::string now = io::joined(found, ", ");
   const std::optional<std::string> before = std::exchange(addresses_, now);
   if (before == now) return std::nullopt;
   if (!before && !now.empty()) return std::nullopt;
@@ -28,4 +28,4 @@ std::optional<std::string> AddressWatch::change(const std::vector<runtime::Inter
   return what + (now.empty() ? ": others reach it when it has one" : ", and announced");
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

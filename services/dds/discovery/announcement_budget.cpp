@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 namespace {
 
 constexpr double kUsualRate = 10.0;  // 1/s, of vehicle and motion capture
@@ -42,4 +42,4 @@ int endpoint_copies(std::size_t processes) {
   return processes <= kManyProcesses ? kEndpointCopies : kFewEndpointCopies;
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

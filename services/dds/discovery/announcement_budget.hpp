@@ -8,7 +8,7 @@
 
 #include "swiftlet/services/runtime/token_bucket.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 // On a network that loses half of all datagrams, 98 % of those that tell of endpoints arrive with so many copies, and four
 // announcements in a row are lost once in hours.
@@ -44,4 +44,4 @@ class AnnouncementBudget {
 // Returns how many copies are sent of a datagram that tells of endpoints.
 int endpoint_copies(std::size_t processes);
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

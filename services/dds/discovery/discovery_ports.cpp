@@ -11,7 +11,7 @@
 
 #include "swiftlet/services/dds/fast_dds.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 namespace {
 
 // Enough for a fleet of four vehicles, in which each process announces itself to all others.
@@ -25,7 +25,7 @@ std::optional<std::uint32_t> DiscoveryPorts::index_of(std::uint32_t port) const 
 }
 
 DiscoveryPorts discovery_ports(int domain) {
-  const rtps::PortParameters parameters;
+  const fastrtps::PortParameters parameters;
   DiscoveryPorts ports;
   ports.first = parameters.getUnicastPort(static_cast<std::uint32_t>(domain), 0);
   ports.gap = parameters.participantIDGain;
@@ -71,4 +71,4 @@ std::uint32_t announced_ports(const DiscoveryPorts& ports, std::uint32_t own) {
   return std::min(own + 1 + kPortsAbove, ports.count);
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

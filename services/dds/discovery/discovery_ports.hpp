@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 struct DiscoveryPorts {
   std::uint32_t first = 0;
@@ -36,4 +36,4 @@ std::uint32_t free_discovery_port(int domain, const std::string& address);
 // unused ports.
 std::uint32_t announced_ports(const DiscoveryPorts& ports, std::uint32_t own);
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

@@ -9,7 +9,7 @@
 
 #include "swiftlet/services/messages/qos.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 struct DiscoveryServerSettings {
   int number = 0;  // 0 .. 255: its place in the list of --discovery-server
@@ -34,10 +34,10 @@ class DiscoveryServer {
   // A server that was killed leaves clients that take the next one for it, and ignore what that numbers anew. They forget it
   // when its lease has ended, on a busy host later. Besides, Fast DDS 3.1 fails an assertion if it hears of a client before a
   // thread of it has taken in its own announcement.
-  static constexpr auto kStartTime = 2 * kLivelinessLease;
+  static constexpr auto kStartTime = 2 * messages::kLivelinessLease;
 
   // Hears nothing before serve(). on_event runs in a middleware thread. Throws std::runtime_error if the port cannot be opened,
-  // or the key file is not valid; runtime::ConfigError for interfaces on_loopback().
+  // or the key file is not valid; io::ConfigError for interfaces on_loopback().
   DiscoveryServer(const DiscoveryServerSettings& settings,
                   std::function<void(const DiscoveryServerEvent&)> on_event);
   ~DiscoveryServer();
@@ -51,4 +51,4 @@ class DiscoveryServer {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 namespace {
 
 // Opens the lock file, which may belong to another user. A lock needs no write permission, but O_CREAT would
@@ -50,4 +50,4 @@ DomainLock::DomainLock() {
 
 DomainLock::~DomainLock() { ::close(lock_); }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

@@ -2,7 +2,7 @@
 // topics.
 #pragma once
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 // Holds a free domain for its lifetime, by a lock on a file in the folder for temporary files. The kernel
 // releases the lock however the process ends. Child processes inherit the lock: the domain stays reserved
@@ -26,4 +26,4 @@ class DomainLock {
   int lock_ = -1;
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

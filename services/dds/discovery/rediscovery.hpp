@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <chrono>
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 // Which kinds of endpoints of a peer are known.
 struct PeerEndpoints {
@@ -56,4 +56,4 @@ class RejoinPatience {
   Time last_{};
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

@@ -9,11 +9,11 @@
 #include <optional>
 #include <vector>
 
-#include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 #include "swiftlet/services/dds/discovery/announcement_budget.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
+#include "swiftlet/services/rtps/datagram_guard.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 // True for the UDP ports to which the processes of this domain send discovery.
 bool is_discovery_port(int domain, std::uint32_t port);
@@ -25,16 +25,16 @@ std::optional<std::uint64_t> announcement_digest(const std::uint8_t* message, st
 // Of one channel. Not thread-safe.
 class RepeatedDiscovery {
  public:
-  using Places = std::vector<rtps::Locator_t>;
+  using Places = std::vector<fastrtps::Locator_t>;
 
   // Of a datagram that is sent to these places: those that get its first copy, those that get a second one, and so on, as
   // AnnouncementBudget has it for the processes that `guard` has heard. No announcement is sent before that listens: Fast DDS
   // begins to announce a participant before it takes in what the others answer.
   std::vector<Places> rounds(const std::vector<std::uint8_t>& datagram, const Places& places,
-                             DatagramGuard& guard);
+                             rtps::DatagramGuard& guard);
 
  private:
-  std::map<rtps::Locator_t, AnnouncementBudget> budgets_;
+  std::map<fastrtps::Locator_t, AnnouncementBudget> budgets_;
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

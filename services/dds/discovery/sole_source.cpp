@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 namespace {
 
 [[noreturn]] void refuse(const std::string& other) {
@@ -13,7 +13,7 @@ namespace {
 NodeSettings announced(NodeSettings network) {
   network.name = "swiftlet fly";
   network.source_of = kFlight;
-  network.announcement_period = kFixturePeriod;  // several announcements within kSourceSearchTime
+  network.announcement_period = messages::kFixturePeriod;  // several announcements within kSourceSearchTime
   return network;
 }
 
@@ -39,10 +39,11 @@ void SoleSource::check() const {
 FlightReservation::FlightReservation(const NodeSettings& network, const std::vector<std::string>& vehicles)
     : participant_(announced(network), vehicles) {
   for (const std::string& vehicle : vehicles) nodes_.emplace_back(participant_, vehicle);
-  const auto other = participant_.become_source({kFlight, topics::kImu.name, topics::kMocapPose.name});
+  const auto other =
+      participant_.become_source({kFlight, messages::topics::kImu.name, messages::topics::kMocapPose.name});
   if (other) {
     throw std::runtime_error(*other + "; choose another --vehicle-name or --domain, or fly it with --attach");
   }
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

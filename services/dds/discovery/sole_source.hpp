@@ -10,7 +10,7 @@
 
 #include "swiftlet/services/dds/node.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 // A process that finds another source of one of its vehicles ends with an error.
 class SoleSource {
@@ -46,4 +46,4 @@ class FlightReservation {
   std::deque<Node> nodes_;
 };
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

@@ -4,7 +4,7 @@
 
 #include <fastdds/dds/core/policy/QosPolicies.hpp>
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 using Duration = decltype(eprosima::fastdds::dds::DeadlineQosPolicy::period);
 
@@ -13,4 +13,4 @@ inline Duration duration(std::chrono::milliseconds time) {
           static_cast<std::uint32_t>(time.count() % 1000 * 1'000'000)};
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

@@ -6,17 +6,19 @@
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/qos/duration.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
-bool is_latched(Qos profile) { return profile == Qos::kLatched || profile == Qos::kLatchedLarge; }
+bool is_latched(messages::Qos profile) {
+  return profile == messages::Qos::kLatched || profile == messages::Qos::kLatchedLarge;
+}
 
-bool is_reliable(Qos profile) {
-  return is_latched(profile) || profile == Qos::kRequest || profile == Qos::kReply;
+bool is_reliable(messages::Qos profile) {
+  return is_latched(profile) || profile == messages::Qos::kRequest || profile == messages::Qos::kReply;
 }
 
 namespace {
 
-namespace dds = eprosima::fastdds::dds;
+namespace fastdds = eprosima::fastdds::dds;
 
 using std::chrono::milliseconds;
 
@@ -29,9 +31,11 @@ constexpr milliseconds kHeartbeatPeriod{10};
 constexpr milliseconds kResponseDelay{1};
 constexpr milliseconds kFirstRequestPeriod{20};
 
-bool is_long(Qos profile) { return profile == Qos::kLatchedLarge || profile == Qos::kRequest; }
+bool is_long(messages::Qos profile) {
+  return profile == messages::Qos::kLatchedLarge || profile == messages::Qos::kRequest;
+}
 
-void set_fragments(dds::DataWriterQos& qos) {
+void set_fragments(fastdds::DataWriterQos& qos) {
   if (kHasFlowControllers) {
     qos.publish_mode().flow_controller_name = kLongMessageFlow;
   } else {
@@ -41,21 +45,22 @@ void set_fragments(dds::DataWriterQos& qos) {
 
 // The policies that are the same for writer and reader, so that they match.
 template <class EndpointQos>
-void set_common(EndpointQos& qos, Qos profile) {
+void set_common(EndpointQos& qos, messages::Qos profile) {
   qos.reliability().kind =
-      is_reliable(profile) ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
-  qos.reliability().max_blocking_time = duration(kReliableWriteTimeout);
-  qos.durability().kind = is_latched(profile) || profile == Qos::kReply ? dds::TRANSIENT_LOCAL_DURABILITY_QOS
-                                                                        : dds::VOLATILE_DURABILITY_QOS;
+      is_reliable(profile) ? fastdds::RELIABLE_RELIABILITY_QOS : fastdds::BEST_EFFORT_RELIABILITY_QOS;
+  qos.reliability().max_blocking_time = duration(messages::kReliableWriteTimeout);
+  qos.durability().kind = is_latched(profile) || profile == messages::Qos::kReply
+                              ? fastdds::TRANSIENT_LOCAL_DURABILITY_QOS
+                              : fastdds::VOLATILE_DURABILITY_QOS;
 
   auto& limits = qos.resource_limits();
   limits.max_instances = 1;
   // A mission can be 3000 times as long as a command: memory is allocated as needed, and kept.
   qos.endpoint().history_memory_policy =
-      is_long(profile) ? rtps::DYNAMIC_REUSABLE_MEMORY_MODE : rtps::PREALLOCATED_MEMORY_MODE;
-  if (profile == Qos::kRequest || profile == Qos::kReply) {
-    const int kept = profile == Qos::kRequest ? kKeptRequests : kKeptReplies;
-    qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
+      is_long(profile) ? fastrtps::DYNAMIC_REUSABLE_MEMORY_MODE : fastrtps::PREALLOCATED_MEMORY_MODE;
+  if (profile == messages::Qos::kRequest || profile == messages::Qos::kReply) {
+    const int kept = profile == messages::Qos::kRequest ? messages::kKeptRequests : messages::kKeptReplies;
+    qos.history().kind = fastdds::KEEP_LAST_HISTORY_QOS;
     qos.history().depth = kept;
     limits.max_samples = kept;
     limits.max_samples_per_instance = kept;
@@ -63,7 +68,7 @@ void set_common(EndpointQos& qos, Qos profile) {
     limits.extra_samples = 2;
   } else {
     // The application may hold one sample besides the last one while the next arrives; the pool never grows.
-    qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
+    qos.history().kind = fastdds::KEEP_LAST_HISTORY_QOS;
     qos.history().depth = 1;
     limits.max_samples = 2;
     limits.max_samples_per_instance = 1;
@@ -83,21 +88,22 @@ std::shared_ptr<eprosima::fastdds::rtps::FlowControllerDescriptor> long_message_
   return flow;
 }
 
-dds::DataWriterQos writer_qos(Qos profile) {
-  dds::DataWriterQos qos;
+fastdds::DataWriterQos writer_qos(messages::Qos profile) {
+  fastdds::DataWriterQos qos;
   set_common(qos, profile);
   // A middleware thread sends long messages in fragments. The calling thread sends all others.
-  qos.publish_mode().kind = is_long(profile) ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
+  qos.publish_mode().kind =
+      is_long(profile) ? fastdds::ASYNCHRONOUS_PUBLISH_MODE : fastdds::SYNCHRONOUS_PUBLISH_MODE;
   if (is_long(profile)) set_fragments(qos);
   if (is_reliable(profile)) set_repair_times(qos, duration(kHeartbeatPeriod), duration(kResponseDelay));
   return qos;
 }
 
-dds::DataReaderQos reader_qos(Qos profile) {
-  dds::DataReaderQos qos;
+fastdds::DataReaderQos reader_qos(messages::Qos profile) {
+  fastdds::DataReaderQos qos;
   set_common(qos, profile);
   if (is_reliable(profile)) set_repair_times(qos, duration(kResponseDelay), duration(kFirstRequestPeriod));
   return qos;
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

@@ -2,47 +2,47 @@
 
 #include <cstdio>
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 namespace {
 
-namespace dds = eprosima::fastdds::dds;
+namespace fastdds = eprosima::fastdds::dds;
 
-const char* name_of(dds::ReliabilityQosPolicyKind kind) {
-  return kind == dds::RELIABLE_RELIABILITY_QOS ? "reliable" : "best effort";
+const char* name_of(fastdds::ReliabilityQosPolicyKind kind) {
+  return kind == fastdds::RELIABLE_RELIABILITY_QOS ? "reliable" : "best effort";
 }
 
-const char* name_of(dds::DurabilityQosPolicyKind kind) {
+const char* name_of(fastdds::DurabilityQosPolicyKind kind) {
   switch (kind) {
-    case dds::VOLATILE_DURABILITY_QOS:
+    case fastdds::VOLATILE_DURABILITY_QOS:
       return "volatile";
-    case dds::TRANSIENT_LOCAL_DURABILITY_QOS:
+    case fastdds::TRANSIENT_LOCAL_DURABILITY_QOS:
       return "transient local";
-    case dds::TRANSIENT_DURABILITY_QOS:
+    case fastdds::TRANSIENT_DURABILITY_QOS:
       return "transient";
-    case dds::PERSISTENT_DURABILITY_QOS:
+    case fastdds::PERSISTENT_DURABILITY_QOS:
       return "persistent";
   }
   return "unknown";
 }
 
-const char* name_of(dds::OwnershipQosPolicyKind kind) {
-  return kind == dds::EXCLUSIVE_OWNERSHIP_QOS ? "exclusive" : "shared";
+const char* name_of(fastdds::OwnershipQosPolicyKind kind) {
+  return kind == fastdds::EXCLUSIVE_OWNERSHIP_QOS ? "exclusive" : "shared";
 }
 
-const char* name_of(dds::LivelinessQosPolicyKind kind) {
+const char* name_of(fastdds::LivelinessQosPolicyKind kind) {
   switch (kind) {
-    case dds::AUTOMATIC_LIVELINESS_QOS:
+    case fastdds::AUTOMATIC_LIVELINESS_QOS:
       return "automatic";
-    case dds::MANUAL_BY_PARTICIPANT_LIVELINESS_QOS:
+    case fastdds::MANUAL_BY_PARTICIPANT_LIVELINESS_QOS:
       return "manual by participant";
-    case dds::MANUAL_BY_TOPIC_LIVELINESS_QOS:
+    case fastdds::MANUAL_BY_TOPIC_LIVELINESS_QOS:
       return "manual by topic";
   }
   return "unknown";
 }
 
 std::string name_of(const Duration& time) {
-  if (time == dds::DeadlineQosPolicy().period) return "none";
+  if (time == fastdds::DeadlineQosPolicy().period) return "none";
   char text[32];
   std::snprintf(text, sizeof text, "%g ms", 1e-6 * static_cast<double>(time.to_ns()));
   return text;
@@ -80,4 +80,4 @@ std::string conflicts(const EndpointQos& offered, const EndpointQos& requested) 
   return list;
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

@@ -7,7 +7,7 @@
 
 #include "swiftlet/services/dds/qos/duration.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 // The QoS policies of an endpoint that must be compatible with those of its peer.
 struct EndpointQos {
@@ -24,4 +24,4 @@ struct EndpointQos {
 // empty if all match.
 std::string conflicts(const EndpointQos& offered, const EndpointQos& requested);
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

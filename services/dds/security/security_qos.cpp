@@ -6,7 +6,7 @@
 #include "swiftlet/io/security/security_folder.hpp"
 #include "swiftlet/services/messages/topic_roles.hpp"
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 namespace {
 
 std::string uri(const std::filesystem::path& file) {
@@ -16,23 +16,25 @@ std::string uri(const std::filesystem::path& file) {
 }  // namespace
 
 std::string security_role(const std::string& folder, const std::string& process) {
-  if (process == "plant" || process == "microcontroller") return roles::kVehicle;
-  if (process == "check") return roles::kControl;  // commands a vehicle that no controller flies
-  for (const char* const role : {roles::kVehicle, roles::kMocap, roles::kControl}) {
+  if (process == "plant" || process == "microcontroller") return messages::roles::kVehicle;
+  if (process == "check") return messages::roles::kControl;  // commands a vehicle that no controller flies
+  for (const char* const role :
+       {messages::roles::kVehicle, messages::roles::kMocap, messages::roles::kControl}) {
     if (process == role) return role;
   }
-  return runtime::SecurityFolder{folder}.has(roles::kGround) ? roles::kGround : roles::kObserver;
+  return io::SecurityFolder{folder}.has(messages::roles::kGround) ? messages::roles::kGround
+                                                                  : messages::roles::kObserver;
 }
 
 std::string fault_of_security(const std::string& folder, const std::string& process) {
-  return runtime::fault_of_security_folder({folder}, security_role(folder, process));
+  return io::fault_of_security_folder({folder}, security_role(folder, process));
 }
 
 void set_security(const std::string& folder, const std::string& process,
                   eprosima::fastdds::dds::DomainParticipantQos& qos) {
   const std::string fault = fault_of_security(folder, process);
   if (!fault.empty()) throw std::runtime_error(fault);
-  const runtime::SecurityFolder files{folder};
+  const io::SecurityFolder files{folder};
   const std::string role = security_role(folder, process);
   auto& properties = qos.properties().properties();
   const auto set = [&](const std::string& name, const std::string& value) {
@@ -52,4 +54,4 @@ void set_security(const std::string& folder, const std::string& process,
   set("dds.sec.crypto.plugin", "builtin.AES-GCM-GMAC");
 }
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

@@ -5,7 +5,7 @@
 
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 
-namespace swiftlet::comms {
+namespace swiftlet::dds {
 
 // The role of a process with this name (NodeSettings::name) in the folder: plant, mocap and control have theirs,
 // `swiftlet check vehicle` commands as control; tools are ground, or observer if the folder has no ground.
@@ -18,4 +18,4 @@ std::string fault_of_security(const std::string& folder, const std::string& proc
 void set_security(const std::string& folder, const std::string& process,
                   eprosima::fastdds::dds::DomainParticipantQos& qos);
 
-}  // namespace swiftlet::comms
+}  // namespace swiftlet::dds

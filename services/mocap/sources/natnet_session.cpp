@@ -28,7 +28,7 @@ bool are_same(const natnet::ServerInfo& a, const natnet::ServerInfo& b) {
 }  // namespace
 
 std::string to_string(const natnet::ServerInfo& server) {
-  return runtime::printable(server.application) + " " + server.application_version.to_string() + " (NatNet " +
+  return io::printable(server.application) + " " + server.application_version.to_string() + " (NatNet " +
          server.version.to_string() + ")";
 }
 
@@ -52,7 +52,7 @@ NatNetSession::Event NatNetSession::take(const std::uint8_t* data, std::size_t s
 
 bool NatNetSession::can_read() const { return server_ && server_->version.is_supported(); }
 
-NatNetSession::Event NatNetSession::take_server(const runtime::ByteReader& payload) {
+NatNetSession::Event NatNetSession::take_server(const io::ByteReader& payload) {
   natnet::ServerInfo info;
   if (const char* const fault = natnet::parse_server_info(payload, info)) return refuse(fault);
   const bool has_changed = !server_ || !are_same(*server_, info);
@@ -63,7 +63,7 @@ NatNetSession::Event NatNetSession::take_server(const runtime::ByteReader& paylo
   return Event::kServer;
 }
 
-NatNetSession::Event NatNetSession::take_models(const runtime::ByteReader& payload) {
+NatNetSession::Event NatNetSession::take_models(const io::ByteReader& payload) {
   if (!can_read()) return Event::kNothing;
   std::vector<natnet::BodyDefinition> models;
   if (const char* const fault = natnet::parse_models(payload, server_->version, models)) return refuse(fault);
@@ -74,7 +74,7 @@ NatNetSession::Event NatNetSession::take_models(const runtime::ByteReader& paylo
   return has_changed ? Event::kModels : Event::kNothing;
 }
 
-NatNetSession::Event NatNetSession::take_frame(const runtime::ByteReader& payload) {
+NatNetSession::Event NatNetSession::take_frame(const io::ByteReader& payload) {
   if (!can_read()) return Event::kNothing;
   if (const char* const fault = natnet::parse_frame(payload, server_->version, incoming_))
     return refuse(fault);
@@ -84,7 +84,7 @@ NatNetSession::Event NatNetSession::take_frame(const runtime::ByteReader& payloa
   return Event::kFrame;
 }
 
-NatNetSession::Event NatNetSession::take_echo(const runtime::ByteReader& payload, std::int64_t arrived_ns) {
+NatNetSession::Event NatNetSession::take_echo(const io::ByteReader& payload, std::int64_t arrived_ns) {
   natnet::EchoResponse response;
   if (const char* const fault = natnet::parse_echo_response(payload, response)) return refuse(fault);
   if (!can_read() || response.received_ticks / server_->clock_hz > kLatestSecond) return Event::kNothing;

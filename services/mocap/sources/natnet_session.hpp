@@ -47,10 +47,10 @@ class NatNetSession {
   void forget_order();
 
  private:
-  Event take_server(const runtime::ByteReader& payload);
-  Event take_models(const runtime::ByteReader& payload);
-  Event take_frame(const runtime::ByteReader& payload);
-  Event take_echo(const runtime::ByteReader& payload, std::int64_t arrived_ns);
+  Event take_server(const io::ByteReader& payload);
+  Event take_models(const io::ByteReader& payload);
+  Event take_frame(const io::ByteReader& payload);
+  Event take_echo(const io::ByteReader& payload, std::int64_t arrived_ns);
   Event refuse(const char* why);
   bool can_read() const;
   bool follows(std::int32_t number);

@@ -15,7 +15,7 @@
 namespace swiftlet::mocap {
 namespace {
 
-using runtime::ConfigError;
+using io::ConfigError;
 
 const std::vector<std::string> kColumns = {"t", "x", "y", "z", "qx", "qy", "qz", "qw"};
 
@@ -51,7 +51,7 @@ std::uint32_t only_server(const std::set<std::uint32_t>& servers, const std::str
 
 ReplaySource::ReplaySource(const Room& room)
     : file_(room.file), latency_ns_(static_cast<std::int64_t>(1e9 * room.latency_s)) {
-  const std::string text = runtime::read_text_file(room.file);
+  const std::string text = io::read_text_file(room.file);
   if (is_table(text)) {
     read_table(text, room.file);
   } else {
@@ -125,11 +125,11 @@ void ReplaySource::add_frame(const NatNetSession& session, std::int64_t arrived_
 }
 
 void ReplaySource::read_table(const std::string& text, const std::string& file) {
-  const runtime::CsvTable table = runtime::parse_csv(text, file, kColumns);
+  const io::CsvTable table = io::parse_csv(text, file, kColumns);
   const std::size_t body = *body_of(std::filesystem::path(file).stem().string(), 0);
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     Recorded recorded;
-    const double time_s = table.number(row, 0, runtime::between(0.0, 4e9), "s") - table.number(0, 0);
+    const double time_s = table.number(row, 0, io::between(0.0, 4e9), "s") - table.number(0, 0);
     if (row > 0 && table.number(row, 0) <= table.number(row - 1, 0)) table.fail(row, "t", "must increase");
     recorded.arrived_ns = std::llround(1e9 * time_s);
     recorded.exposed_ns = recorded.arrived_ns;

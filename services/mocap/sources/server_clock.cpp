@@ -13,14 +13,14 @@ void ServerClock::add(std::int64_t asked_ns, std::int64_t server_ns, std::int64_
 }
 
 bool ServerClock::is_known() const {
-  return filter_.exchanges() >= comms::ClockFilter::kStepExchanges && !filter_.is_in_doubt();
+  return filter_.exchanges() >= clocks::ClockFilter::kStepExchanges && !filter_.is_in_doubt();
 }
 
 // The offset is a function of the host's time, which is what is asked for: one correction suffices, for a drift of 1e-4 of the
 // age of the stamp.
 std::optional<std::int64_t> ServerClock::to_host(std::int64_t server_ns, std::int64_t arrived_ns) const {
   if (!is_known()) return std::nullopt;
-  const comms::ClockEstimate& clock = *filter_.estimate();
+  const clocks::ClockEstimate& clock = *filter_.estimate();
   const std::int64_t about_ns = server_ns - clock.offset_ns;
   const std::int64_t host_ns = server_ns - clock.offset_at(about_ns);
   const double age_ns = static_cast<double>(arrived_ns - host_ns);

@@ -20,7 +20,7 @@ class ServerClock {
   void forget() { filter_ = {}; }
 
  private:
-  comms::ClockFilter filter_;
+  clocks::ClockFilter filter_;
 };
 
 }  // namespace swiftlet::mocap

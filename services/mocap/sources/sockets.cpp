@@ -57,12 +57,11 @@ std::string Endpoint::address_text() const {
 std::string Endpoint::to_string() const { return address_text() + ":" + std::to_string(port); }
 
 Endpoint resolve(const std::string& text, std::uint16_t default_port) {
-  const std::string fault = runtime::fault_of_host_address(text);
+  const std::string fault = io::fault_of_host_address(text);
   if (!fault.empty()) throw std::invalid_argument("server: " + fault);
-  const runtime::HostAddress host = runtime::parse_host_address(text);
+  const io::HostAddress host = io::parse_host_address(text);
   try {
-    return {number_of(runtime::ipv4_addresses_of(host.host).front()),
-            host.port == 0 ? default_port : host.port};
+    return {number_of(io::ipv4_addresses_of(host.host).front()), host.port == 0 ? default_port : host.port};
   } catch (const std::runtime_error& error) {
     throw std::invalid_argument(std::string("server: ") + error.what());
   }
@@ -70,9 +69,9 @@ Endpoint resolve(const std::string& text, std::uint16_t default_port) {
 
 std::string interface_address(const std::string& name_or_address) {
   if (name_or_address.empty()) return "";
-  const std::string fault = runtime::fault_of_interface(name_or_address);
+  const std::string fault = io::fault_of_interface(name_or_address);
   if (!fault.empty()) throw std::invalid_argument("interface: " + fault);
-  return runtime::addresses_of_interfaces({name_or_address}).front();
+  return io::addresses_of_interfaces({name_or_address}).front();
 }
 
 Descriptor::~Descriptor() { close(); }

@@ -31,11 +31,11 @@ Room room_without_file(const SourceOptions& options, const std::vector<std::stri
 }
 
 Room room_with_file(const SourceOptions& options, const std::vector<std::string>& vehicles) {
-  const std::string path = runtime::configuration_file(runtime::kinds::kRoom, options.room);
+  const std::string path = io::configuration_file(io::kinds::kRoom, options.room);
   Room room = load_room(path);
   for (const std::string& vehicle : vehicles) {
     if (find(room, vehicle) == nullptr)
-      throw runtime::ConfigError(path, 0, "vehicles", "does not have the vehicle " + vehicle);
+      throw io::ConfigError(path, 0, "vehicles", "does not have the vehicle " + vehicle);
   }
   if (options.source.empty() || kind_of(options.source) == room.source) return room;
   room.source = kind_of(options.source);  // what is left of the other source is of no use
@@ -58,7 +58,7 @@ void add_source_options(runtime::CommandLine app, SourceOptions& options, std::v
   app.add_option("--source", options.source, "Where poses come from; replaces that of the room")
       .one_of(first);
   app.add_option("--room", options.room, "Room file: source, axes, and which body is which vehicle")
-      .type_name(runtime::kinds::kRoom.value);
+      .type_name(io::kinds::kRoom.value);
   app.add_option("--server", options.server,
                  "Server of the motion capture: HOST or HOST:PORT. natnet looks for one without it")
       .type_name("HOST");

@@ -12,8 +12,8 @@ int main(int argc, char** argv) {
   using namespace swiftlet;
   if (argc != 2) return 2;
   const std::string config = argv[1];
-  plant::Vehicle vehicle = runtime::load_vehicle(config + "/vehicles/kaylion.yaml");
-  const auto settings = runtime::load_control_settings(config + "/control/paper.yaml");
+  plant::Vehicle vehicle = io::load_vehicle(config + "/vehicles/kaylion.yaml");
+  const auto settings = io::load_control_settings(config + "/control/paper.yaml");
 
   // The double integrator's closed form for Q = diag(q1, q2): k1^2 = q1 / r, k2^2 = q2 / r + 2 k1.
   const auto roll = control::design(vehicle, settings).roll;

@@ -9,14 +9,14 @@
 int main(int argc, char** argv) {
   using namespace swiftlet;
   if (argc != 2) return 2;
-  comms::NodeSettings settings;
+  dds::NodeSettings settings;
   settings.name = "consumer";
   settings.domain = 229;
-  comms::Node node(settings);
-  const auto imu = node.publish(comms::topics::kImu);
+  dds::Node node(settings);
+  const auto imu = node.publish(messages::topics::kImu);
 
   const auto mission =
-      ground::load_mission_file(std::string(argv[1]) + "/missions/square.yaml", control::Limits{});
+      io::load_mission_file(std::string(argv[1]) + "/missions/square.yaml", control::Limits{});
   std::printf("%s has %zu items; %d hear the imu\n", mission.name.c_str(), mission.mission.items.size(),
               imu.matched());
   return mission.takes_off() && mission.lands() && imu.matched() == 0 ? 0 : 1;

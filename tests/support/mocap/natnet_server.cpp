@@ -71,7 +71,7 @@ void NatNetServer::answer(const std::vector<std::uint8_t>& datagram, const mocap
   const auto message = mocap::natnet::parse_message(datagram.data(), datagram.size());
   if (!message) return;
   const std::lock_guard<std::mutex> lock(mutex_);
-  runtime::ByteReader payload = message->payload;
+  io::ByteReader payload = message->payload;
   switch (message->id) {
     case MessageId::kConnect:
       client_ = from;

@@ -9,12 +9,12 @@
 #include "swiftlet/analysis/logs/compressed_file.hpp"
 #include "swiftlet/io/byte_reader.hpp"
 #include "swiftlet/io/mocap/capture_file.hpp"
-#include "swiftlet/services/dds/datagram/submessage.hpp"
+#include "swiftlet/services/rtps/submessage.hpp"
 
 namespace swiftlet::tests {
 namespace {
 
-using runtime::ByteReader;
+using io::ByteReader;
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint32_t kPublicationsWriter = 0x000003c2;  // of discovery (9.3.1.5)
@@ -38,7 +38,7 @@ class Reader {
  public:
   void take(const mocap::CapturedDatagram& datagram) {
     ByteReader message(datagram.payload.data(), datagram.payload.size(), true);
-    if (datagram.payload.size() < comms::kHeaderBytes || message.u32() != kRtps) return;
+    if (datagram.payload.size() < rtps::kHeaderBytes || message.u32() != kRtps) return;
     message.skip(4);  // version, vendor
     const std::uint8_t* const prefix = message.take(kPrefixBytes);
     while (message.ok() && message.rest() >= 4) {
@@ -46,7 +46,7 @@ class Reader {
       const std::uint8_t flags = message.u8();
       const std::uint16_t stated = message.u16();
       ByteReader body = message.part(stated == 0 ? message.rest() : stated);
-      if (kind == comms::kData && body.ok()) take_data(datagram.time_ns, prefix, flags, body);
+      if (kind == rtps::kData && body.ok()) take_data(datagram.time_ns, prefix, flags, body);
     }
   }
   std::vector<CapturedSample> samples;
@@ -96,7 +96,7 @@ class Reader {
 
 std::vector<CapturedSample> samples_of_capture(const std::string& file) {
   Reader reader;
-  for (const mocap::CapturedDatagram& datagram : mocap::parse_capture(ground::read_unpacked(file), file))
+  for (const mocap::CapturedDatagram& datagram : mocap::parse_capture(analysis::read_unpacked(file), file))
     reader.take(datagram);
   return reader.samples;
 }

@@ -23,7 +23,7 @@ constexpr std::uint8_t kNavLand = 18, kNavDescend = 12;
 
 plant::SimulationSettings simulation_settings() {
   plant::SimulationSettings settings =
-      runtime::load_simulation_settings(in_source("config/simulation/default.yaml"));
+      io::load_simulation_settings(in_source("config/simulation/default.yaml"));
   settings.control_levels = plant::ControlLevel::kRates;
   settings.control_levels.add(plant::ControlLevel::kAttitude);
   settings.control_levels.add(plant::ControlLevel::kTrajectory);

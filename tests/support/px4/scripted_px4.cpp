@@ -7,7 +7,7 @@
 
 namespace swiftlet::tests {
 
-ScriptedPx4::ScriptedPx4(const plant::Vehicle& vehicle, const comms::NodeSettings& network,
+ScriptedPx4::ScriptedPx4(const plant::Vehicle& vehicle, const dds::NodeSettings& network,
                          const ScriptedPx4Settings& settings)
     : settings_(settings),
       topics_(settings.instance),
@@ -21,7 +21,7 @@ ScriptedPx4::ScriptedPx4(const plant::Vehicle& vehicle, const comms::NodeSetting
       land_detected_(node_.publish(topics_.land_detected.get())),
       flags_(node_.publish(topics_.failsafe_flags.get())),
       acks_(node_.publish(topics_.command_ack.get())),
-      truth_(node_.publish(comms::topics::kGroundTruth)) {
+      truth_(node_.publish(messages::topics::kGroundTruth)) {
   subscribe(topics_.offboard_control_mode, &Px4Simulation::on_offboard_mode);
   subscribe<px4_msg::VehicleRatesSetpoint>(topics_.rates_setpoint, &Px4Simulation::on_setpoint);
   subscribe<px4_msg::VehicleAttitudeSetpoint>(topics_.attitude_setpoint, &Px4Simulation::on_setpoint);
@@ -80,7 +80,7 @@ void ScriptedPx4::run() {
 void ScriptedPx4::publish(Px4Messages messages, plant::TruthSample truth) {
   truth.sequence = ++truths_;
   truth.stamp_ns = runtime::monotonic_ns();
-  truth_.publish(comms::to_message(truth));
+  truth_.publish(messages::to_message(truth));
   if (messages.sensors) sensors_.publish(*messages.sensors);
   odometry_.publish(messages.odometry);
   if (messages.battery) battery_.publish(*messages.battery);

@@ -27,7 +27,7 @@ struct ScriptedPx4Settings {
 class ScriptedPx4 {
  public:
   // network.vehicle: whose ground truth is published.
-  ScriptedPx4(const plant::Vehicle& vehicle, const comms::NodeSettings& network,
+  ScriptedPx4(const plant::Vehicle& vehicle, const dds::NodeSettings& network,
               const ScriptedPx4Settings& settings = {});
   ~ScriptedPx4();
   ScriptedPx4(const ScriptedPx4&) = delete;
@@ -67,16 +67,16 @@ class ScriptedPx4 {
   Px4Simulation simulation_;
   std::uint64_t truths_ = 0;
 
-  comms::Node node_;
-  comms::Publisher<px4_msg::SensorCombined> sensors_;
-  comms::Publisher<px4_msg::VehicleOdometry> odometry_;
-  comms::Publisher<px4_msg::BatteryStatus> battery_;
-  comms::Publisher<px4_msg::VehicleStatus> status_;
-  comms::Publisher<px4_msg::VehicleLandDetected> land_detected_;
-  comms::Publisher<px4_msg::FailsafeFlags> flags_;
-  comms::Publisher<px4_msg::VehicleCommandAck> acks_;
-  comms::Publisher<comms::msg::GroundTruth> truth_;
-  std::vector<comms::Subscription> subscriptions_;
+  dds::Node node_;
+  dds::Publisher<px4_msg::SensorCombined> sensors_;
+  dds::Publisher<px4_msg::VehicleOdometry> odometry_;
+  dds::Publisher<px4_msg::BatteryStatus> battery_;
+  dds::Publisher<px4_msg::VehicleStatus> status_;
+  dds::Publisher<px4_msg::VehicleLandDetected> land_detected_;
+  dds::Publisher<px4_msg::FailsafeFlags> flags_;
+  dds::Publisher<px4_msg::VehicleCommandAck> acks_;
+  dds::Publisher<messages::msg::GroundTruth> truth_;
+  std::vector<dds::Subscription> subscriptions_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

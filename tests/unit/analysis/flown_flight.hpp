@@ -5,7 +5,7 @@
 
 #include "swiftlet/record/flight.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
 // Truth at 500 Hz, and a reference with every fifth sample up to `last_reference`.
 inline record::Flight flown(int count, int last_reference) {
@@ -32,4 +32,4 @@ inline record::Flight flown(int count, int last_reference) {
   return flight;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

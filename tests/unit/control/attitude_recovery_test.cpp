@@ -26,7 +26,7 @@ class Tumble {
  public:
   explicit Tumble(AttitudeErrorKind error)
       : vehicle_(tests::kaylion()), effectiveness_(plant::effectiveness(vehicle_)), allocator_(vehicle_) {
-    ControlSettings settings = runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml"));
+    ControlSettings settings = io::load_control_settings(io::find_config("control/motor_lag.yaml"));
     settings.attitude.error = error;
     attitude_.emplace(vehicle_, settings.attitude, design(vehicle_, settings));
   }

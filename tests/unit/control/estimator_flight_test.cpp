@@ -15,19 +15,19 @@
 namespace swiftlet::control::estimator_flight_test {
 
 using Eigen::Vector3d;
-using ground::ClosedLoop;
+using simulation::ClosedLoop;
 
 const std::string kConfig = tests::in_source("config/");
 
 plant::SimulationSettings world(const std::string& name) {
-  return runtime::load_simulation_settings(kConfig + "simulation/" + name + ".yaml");
+  return io::load_simulation_settings(kConfig + "simulation/" + name + ".yaml");
 }
 
 // The timeout of poses is long enough for half a second of dead reckoning.
 ClosedLoop loop(const plant::SimulationSettings& simulation, std::uint64_t seed) {
-  ControlSettings settings = runtime::load_control_settings(kConfig + "control/motor_lag.yaml");
+  ControlSettings settings = io::load_control_settings(kConfig + "control/motor_lag.yaml");
   settings.failsafe.mocap_timeout_s = 0.6;
-  return {runtime::load_vehicle(kConfig + "vehicles/kaylion.yaml"), simulation, settings, seed};
+  return {io::load_vehicle(kConfig + "vehicles/kaylion.yaml"), simulation, settings, seed};
 }
 
 Request request(RequestKind kind, const Vector3d& position_ned = Vector3d::Zero()) {

@@ -18,11 +18,11 @@
 namespace swiftlet::control::flight_controller_test {
 
 using Eigen::Vector3d;
-using ground::ClosedLoop;
+using simulation::ClosedLoop;
 
-plant::Vehicle kaylion() { return runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
+plant::Vehicle kaylion() { return io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
 ControlSettings settings(const std::string& name) {
-  return runtime::load_control_settings(tests::in_source("config/control/") + name + ".yaml");
+  return io::load_control_settings(tests::in_source("config/control/") + name + ".yaml");
 }
 
 MissionItem waypoint(double x, double y, double z, double speed = 0.5) {
@@ -50,7 +50,7 @@ Request request(RequestKind kind, const Vector3d& position = Vector3d::Zero(), d
   return request;
 }
 
-struct Flown : ground::SimulatedFlight {
+struct Flown : simulation::SimulatedFlight {
   double rms_3d_m = 0.0;
   double duration_s = 0.0;  // of the mission window, take-off to landing
 };
@@ -58,7 +58,7 @@ struct Flown : ground::SimulatedFlight {
 Flown fly(ClosedLoop& loop, const Mission& mission) {
   constexpr double kPlannedS = 100.0;
   record::Flight flight;
-  Flown flown{ground::fly(loop, mission, kPlannedS, {&flight, nullptr, {}})};
+  Flown flown{simulation::fly(loop, mission, kPlannedS, {&flight, nullptr, {}})};
   const record::Evaluation result = record::evaluate(flight);
   flown.rms_3d_m = result.errors.rms_3d_m;
   flown.duration_s = result.window ? result.window->duration_s() : 0.0;

@@ -13,7 +13,7 @@
 
 namespace swiftlet::control::flown_loops_flight_test {
 
-using ground::ClosedLoop;
+using simulation::ClosedLoop;
 
 constexpr double kPush_s = 0.05;
 constexpr double kPushAt_s = 12.0;
@@ -21,11 +21,10 @@ constexpr double kForce_n = 0.16;
 constexpr double kSeconds = 2.5;     // compared
 constexpr double kSample_s = 0.002;  // of the IMU
 
-plant::Vehicle kaylion() { return runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
+plant::Vehicle kaylion() { return io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
 // Without the disturbance observer, which would compensate the push itself.
 ControlSettings settings() {
-  ControlSettings settings =
-      runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml"));
+  ControlSettings settings = io::load_control_settings(tests::in_source("config/control/motor_lag.yaml"));
   settings.disturbance.bandwidth = 0.0;
   return settings;
 }

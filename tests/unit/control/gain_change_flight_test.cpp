@@ -16,11 +16,11 @@
 namespace swiftlet::control::gain_change_flight_test {
 
 using Eigen::Vector3d;
-using ground::ClosedLoop;
+using simulation::ClosedLoop;
 
-plant::Vehicle kaylion() { return runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
+plant::Vehicle kaylion() { return io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
 ControlSettings motor_lag() {
-  return runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml"));
+  return io::load_control_settings(tests::in_source("config/control/motor_lag.yaml"));
 }
 // Half the bandwidth of the position loop, and a softer attitude.
 ControlSettings soft() {

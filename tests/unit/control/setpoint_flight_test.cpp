@@ -21,8 +21,7 @@ constexpr double kPeriod_s = 0.02;
 class SetpointFlight : public testing::TestWithParam<const char*> {
  protected:
   static ControlSettings settings() {
-    return runtime::load_control_settings(tests::in_source("config/control/") + std::string(GetParam()) +
-                                          ".yaml");
+    return io::load_control_settings(tests::in_source("config/control/") + std::string(GetParam()) + ".yaml");
   }
 
   void SetUp() override {
@@ -61,7 +60,7 @@ class SetpointFlight : public testing::TestWithParam<const char*> {
   Setpoint attitude(double roll_rad, double pitch_rad, double yaw_rad) {
     Setpoint setpoint;
     setpoint.kind = SetpointKind::kAttitude;
-    setpoint.q_ned_from_frd = quaternion_from_euler({roll_rad, pitch_rad, yaw_rad});
+    setpoint.q_ned_from_frd = math::quaternion_from_euler({roll_rad, pitch_rad, yaw_rad});
     setpoint.specific_thrust = plant::kGravity / (std::cos(roll_rad) * std::cos(pitch_rad));
     return setpoint;
   }
@@ -73,14 +72,14 @@ class SetpointFlight : public testing::TestWithParam<const char*> {
     return setpoint;
   }
 
-  ground::ClosedLoop loop_{runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")),
-                           plant::SimulationSettings(), settings(), 11};
+  simulation::ClosedLoop loop_{io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")),
+                               plant::SimulationSettings(), settings(), 11};
 };
 
 TEST_P(SetpointFlight, FollowsAnAttitudeAndKeepsItsHeight) {
   ASSERT_TRUE(stream(attitude(0.1, -0.05, 0.0), 0.8).accepted);
   EXPECT_EQ(mode(), Mode::kSetpoint);
-  const Vector3d euler = euler_angles(truth().q_ned_from_frd).vector();
+  const Vector3d euler = math::euler_angles(truth().q_ned_from_frd).vector();
   EXPECT_NEAR(euler.x(), 0.1, 0.02);
   EXPECT_NEAR(euler.y(), -0.05, 0.02);
   EXPECT_NEAR(truth().position_ned.z(), -1.2, 0.1);
@@ -92,10 +91,10 @@ TEST_P(SetpointFlight, FollowsAnAttitudeAndKeepsItsHeight) {
 }
 
 TEST_P(SetpointFlight, FollowsBodyRates) {
-  const double before = euler_angles(truth().q_ned_from_frd).vector().z();
+  const double before = math::euler_angles(truth().q_ned_from_frd).vector().z();
   ASSERT_TRUE(stream(body_rates({0, 0, 1.0}), 1.5).accepted);
   EXPECT_NEAR(truth().body_rates_frd.z(), 1.0, 0.1);
-  EXPECT_NEAR(wrap_angle(euler_angles(truth().q_ned_from_frd).vector().z() - before), 1.5, 0.4);
+  EXPECT_NEAR(math::wrap_angle(math::euler_angles(truth().q_ned_from_frd).vector().z() - before), 1.5, 0.4);
   EXPECT_LT(tilt_rad(), 0.1);
   ASSERT_TRUE(stream(body_rates({0.5, 0, 0}), 0.3).accepted);
   EXPECT_NEAR(truth().body_rates_frd.x(), 0.5, 0.1);

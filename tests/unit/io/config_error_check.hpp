@@ -14,7 +14,7 @@ namespace swiftlet::tests {
 inline std::string refusal(const std::function<void()>& work) {
   try {
     work();
-  } catch (const runtime::ConfigError& error) {
+  } catch (const io::ConfigError& error) {
     return error.what();
   }
   ADD_FAILURE() << "no ConfigError was thrown";

@@ -10,7 +10,7 @@
 #include "swiftlet/io/text_file.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::runtime::config_test {
+namespace swiftlet::io::config_test {
 
 using tests::refusal;
 
@@ -279,4 +279,4 @@ TEST(TextFile, ReadsTheWholeFile) {
   std::filesystem::remove(path);
 }
 
-}  // namespace swiftlet::runtime::config_test
+}  // namespace swiftlet::io::config_test

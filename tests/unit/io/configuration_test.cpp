@@ -10,7 +10,7 @@
 #include "swiftlet/io/program_directory.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::runtime::configuration_test {
+namespace swiftlet::io::configuration_test {
 
 namespace fs = std::filesystem;
 using tests::refusal;
@@ -85,4 +85,4 @@ TEST_F(FindConfig, SearchesAnAbsolutePathOnce) {
             "/nonexistent.yaml: is not found, looked for /nonexistent.yaml");
 }
 
-}  // namespace swiftlet::runtime::configuration_test
+}  // namespace swiftlet::io::configuration_test

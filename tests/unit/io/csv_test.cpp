@@ -7,7 +7,7 @@
 
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::runtime::csv_test {
+namespace swiftlet::io::csv_test {
 
 using tests::refusal;
 
@@ -109,4 +109,4 @@ TEST(Csv, WritesNumbersThatReadBack) {
   EXPECT_EQ(std::stod(exact(1.0 / 3.0)), 1.0 / 3.0);
 }
 
-}  // namespace swiftlet::runtime::csv_test
+}  // namespace swiftlet::io::csv_test

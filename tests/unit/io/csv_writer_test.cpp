@@ -10,7 +10,7 @@
 #include "swiftlet/io/text_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::runtime::csv_writer_test {
+namespace swiftlet::io::csv_writer_test {
 
 class CsvWriterTest : public testing::Test {
  protected:
@@ -68,4 +68,4 @@ TEST_F(CsvWriterTest, ReportsAFileThatCannotBeWritten) {
   }
 }
 
-}  // namespace swiftlet::runtime::csv_writer_test
+}  // namespace swiftlet::io::csv_writer_test

@@ -4,7 +4,7 @@
 
 #include "swiftlet/io/config_error.hpp"
 
-namespace swiftlet::runtime::edit_yaml_test {
+namespace swiftlet::io::edit_yaml_test {
 
 constexpr const char* kText =
     "# gains\n"
@@ -44,4 +44,4 @@ TEST(EditYaml, RefusesWhatItDoesNotFind) {
   EXPECT_THROW(with_scalars("a: &v 1\nb: *v\n", "f", {{"a", "2"}, {"b", "2"}}), ConfigError);
 }
 
-}  // namespace swiftlet::runtime::edit_yaml_test
+}  // namespace swiftlet::io::edit_yaml_test

@@ -7,7 +7,7 @@
 
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::runtime::measurements_test {
+namespace swiftlet::io::measurements_test {
 
 using tests::refusal;
 
@@ -141,4 +141,4 @@ TEST(Measurements, RefusesNumbersThatAreNotFinite) {
             "f.csv:2: rpm: is nan, must be a finite number");
 }
 
-}  // namespace swiftlet::runtime::measurements_test
+}  // namespace swiftlet::io::measurements_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::runtime::natural_order_test {
+namespace swiftlet::io::natural_order_test {
 
 TEST(NaturalOrder, CountsByNumber) {
   const std::vector<std::string> ordered = {"",      "7",   "07a",   "a",      "kl",   "kl1",
@@ -22,4 +22,4 @@ TEST(NaturalOrder, CountsBeyondTheLargestInteger) {
   EXPECT_TRUE(comes_before("9" + std::string(30, '9'), "1" + std::string(31, '0')));
 }
 
-}  // namespace swiftlet::runtime::natural_order_test
+}  // namespace swiftlet::io::natural_order_test

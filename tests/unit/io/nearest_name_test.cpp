@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::runtime::nearest_name_test {
+namespace swiftlet::io::nearest_name_test {
 
 TEST(NearestName, IsTheOneThatWasProbablyMeant) {
   const std::vector<std::string> names = {"fly", "arm", "goto", "takeoff", "trajectory"};
@@ -13,4 +13,4 @@ TEST(NearestName, IsTheOneThatWasProbablyMeant) {
   EXPECT_EQ(nearest_name({}, "fly"), "");
 }
 
-}  // namespace swiftlet::runtime::nearest_name_test
+}  // namespace swiftlet::io::nearest_name_test

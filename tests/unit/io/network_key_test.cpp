@@ -9,7 +9,7 @@
 #include "swiftlet/io/config_error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::runtime::network_key_test {
+namespace swiftlet::io::network_key_test {
 
 namespace fs = std::filesystem;
 
@@ -59,4 +59,4 @@ TEST_F(NetworkKeyFile, ThatIsMissingIsNamed) {
   EXPECT_THROW(read_network_keys(folder_.path() / "none.key"), ConfigError);
 }
 
-}  // namespace swiftlet::runtime::network_key_test
+}  // namespace swiftlet::io::network_key_test

@@ -11,7 +11,7 @@
 #include "swiftlet/io/text_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::runtime::owner_only_test {
+namespace swiftlet::io::owner_only_test {
 
 namespace fs = std::filesystem;
 
@@ -55,4 +55,4 @@ TEST_F(OwnerOnly, KeepsTheOldFileIfItCannotWrite) {
   EXPECT_TRUE(fs::is_directory(folder_.path()));
 }
 
-}  // namespace swiftlet::runtime::owner_only_test
+}  // namespace swiftlet::io::owner_only_test

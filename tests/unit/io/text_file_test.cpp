@@ -4,7 +4,7 @@
 
 #include "swiftlet/io/config_error.hpp"
 
-namespace swiftlet::runtime::text_file_test {
+namespace swiftlet::io::text_file_test {
 
 TEST(Printable, ReplacesWhatATerminalWouldObey) {
   EXPECT_EQ(printable("mass: 3 \xc2\xb5m\nline"), "mass: 3 \xc2\xb5m\nline");
@@ -28,4 +28,4 @@ TEST(ControlCharacters, AreFoundWithTheirLine) {
   EXPECT_EQ(line_of_control_character(std::string("a,b\n1,\0\n", 8)), 2);
 }
 
-}  // namespace swiftlet::runtime::text_file_test
+}  // namespace swiftlet::io::text_file_test

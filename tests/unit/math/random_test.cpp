@@ -12,9 +12,9 @@
 
 namespace swiftlet::tests::random_test {
 
-using plant::kZiggurat;
-using plant::RandomStream;
-using plant::Ziggurat;
+using math::kZiggurat;
+using math::RandomStream;
+using math::Ziggurat;
 
 // Cumulative distribution function of the standard normal distribution.
 double share_below(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }

@@ -11,7 +11,7 @@
 
 #include "swiftlet/math/linear_algebra.hpp"
 
-namespace swiftlet::control::riccati_test {
+namespace swiftlet::math::riccati_test {
 
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
@@ -261,4 +261,4 @@ TEST(Riccati, RefusesProblemsWithoutASolution) {
   EXPECT_NE(refusal({integrators, force, i2 * std::nan(""), i1}).find("finite"), std::string::npos);
 }
 
-}  // namespace swiftlet::control::riccati_test
+}  // namespace swiftlet::math::riccati_test

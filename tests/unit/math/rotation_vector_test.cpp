@@ -6,7 +6,7 @@
 
 #include "tests/unit/plant/model/vehicles.hpp"
 
-namespace swiftlet::plant::rotation_vector_test {
+namespace swiftlet::math::rotation_vector_test {
 
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
@@ -69,4 +69,4 @@ TEST(RotationVector, RenormalisesProductsToUnitLength) {
   EXPECT_LT((renormalised(q).coeffs() - exact.coeffs()).norm(), 1e-15);
 }
 
-}  // namespace swiftlet::plant::rotation_vector_test
+}  // namespace swiftlet::math::rotation_vector_test

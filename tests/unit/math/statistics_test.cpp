@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground::statistics_test {
+namespace swiftlet::math::statistics_test {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -44,4 +44,4 @@ TEST(RankCorrelation, IgnoresPairsThatAreNotFinite) {
   EXPECT_TRUE(std::isnan(rank_correlation({1, 1, 1}, {1, 2, 3}))) << "equal values have no order";
 }
 
-}  // namespace swiftlet::ground::statistics_test
+}  // namespace swiftlet::math::statistics_test

@@ -8,7 +8,7 @@
 #include "swiftlet/math/time.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground::process_log_test {
+namespace swiftlet::record::process_log_test {
 
 constexpr std::int64_t kNow_s = 1'800'000'000;  // since 1970
 
@@ -73,4 +73,4 @@ TEST(ProcessLog, BecomesFoxgloveLog) {
   EXPECT_NE(bytes.find("control"), std::string::npos);
 }
 
-}  // namespace swiftlet::ground::process_log_test
+}  // namespace swiftlet::record::process_log_test

@@ -12,7 +12,7 @@
 #include "swiftlet/services/dds/payload.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::ground::recording_test {
+namespace swiftlet::record::recording_test {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -88,13 +88,13 @@ std::map<std::string, mcap::Value> decoded(const record::StandardMessage& messag
 template <class T>
 std::vector<record::StandardMessage> following(record::StandardMessages& standard, const std::string& topic,
                                                const T& message, std::int64_t time_ns) {
-  const auto payload = comms::to_payload(message);
+  const auto payload = dds::to_payload(message);
   return standard.of(topic, {0, 1, time_ns, time_ns, {payload.data(), payload.size()}});
 }
 
 TEST(StandardMessages, OfAnEstimateArePoseTransformOdometryAndPath) {
   record::StandardMessages standard("kl1");
-  comms::msg::Estimate estimate;
+  messages::msg::Estimate estimate;
   estimate.position_ned({1.0, 2.0, -3.0});
   estimate.q_ned_from_frd({std::sqrt(0.5), 0.0, 0.0, std::sqrt(0.5)});  // heads east
   estimate.velocity_ned({0.5, 0.25, -0.125});
@@ -139,7 +139,7 @@ TEST(StandardMessages, OfAnEstimateArePoseTransformOdometryAndPath) {
 
 TEST(StandardMessages, OfImuAndBatteryAreInFluAndSi) {
   record::StandardMessages standard("kl1");
-  const auto imu = following(standard, "imu", comms::to_message(comms::fixtures::imu_sample()), 1);
+  const auto imu = following(standard, "imu", messages::to_message(messages::fixtures::imu_sample()), 1);
   ASSERT_EQ(imu.size(), 1U);
   const auto values = decoded(imu.front());
   EXPECT_EQ(values.at("header.frame_id"), mcap::Value(std::string("kl1")));
@@ -148,12 +148,13 @@ TEST(StandardMessages, OfImuAndBatteryAreInFluAndSi) {
   EXPECT_EQ(values.at("angular_velocity.y"), mcap::Value(0.4));
   EXPECT_EQ(values.at("orientation_covariance[0]"), mcap::Value(-1.0));
   const auto battery =
-      following(standard, "battery", comms::to_message(comms::fixtures::battery_sample()), 1);
+      following(standard, "battery", messages::to_message(messages::fixtures::battery_sample()), 1);
   ASSERT_EQ(battery.size(), 1U);
   EXPECT_EQ(decoded(battery.front()).at("percentage"), mcap::Value(0.75));
   EXPECT_EQ(decoded(battery.front()).at("current"), mcap::Value(-2.5));
-  EXPECT_TRUE(following(standard, "rotor_speeds", comms::to_message(comms::fixtures::rotor_speed_sample()), 1)
-                  .empty());
+  EXPECT_TRUE(
+      following(standard, "rotor_speeds", messages::to_message(messages::fixtures::rotor_speed_sample()), 1)
+          .empty());
 }
 
 TEST(StandardMessages, OfEventsAreLinesOfALog) {
@@ -161,7 +162,7 @@ TEST(StandardMessages, OfEventsAreLinesOfALog) {
   const auto line_of = [](const std::vector<record::StandardMessage>& messages) {
     return messages.size() == 1 ? std::get<std::string>(decoded(messages[0]).at("message")) : "";
   };
-  comms::msg::ControlStatus status;
+  messages::msg::ControlStatus status;
   status.mode(static_cast<std::uint8_t>(4));
   status.reason() = "mission started";
   const auto first = following(standard, "control_status", status, 3'000'000'001);
@@ -171,10 +172,10 @@ TEST(StandardMessages, OfEventsAreLinesOfALog) {
   EXPECT_EQ(decoded(first[0]).at("timestamp.nanosec"), mcap::Value(std::uint64_t{1}));
   EXPECT_NE(line_of(first).find(": mission started"), std::string::npos) << line_of(first);
   EXPECT_TRUE(following(standard, "control_status", status, 4'000'000'000).empty()) << "nothing new";
-  comms::msg::CommandAck ack;
+  messages::msg::CommandAck ack;
   ack.reason() = "not armed";
   EXPECT_EQ(line_of(following(standard, "command_ack", ack, 5)), "request refused: not armed");
-  comms::msg::VehicleInfo info;
+  messages::msg::VehicleInfo info;
   EXPECT_TRUE(following(standard, "vehicle_info", info, 6).empty());
   info.rotors_running(true);
   EXPECT_EQ(line_of(following(standard, "vehicle_info", info, 7)), "rotors started");
@@ -182,9 +183,9 @@ TEST(StandardMessages, OfEventsAreLinesOfALog) {
   const auto fault = following(standard, "vehicle_info", info, 8);
   EXPECT_EQ(line_of(fault), "no command for 0.1 s");
   EXPECT_EQ(decoded(fault[0]).at("level"), mcap::Value(std::uint64_t{4}));
-  comms::msg::MissionStatus mission;
+  messages::msg::MissionStatus mission;
   EXPECT_TRUE(following(standard, "mission_status", mission, 9).empty()) << "none yet";
-  mission.state(comms::msg::MissionStatus_Constants::ABORTED);
+  mission.state(messages::msg::MissionStatus_Constants::ABORTED);
   mission.reason() = "pilot";
   EXPECT_EQ(line_of(following(standard, "mission_status", mission, 10)), "mission aborted: pilot");
 }
@@ -197,4 +198,4 @@ TEST(StandardMessages, OfBytesThatAreNoMessageAreNone) {
     EXPECT_TRUE(standard.of(topic, sample(0, bytes)).empty()) << topic;
 }
 
-}  // namespace swiftlet::ground::recording_test
+}  // namespace swiftlet::record::recording_test

@@ -11,7 +11,7 @@
 #include "swiftlet/record/evaluation.hpp"
 #include "swiftlet/simulation/simulated_flight.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::simulation {
 
 class DefaultFlight : public testing::Test {
  protected:
@@ -43,21 +43,19 @@ class DefaultFlight : public testing::Test {
   // Tracking errors from take-off to the start of the landing.
   static record::TrackingErrors fly_square(ClosedLoop& loop, const control::ControlSettings& settings) {
     control::Mission mission =
-        load_mission_file(runtime::find_config("missions/square.yaml"), settings.limits).mission;
+        io::load_mission_file(io::find_config("missions/square.yaml"), settings.limits).mission;
     mission.id = 1;
     record::Flight flight;
     const SimulatedFlight done =
-        fly(loop, mission, planned_duration_s(mission, settings.limits), {&flight, nullptr, {}});
+        fly(loop, mission, io::planned_duration_s(mission, settings.limits), {&flight, nullptr, {}});
     EXPECT_TRUE(done.completed) << done.reason;
     EXPECT_LT(loop.plant.state().position_ned.norm(), 0.1) << "landed elsewhere";
     return record::evaluate(flight).errors;
   }
 
-  plant::Vehicle vehicle_ = runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml"));
-  plant::SimulationSettings world_ =
-      runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
-  control::ControlSettings settings_ =
-      runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml"));
+  plant::Vehicle vehicle_ = io::load_vehicle(io::find_config("vehicles/kaylion.yaml"));
+  plant::SimulationSettings world_ = io::load_simulation_settings(io::find_config("simulation/default.yaml"));
+  control::ControlSettings settings_ = io::load_control_settings(io::find_config("control/motor_lag.yaml"));
 };
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::simulation

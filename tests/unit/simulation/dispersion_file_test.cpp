@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/fault.hpp"
 #include "tests/support/paths.hpp"
-#include "tests/unit/ground/fault.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 #include "tests/unit/simulation/nominal_world.hpp"
 
-namespace swiftlet::ground::dispersion_file_test {
+namespace swiftlet::simulation::dispersion_file_test {
 
 Dispersion parse(const std::string& text) { return parse_dispersion_file(text, "v.yaml", nominal()); }
 
@@ -81,7 +81,7 @@ std::string one(const std::string& key, const std::string& fields) {
   return "parameters:\n  " + key + ": {" + fields + "}\n";
 }
 
-class BadDispersionFile : public testing::TestWithParam<Fault> {};
+class BadDispersionFile : public testing::TestWithParam<tests::Fault> {};
 
 TEST_P(BadDispersionFile, IsRefusedWithASentence) {
   EXPECT_EQ(tests::refusal([] { parse(GetParam().text); }), GetParam().sentence);
@@ -90,76 +90,88 @@ TEST_P(BadDispersionFile, IsRefusedWithASentence) {
 INSTANTIATE_TEST_SUITE_P(
     , BadDispersionFile,
     testing::Values(
-        Fault{"NoParameters", "name: x\n", "v.yaml:1: parameters: is missing, must be given"},
-        Fault{"EmptyParameters", "parameters: {}\n",
-              "v.yaml:1: parameters: is empty, must name at least one parameter"},
-        Fault{"GivenTwice", "parameters:\n" + kMass + kMass,
-              "v.yaml:3: parameters.vehicle.mass: is given twice, first in line 2"},
-        Fault{"UnknownDistribution",
-              one("vehicle.mass", "distribution: cauchy, min: 1, max: 2, unit: kg, source: x"),
-              "v.yaml:2: parameters.vehicle.mass.distribution: is cauchy, must be uniform, log_uniform or "
-              "normal"},
-        Fault{"WrongUnit", one("vehicle.mass", "distribution: uniform, min: 30, max: 50, unit: g, source: x"),
-              "v.yaml:2: parameters.vehicle.mass.unit: is g, must be nominal or kg"},
-        Fault{"WholeInertiaInAUnit",
-              one("vehicle.inertia", "distribution: uniform, min: 1, max: 2, unit: kg*m^2, source: x"),
-              "v.yaml:2: parameters.vehicle.inertia.unit: is kg*m^2, must be nominal"},
-        Fault{"NoUnit", one("vehicle.mass", "distribution: uniform, min: 0.9, max: 1.1, source: x"),
-              "v.yaml:2: parameters.vehicle.mass.unit: is missing, must be given"},
-        Fault{"NoSource", one("vehicle.mass", "distribution: uniform, min: 0.9, max: 1.1, unit: nominal"),
-              "v.yaml:2: parameters.vehicle.mass.source: is missing, must be given"},
-        Fault{"NoLimit",
-              one("vehicle.mass", "distribution: normal, mean: 1, sigma: 1, unit: nominal, source: x"),
-              "v.yaml:2: parameters.vehicle.mass.min: is missing, must be given"},
-        Fault{"MaxBelowMin",
-              one("vehicle.mass", "distribution: uniform, min: 1.1, max: 0.9, unit: nominal, source: x"),
-              "v.yaml:2: parameters.vehicle.mass.max: is 0.9, must be above 1.1"},
-        Fault{"LogarithmOfZero",
-              one("simulation.mocap.latency_s",
-                  "distribution: log_uniform, min: 0, max: 1, unit: s, source: x"),
-              "v.yaml:2: parameters.simulation.mocap.latency_s.min: is 0, must be above 0"},
-        Fault{"MeanOutsideLimits",
-              one("vehicle.mass",
-                  "distribution: normal, mean: 2, sigma: 0.1, min: 0.9, max: 1.1, unit: nominal, source: x"),
-              "v.yaml:2: parameters.vehicle.mass.mean: is 2, must be at least 0.9 and at most 1.1"},
-        Fault{"SigmaTooLarge",
-              one("vehicle.mass",
-                  "distribution: normal, mean: 1, sigma: 9, min: 0.75, max: 1.25, unit: nominal, source: x"),
-              "v.yaml:2: parameters.vehicle.mass.sigma: is 9, must be above 0 and at most 0.5"},
-        Fault{"SigmaForUniform",
-              one("vehicle.mass",
-                  "distribution: uniform, min: 0.9, max: 1.1, sigma: 1, unit: nominal, source: x"),
-              "v.yaml:2: parameters.vehicle.mass.sigma: is unknown, must be one of distribution, unit, min, "
-              "max or source"},
-        Fault{"NotANumber",
-              one("vehicle.mass", "distribution: uniform, min: .nan, max: 2, unit: kg, source: x"),
-              "v.yaml:2: parameters.vehicle.mass.min: is .nan, must be a finite number"},
-        Fault{"FactorOfNominalZero",
-              one("simulation.mocap.dropout_probability",
-                  "distribution: uniform, min: 0.5, max: 2, unit: nominal, source: x"),
-              "v.yaml:2: parameters.simulation.mocap.dropout_probability.unit: is nominal, must be 1: the "
-              "nominal value is 0"},
-        Fault{"NegativeLatency",
-              one("simulation.mocap.latency_s",
-                  "distribution: uniform, min: -0.01, max: 1, unit: s, source: x"),
-              "v.yaml:2: parameters.simulation.mocap.latency_s.min: is -0.01, must be at least 0 and at most "
-              "1"},
-        Fault{"WindBeyondTheLimit",
-              one("simulation.air.wind_ned_m_s.east",
-                  "distribution: uniform, min: 0, max: 50, unit: m/s, source: x"),
-              "v.yaml:2: parameters.simulation.air.wind_ned_m_s.east.max: is 50, must be at least -30 and at "
-              "most 30"},
-        Fault{"FactorBeyondTheLimit",
-              one("vehicle.motor.time_constant",
-                  "distribution: uniform, min: 0.01, max: 1, unit: nominal, source: x"),
-              "v.yaml:2: parameters.vehicle.motor.time_constant.min: times the nominal value is 0.000821, "
-              "must be "
-              "a finite number of at least 0.001"},
-        Fault{"NegativeInertia",
-              one("vehicle.inertia.xx", "distribution: uniform, min: -1, max: 1, unit: nominal, source: x"),
-              "v.yaml:2: parameters.vehicle.inertia.xx.min: is -1, must be above 0"},
-        Fault{"UnknownRootKey", "parameters:\n" + kMass + "seed: 3\n",
-              "v.yaml:3: seed: is unknown, must be one of name or parameters"}),
-    name_of);
+        tests::Fault{"NoParameters", "name: x\n", "v.yaml:1: parameters: is missing, must be given"},
+        tests::Fault{"EmptyParameters", "parameters: {}\n",
+                     "v.yaml:1: parameters: is empty, must name at least one parameter"},
+        tests::Fault{"GivenTwice", "parameters:\n" + kMass + kMass,
+                     "v.yaml:3: parameters.vehicle.mass: is given twice, first in line 2"},
+        tests::Fault{
+            "UnknownDistribution",
+            one("vehicle.mass", "distribution: cauchy, min: 1, max: 2, unit: kg, source: x"),
+            "v.yaml:2: parameters.vehicle.mass.distribution: is cauchy, must be uniform, log_uniform or "
+            "normal"},
+        tests::Fault{"WrongUnit",
+                     one("vehicle.mass", "distribution: uniform, min: 30, max: 50, unit: g, source: x"),
+                     "v.yaml:2: parameters.vehicle.mass.unit: is g, must be nominal or kg"},
+        tests::Fault{"WholeInertiaInAUnit",
+                     one("vehicle.inertia", "distribution: uniform, min: 1, max: 2, unit: kg*m^2, source: x"),
+                     "v.yaml:2: parameters.vehicle.inertia.unit: is kg*m^2, must be nominal"},
+        tests::Fault{"NoUnit", one("vehicle.mass", "distribution: uniform, min: 0.9, max: 1.1, source: x"),
+                     "v.yaml:2: parameters.vehicle.mass.unit: is missing, must be given"},
+        tests::Fault{"NoSource",
+                     one("vehicle.mass", "distribution: uniform, min: 0.9, max: 1.1, unit: nominal"),
+                     "v.yaml:2: parameters.vehicle.mass.source: is missing, must be given"},
+        tests::Fault{"NoLimit",
+                     one("vehicle.mass", "distribution: normal, mean: 1, sigma: 1, unit: nominal, source: x"),
+                     "v.yaml:2: parameters.vehicle.mass.min: is missing, must be given"},
+        tests::Fault{
+            "MaxBelowMin",
+            one("vehicle.mass", "distribution: uniform, min: 1.1, max: 0.9, unit: nominal, source: x"),
+            "v.yaml:2: parameters.vehicle.mass.max: is 0.9, must be above 1.1"},
+        tests::Fault{"LogarithmOfZero",
+                     one("simulation.mocap.latency_s",
+                         "distribution: log_uniform, min: 0, max: 1, unit: s, source: x"),
+                     "v.yaml:2: parameters.simulation.mocap.latency_s.min: is 0, must be above 0"},
+        tests::Fault{
+            "MeanOutsideLimits",
+            one("vehicle.mass",
+                "distribution: normal, mean: 2, sigma: 0.1, min: 0.9, max: 1.1, unit: nominal, source: x"),
+            "v.yaml:2: parameters.vehicle.mass.mean: is 2, must be at least 0.9 and at most 1.1"},
+        tests::Fault{
+            "SigmaTooLarge",
+            one("vehicle.mass",
+                "distribution: normal, mean: 1, sigma: 9, min: 0.75, max: 1.25, unit: nominal, source: x"),
+            "v.yaml:2: parameters.vehicle.mass.sigma: is 9, must be above 0 and at most 0.5"},
+        tests::Fault{
+            "SigmaForUniform",
+            one("vehicle.mass",
+                "distribution: uniform, min: 0.9, max: 1.1, sigma: 1, unit: nominal, source: x"),
+            "v.yaml:2: parameters.vehicle.mass.sigma: is unknown, must be one of distribution, unit, min, "
+            "max or source"},
+        tests::Fault{"NotANumber",
+                     one("vehicle.mass", "distribution: uniform, min: .nan, max: 2, unit: kg, source: x"),
+                     "v.yaml:2: parameters.vehicle.mass.min: is .nan, must be a finite number"},
+        tests::Fault{
+            "FactorOfNominalZero",
+            one("simulation.mocap.dropout_probability",
+                "distribution: uniform, min: 0.5, max: 2, unit: nominal, source: x"),
+            "v.yaml:2: parameters.simulation.mocap.dropout_probability.unit: is nominal, must be 1: the "
+            "nominal value is 0"},
+        tests::Fault{
+            "NegativeLatency",
+            one("simulation.mocap.latency_s",
+                "distribution: uniform, min: -0.01, max: 1, unit: s, source: x"),
+            "v.yaml:2: parameters.simulation.mocap.latency_s.min: is -0.01, must be at least 0 and at most "
+            "1"},
+        tests::Fault{
+            "WindBeyondTheLimit",
+            one("simulation.air.wind_ned_m_s.east",
+                "distribution: uniform, min: 0, max: 50, unit: m/s, source: x"),
+            "v.yaml:2: parameters.simulation.air.wind_ned_m_s.east.max: is 50, must be at least -30 and at "
+            "most 30"},
+        tests::Fault{
+            "FactorBeyondTheLimit",
+            one("vehicle.motor.time_constant",
+                "distribution: uniform, min: 0.01, max: 1, unit: nominal, source: x"),
+            "v.yaml:2: parameters.vehicle.motor.time_constant.min: times the nominal value is 0.000821, "
+            "must be "
+            "a finite number of at least 0.001"},
+        tests::Fault{
+            "NegativeInertia",
+            one("vehicle.inertia.xx", "distribution: uniform, min: -1, max: 1, unit: nominal, source: x"),
+            "v.yaml:2: parameters.vehicle.inertia.xx.min: is -1, must be above 0"},
+        tests::Fault{"UnknownRootKey", "parameters:\n" + kMass + "seed: 3\n",
+                     "v.yaml:3: seed: is unknown, must be one of name or parameters"}),
+    tests::name_of);
 
-}  // namespace swiftlet::ground::dispersion_file_test
+}  // namespace swiftlet::simulation::dispersion_file_test

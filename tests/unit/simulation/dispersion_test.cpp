@@ -11,7 +11,7 @@
 #include "tests/unit/io/config_error_check.hpp"
 #include "tests/unit/simulation/nominal_world.hpp"
 
-namespace swiftlet::ground::dispersion_test {
+namespace swiftlet::simulation::dispersion_test {
 
 Dispersion parse(const std::string& parameters) {
   return parse_dispersion_file("parameters:\n" + parameters, "v.yaml", nominal());
@@ -133,4 +133,4 @@ TEST(DispersionSample, ScalesTheResistanceWithTheMotorConstants) {
   }
 }
 
-}  // namespace swiftlet::ground::dispersion_test
+}  // namespace swiftlet::simulation::dispersion_test

@@ -12,12 +12,12 @@
 #include "tests/support/campaign.hpp"
 #include "tests/support/flight_setup.hpp"
 
-namespace swiftlet::ground::disturbed_flight_test {
+namespace swiftlet::simulation::disturbed_flight_test {
 
 control::Mission square(const std::string& speed, const control::Limits& limits) {
   const std::string waypoint = ", speed_m_s: " + speed + "}\n";
   control::Mission mission =
-      parse_mission_file(
+      io::parse_mission_file(
           "name: square\nframe: ned\ntolerance_m: 0.2\nitems:\n"
           "  - {kind: takeoff, height_m: 1.0, speed_m_s: 0.5, hold_s: 0.5}\n"
           "  - {kind: waypoint, position_m: [2, 0, -1]" +
@@ -56,8 +56,8 @@ struct FlightSetup : tests::FlightSetup {
       ++count;
       return false;
     };
-    const SimulatedFlight done =
-        ground::fly(loop, mission, planned_duration_s(mission, control.limits), {nullptr, nullptr, watch});
+    const SimulatedFlight done = simulation::fly(
+        loop, mission, io::planned_duration_s(mission, control.limits), {nullptr, nullptr, watch});
     EXPECT_TRUE(done.completed) << done.reason;
     flight.rms_m = std::sqrt(sum / count);
     return flight;
@@ -189,4 +189,4 @@ TEST(DisturbedFlight, KnowsTheGroundEffect) {
   }
 }
 
-}  // namespace swiftlet::ground::disturbed_flight_test
+}  // namespace swiftlet::simulation::disturbed_flight_test

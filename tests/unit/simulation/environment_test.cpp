@@ -16,7 +16,7 @@
 #include "tests/support/paths.hpp"
 #include "tests/unit/simulation/nominal_world.hpp"
 
-namespace swiftlet::ground::environment_test {
+namespace swiftlet::simulation::environment_test {
 
 using plant::ControlLevel;
 
@@ -271,4 +271,4 @@ TEST(VectorEnvironment, BeginsTheNextEpisodeInTheStepThatEndsOne) {
   EXPECT_EQ(seen, observed(alone));
 }
 
-}  // namespace swiftlet::ground::environment_test
+}  // namespace swiftlet::simulation::environment_test

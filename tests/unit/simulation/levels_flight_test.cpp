@@ -9,7 +9,7 @@
 #include "tests/support/malloc_guard.hpp"
 #include "tests/unit/simulation/default_flight.hpp"
 
-namespace swiftlet::ground::levels_flight_test {
+namespace swiftlet::simulation::levels_flight_test {
 
 using plant::ControlLevel;
 
@@ -234,7 +234,7 @@ TEST_P(Levels, StreamsOfAttitudesAreFollowedOrRefusedByName) {
 }
 
 TEST_P(Levels, AnotherVehicleFliesWithTheSameSettings) {
-  const plant::Vehicle crazyflie = runtime::load_vehicle(runtime::find_config("vehicles/crazyflie2.yaml"));
+  const plant::Vehicle crazyflie = io::load_vehicle(io::find_config("vehicles/crazyflie2.yaml"));
   EXPECT_LT(fly_square_with(crazyflie).rms_3d_m, own_position_loop() ? 0.05 : 0.02);
 }
 
@@ -243,7 +243,7 @@ class LevelsOverARadio : public Levels {};
 
 // GIVEN a Crazyflie behind a radio with 2 % loss THEN it flies the square with the default gains.
 TEST_P(LevelsOverARadio, TrackTheSquare) {
-  const plant::Vehicle crazyflie = runtime::load_vehicle(runtime::find_config("vehicles/crazyflie2.yaml"));
+  const plant::Vehicle crazyflie = io::load_vehicle(io::find_config("vehicles/crazyflie2.yaml"));
   for (const double delay_s : {0.01, 0.04}) {
     world_.radio = {delay_s, 0.004, 0.02};
     const record::TrackingErrors errors = fly_square_with(crazyflie);
@@ -253,11 +253,10 @@ TEST_P(LevelsOverARadio, TrackTheSquare) {
 
 // GIVEN a controller of level attitude WHEN the vehicle accepts other levels only THEN it cannot be armed.
 TEST(LevelChoice, ArmingIsRefusedAtALevelThatTheVehicleDoesNotAccept) {
-  plant::SimulationSettings world =
-      runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
+  plant::SimulationSettings world = io::load_simulation_settings(io::find_config("simulation/default.yaml"));
   world.control_levels = plant::ControlLevels::from_bits(0b1010);
-  ClosedLoop loop(runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml")), world,
-                  runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml")), 1);
+  ClosedLoop loop(io::load_vehicle(io::find_config("vehicles/kaylion.yaml")), world,
+                  io::load_control_settings(io::find_config("control/motor_lag.yaml")), 1);
   loop.controller.set_levels(world.control_levels, ControlLevel::kAttitude);
   loop.step_until([&] { return loop.time_s() > 1.0; }, 2.0);
   control::Request arm;
@@ -275,11 +274,10 @@ TEST(LevelChoice, ArmingIsRefusedAtALevelThatTheVehicleDoesNotAccept) {
 
 // GIVEN rotors that turn WHEN the choice changes THEN the level stays until they are off.
 TEST(LevelChoice, StaysWhileTheRotorsTurn) {
-  plant::SimulationSettings world =
-      runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
+  plant::SimulationSettings world = io::load_simulation_settings(io::find_config("simulation/default.yaml"));
   world.control_levels = plant::ControlLevels::from_bits(0b0110);
-  ClosedLoop loop(runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml")), world,
-                  runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml")), 1);
+  ClosedLoop loop(io::load_vehicle(io::find_config("vehicles/kaylion.yaml")), world,
+                  io::load_control_settings(io::find_config("control/motor_lag.yaml")), 1);
   loop.step_until([&] { return loop.time_s() > 1.0; }, 2.0);
   control::Request request;
   request.kind = control::RequestKind::kArm;
@@ -303,4 +301,4 @@ INSTANTIATE_TEST_SUITE_P(All, LevelsOverARadio,
                                          ControlLevel::kTrajectory),
                          [](const auto& level) { return std::string(plant::to_string(level.param)); });
 
-}  // namespace swiftlet::ground::levels_flight_test
+}  // namespace swiftlet::simulation::levels_flight_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::ground::mission_runner_test {
+namespace swiftlet::simulation::mission_runner_test {
 
 using control::MissionState;
 
@@ -122,4 +122,4 @@ TEST(MissionRunner, EndsAFlightThatTakesTooLong) {
   EXPECT_EQ(vehicle.steps_, 46);
 }
 
-}  // namespace swiftlet::ground::mission_runner_test
+}  // namespace swiftlet::simulation::mission_runner_test

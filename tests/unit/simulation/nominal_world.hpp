@@ -6,13 +6,12 @@
 #include "swiftlet/simulation/dispersion.hpp"
 #include "tests/support/paths.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::simulation {
 
 inline const World& nominal() {
-  static const World world{
-      runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")),
-      runtime::load_simulation_settings(tests::in_source("config/simulation/default.yaml"))};
+  static const World world{io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")),
+                           io::load_simulation_settings(tests::in_source("config/simulation/default.yaml"))};
   return world;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::simulation

@@ -9,7 +9,7 @@
 #include "tests/support/malloc_guard.hpp"
 #include "tests/unit/simulation/default_flight.hpp"
 
-namespace swiftlet::ground::odometry_flight_test {
+namespace swiftlet::simulation::odometry_flight_test {
 
 using control::Mode;
 using control::OdometryUse;
@@ -37,7 +37,7 @@ class Odometry : public DefaultFlight {
           const plant::VehicleState& state = loop.plant.state();
           found.speed = std::max(found.speed, state.velocity_ned.norm());
           found.yaw_rate = std::max(found.yaw_rate, std::abs(state.body_rates_frd.z()));
-          const control::EulerAngles angles = control::euler_angles(state.q_ned_from_frd);
+          const math::EulerAngles angles = math::euler_angles(state.q_ned_from_frd);
           found.tilt_rad = std::max({found.tilt_rad, std::abs(angles.roll_rad), std::abs(angles.pitch_rad)});
           return loop.time_s() >= end_s;
         },
@@ -230,4 +230,4 @@ INSTANTIATE_TEST_SUITE_P(Settings, OdometryFaults,
                                                                         : "both";
                          });
 
-}  // namespace swiftlet::ground::odometry_flight_test
+}  // namespace swiftlet::simulation::odometry_flight_test

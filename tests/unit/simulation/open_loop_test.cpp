@@ -14,25 +14,25 @@
 #include "tests/unit/plant/model/vehicles.hpp"
 #include "tests/unit/plant/simulation/paper_equations.hpp"
 
-namespace swiftlet::ground::open_loop_test {
+namespace swiftlet::simulation::open_loop_test {
 
 using tests::kaylion;
 
 std::vector<PulseWidths> pulses(const std::string& rows) {
-  return read_pulses(runtime::parse_csv("t,pwm1,pwm2,pwm3,pwm4\n" + rows, "pwm.csv", pulse_columns(4), 2),
+  return read_pulses(io::parse_csv("t,pwm1,pwm2,pwm3,pwm4\n" + rows, "pwm.csv", pulse_columns(4), 2),
                      kaylion());
 }
 
 plant::VehicleState state(const std::string& rows) {
-  return read_state(runtime::parse_csv("px,py,pz,vx,vy,vz,qw,qx,qy,qz,p,q,r,om1,om2,om3,om4\n" + rows,
-                                       "start.csv", state_columns(4)),
+  return read_state(io::parse_csv("px,py,pz,vx,vy,vz,qw,qx,qy,qz,p,q,r,om1,om2,om3,om4\n" + rows, "start.csv",
+                                  state_columns(4)),
                     4);
 }
 
 std::string fault_of(const std::function<void()>& read) {
   try {
     read();
-  } catch (const runtime::ConfigError& error) {
+  } catch (const io::ConfigError& error) {
     return error.what();
   }
   return "none";
@@ -53,7 +53,7 @@ TEST(OpenLoop, HoversAtTheAnchorSpeedAndPulseWidth) {
   const double pulse = 1039.0 + 1000.0 * throttle;
   plant::VehicleState initial;
   initial.rotor_speeds.fill(plant::hover_speed(vehicle));
-  std::string row = "," + runtime::exact(pulse);
+  std::string row = "," + io::exact(pulse);
   row = row + row + row + row + "\n";
   const auto rows = simulate_open_loop(vehicle, 3.7, initial, pulses("0" + row + "2" + row));
   EXPECT_LT(rows.back().state.position_ned.norm(), 1e-9);
@@ -174,4 +174,4 @@ TEST(OpenLoop, RefusesBadInputWithFileLineColumnValueAndLimit) {
       "second row");
 }
 
-}  // namespace swiftlet::ground::open_loop_test
+}  // namespace swiftlet::simulation::open_loop_test

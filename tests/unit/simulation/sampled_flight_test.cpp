@@ -18,18 +18,16 @@
 #include "swiftlet/simulation/simulated_flight.hpp"
 #include "tests/support/campaign.hpp"
 
-namespace swiftlet::ground::sampled_flight_test {
+namespace swiftlet::simulation::sampled_flight_test {
 
 using control::PolynomialSegment;
 using control::PositionYaw;
 using Path = std::vector<PolynomialSegment>;
 
 struct Lab {
-  plant::Vehicle vehicle = runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml"));
-  plant::SimulationSettings world =
-      runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
-  control::ControlSettings control =
-      runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml"));
+  plant::Vehicle vehicle = io::load_vehicle(io::find_config("vehicles/kaylion.yaml"));
+  plant::SimulationSettings world = io::load_simulation_settings(io::find_config("simulation/default.yaml"));
+  control::ControlSettings control = io::load_control_settings(io::find_config("control/motor_lag.yaml"));
 
   bool can_fly(const Path& path) const {
     const auto demands =
@@ -59,7 +57,7 @@ Path random_path(std::mt19937_64& random) {
   for (double stretch = 1.0;; stretch *= 1.1) {
     Path path = control::spline(control::Smoothness::kMinimumSnap, points,
                                 std::vector<double>(points.size() - 1, stretch * leg_s));
-    if (heights_of(path).least_m < kLowest_m) return random_path(random);
+    if (io::heights_of(path).least_m < kLowest_m) return random_path(random);
     if (lab().can_fly(path)) return path;
   }
 }
@@ -130,8 +128,8 @@ Error fly(const Path& path, const Path& original, std::uint64_t seed) {
     ++count;
     return false;
   };
-  const SimulatedFlight flight = ground::fly(loop, mission, planned_duration_s(mission, lab().control.limits),
-                                             {nullptr, nullptr, watch});
+  const SimulatedFlight flight = simulation::fly(
+      loop, mission, io::planned_duration_s(mission, lab().control.limits), {nullptr, nullptr, watch});
   EXPECT_TRUE(flight.completed) << flight.reason;
   error.rms_m = std::sqrt(sum / count);
   return error;
@@ -147,9 +145,9 @@ TEST(SampledFlight, AddsAtMostAMillimetreToTheError) {
     const bool derivatives = uniform(random, 0.0, 1.0) < 0.5;
     SCOPED_TRACE(fmt::format("case {}: {} Hz, {} decimals{}, {:.1f} s", i, rate_hz, decimals,
                              derivatives ? ", with derivatives" : "", duration_s(path)));
-    TrajectoryFile file;
-    ASSERT_NO_THROW(file = read_sampled_csv(sampled(path, rate_hz, decimals, derivatives), "s.csv",
-                                            lab().control.limits, {MissionFrame::kNed, {}}));
+    io::TrajectoryFile file;
+    ASSERT_NO_THROW(file = io::read_sampled_csv(sampled(path, rate_hz, decimals, derivatives), "s.csv",
+                                                lab().control.limits, {io::MissionFrame::kNed, {}}));
     EXPECT_TRUE(lab().can_fly(file.segments));
     const Error original = fly(path, path, 1);
     const Error again = fly(file.segments, path, 1);
@@ -160,4 +158,4 @@ TEST(SampledFlight, AddsAtMostAMillimetreToTheError) {
   }
 }
 
-}  // namespace swiftlet::ground::sampled_flight_test
+}  // namespace swiftlet::simulation::sampled_flight_test

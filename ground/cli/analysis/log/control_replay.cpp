@@ -33,7 +33,7 @@ namespace swiftlet::ground {
 namespace {
 
 using namespace std::chrono_literals;
-namespace topics = comms::topics;
+namespace topics = messages::topics;
 namespace fs = std::filesystem;
 using Steady = std::chrono::steady_clock;
 using RequestKey = std::pair<std::uint64_t, std::uint64_t>;  // client and id
@@ -57,7 +57,7 @@ mcap::ByteView view_of(const mcap::Bytes& bytes) { return {bytes.data(), bytes.s
 template <class T>
 std::optional<T> message_in(mcap::ByteView payload) {
   T message;
-  if (!comms::from_payload(payload.data, payload.size, message)) return std::nullopt;
+  if (!dds::from_payload(payload.data, payload.size, message)) return std::nullopt;
   return message;
 }
 
@@ -82,17 +82,16 @@ class Inputs {
     selection.topics.insert(prefix + topics::kCommandAck.name);
     mcap::Messages messages(file, selection);
     while (messages.next()) take(messages.channel().topic.substr(prefix.size()), messages.message());
-    if (imu.empty())
-      throw runtime::ConfigError(file.name(), 0, prefix + topics::kImu.name, "has no messages");
+    if (imu.empty()) throw io::ConfigError(file.name(), 0, prefix + topics::kImu.name, "has no messages");
     if (command_topic.empty())
-      throw runtime::ConfigError(file.name(), 0, prefix + topics::kActuatorCommand.name,
-                                 "has no messages, nor have the setpoints of other levels");
+      throw io::ConfigError(file.name(), 0, prefix + topics::kActuatorCommand.name,
+                            "has no messages, nor have the setpoints of other levels");
     const bool described = std::any_of(between.begin(), between.end(), [](const Recorded& message) {
       return message.topic == topics::kVehicleInfo.name;
     });
     if (!described)
-      throw runtime::ConfigError(file.name(), 0, prefix + topics::kVehicleInfo.name,
-                                 "has no messages; control needs one to know the vehicle's levels");
+      throw io::ConfigError(file.name(), 0, prefix + topics::kVehicleInfo.name,
+                            "has no messages; control needs one to know the vehicle's levels");
   }
 
   static constexpr std::array kSamples = {topics::kMocapPose.name, topics::kBattery.name,
@@ -115,24 +114,25 @@ class Inputs {
     Recorded recorded{
         message.log_time_ns, 0, topic, {message.payload.data, message.payload.data + message.payload.size}};
     if (topic == topics::kImu.name) return take_imu(std::move(recorded));
-    if (topic == topics::kMocapPose.name) return take_sample<comms::msg::MocapPose>(std::move(recorded));
-    if (topic == topics::kBattery.name) return take_sample<comms::msg::Battery>(std::move(recorded));
-    if (topic == topics::kRotorSpeeds.name) return take_sample<comms::msg::RotorSpeeds>(std::move(recorded));
+    if (topic == topics::kMocapPose.name) return take_sample<messages::msg::MocapPose>(std::move(recorded));
+    if (topic == topics::kBattery.name) return take_sample<messages::msg::Battery>(std::move(recorded));
+    if (topic == topics::kRotorSpeeds.name)
+      return take_sample<messages::msg::RotorSpeeds>(std::move(recorded));
     if (topic == topics::kCommandAck.name) {
-      if (const auto ack = message_in<comms::msg::CommandAck>(message.payload))
+      if (const auto ack = message_in<messages::msg::CommandAck>(message.payload))
         answers[{ack->client(), ack->id()}] = ack->accepted();
       return;
     }
-    if (topic == topics::kActuatorCommand.name) take_command<comms::msg::ActuatorCommand>(recorded);
-    if (topic == topics::kRatesSetpoint.name) take_command<comms::msg::RatesSetpoint>(recorded);
-    if (topic == topics::kAttitudeSetpoint.name) take_command<comms::msg::AttitudeSetpoint>(recorded);
-    if (topic == topics::kTrajectorySetpoint.name) take_command<comms::msg::TrajectorySetpoint>(recorded);
+    if (topic == topics::kActuatorCommand.name) take_command<messages::msg::ActuatorCommand>(recorded);
+    if (topic == topics::kRatesSetpoint.name) take_command<messages::msg::RatesSetpoint>(recorded);
+    if (topic == topics::kAttitudeSetpoint.name) take_command<messages::msg::AttitudeSetpoint>(recorded);
+    if (topic == topics::kTrajectorySetpoint.name) take_command<messages::msg::TrajectorySetpoint>(recorded);
     if (std::find(kBetweenSamples.begin(), kBetweenSamples.end(), topic) != kBetweenSamples.end())
       between.push_back(std::move(recorded));
   }
 
   void take_imu(Recorded recorded) {
-    const auto sample = message_in<comms::msg::Imu>(view_of(recorded.payload));
+    const auto sample = message_in<messages::msg::Imu>(view_of(recorded.payload));
     if (!sample || (!imu.empty() && sample->sequence_number() <= imu.back().sequence)) return;
     lockstep = lockstep || sample->lockstep().mocap_pose() > 0;
     recorded.sequence = sample->sequence_number();
@@ -160,17 +160,17 @@ class Inputs {
 // The commands of the control process, as it sends them.
 class Answers {
  public:
-  Answers(comms::Node& node, const std::string& topic) {
+  Answers(dds::Node& node, const std::string& topic) {
     if (topic == topics::kActuatorCommand.name) subscribe(node, topics::kActuatorCommand);
     if (topic == topics::kRatesSetpoint.name) subscribe(node, topics::kRatesSetpoint);
     if (topic == topics::kAttitudeSetpoint.name) subscribe(node, topics::kAttitudeSetpoint);
     if (topic == topics::kTrajectorySetpoint.name) subscribe(node, topics::kTrajectorySetpoint);
-    acks_ = node.subscribe<comms::msg::CommandAck>(topics::kCommandAck,
-                                                   [this](const comms::msg::CommandAck& ack) {
-                                                     const std::lock_guard lock(mutex_);
-                                                     accepted_[{ack.client(), ack.id()}] = ack.accepted();
-                                                     changed_.notify_all();
-                                                   });
+    acks_ = node.subscribe<messages::msg::CommandAck>(topics::kCommandAck,
+                                                      [this](const messages::msg::CommandAck& ack) {
+                                                        const std::lock_guard lock(mutex_);
+                                                        accepted_[{ack.client(), ack.id()}] = ack.accepted();
+                                                        changed_.notify_all();
+                                                      });
   }
 
   // Both return false after the timeout.
@@ -191,11 +191,11 @@ class Answers {
 
  private:
   template <class T>
-  void subscribe(comms::Node& node, const comms::Topic<T>& topic) {
-    const comms::MessageSchema& schema = comms::schema_of<T>();
+  void subscribe(dds::Node& node, const messages::Topic<T>& topic) {
+    const messages::MessageSchema& schema = messages::schema_of<T>();
     decoder_.emplace(mcap::Schema{1, schema.name, "ros2msg", schema.definition});
     commands_.emplace("the replay", topic.name, decoder_->columns());
-    subscription_ = node.subscribe_raw<T>(topic, [this](const comms::RawSample& sample) {
+    subscription_ = node.subscribe_raw<T>(topic, [this](const dds::RawSample& sample) {
       const auto command = message_in<T>({sample.payload, sample.size});
       if (!command) return;
       const std::lock_guard lock(mutex_);
@@ -215,8 +215,8 @@ class Answers {
   std::optional<mcap::Series> commands_;
   std::optional<mcap::MessageDecoder> decoder_;
   std::vector<mcap::Value> values_;
-  comms::Subscription subscription_;
-  comms::Subscription acks_;
+  dds::Subscription subscription_;
+  dds::Subscription acks_;
 };
 
 std::optional<RequestKey> key_of(const Recorded& request) {
@@ -225,18 +225,18 @@ std::optional<RequestKey> key_of(const Recorded& request) {
     return RequestKey{message->client(), message->id()};
   };
   const mcap::ByteView payload = view_of(request.payload);
-  if (request.topic == topics::kCommand.name) return key(message_in<comms::msg::Command>(payload));
-  if (request.topic == topics::kMission.name) return key(message_in<comms::msg::Mission>(payload));
-  if (request.topic == topics::kTrajectory.name) return key(message_in<comms::msg::Trajectory>(payload));
+  if (request.topic == topics::kCommand.name) return key(message_in<messages::msg::Command>(payload));
+  if (request.topic == topics::kMission.name) return key(message_in<messages::msg::Mission>(payload));
+  if (request.topic == topics::kTrajectory.name) return key(message_in<messages::msg::Trajectory>(payload));
   if (request.topic == topics::kControlSettings.name)
-    return key(message_in<comms::msg::ControlSettings>(payload));
+    return key(message_in<messages::msg::ControlSettings>(payload));
   return std::nullopt;
 }
 
 // Sends the inputs in order, each IMU sample when the one before is answered.
 class Feeder {
  public:
-  Feeder(const Inputs& inputs, comms::Node& node, Answers& answers, ProcessGroup& control)
+  Feeder(const Inputs& inputs, dds::Node& node, Answers& answers, ProcessGroup& control)
       : inputs_(inputs),
         publishers_(node, names()),
         imu_(node.publish(topics::kImu)),
@@ -249,7 +249,7 @@ class Feeder {
       if (!proceed(static_cast<double>(i) / static_cast<double>(inputs_.imu.size())))
         throw std::runtime_error("the replay was interrupted");
       send_between(imu.log_time_ns, i == 0);
-      auto sample = *message_in<comms::msg::Imu>(view_of(imu.payload));
+      auto sample = *message_in<messages::msg::Imu>(view_of(imu.payload));
       send_samples(imu, sample);
       sample.lockstep().mocap_pose(sent_[topics::kMocapPose.name]);
       sample.lockstep().battery(sent_[topics::kBattery.name]);
@@ -270,7 +270,7 @@ class Feeder {
   }
 
   // The sequence number up to which control had the samples of a topic with this IMU sample.
-  std::uint64_t due(const std::string& topic, const Recorded& imu, const comms::msg::Imu& sample) const {
+  std::uint64_t due(const std::string& topic, const Recorded& imu, const messages::msg::Imu& sample) const {
     if (inputs_.lockstep) {
       if (topic == topics::kMocapPose.name) return sample.lockstep().mocap_pose();
       return topic == topics::kBattery.name ? sample.lockstep().battery() : sample.lockstep().rotor_speeds();
@@ -290,7 +290,7 @@ class Feeder {
     return newest;
   }
 
-  void send_samples(const Recorded& imu, const comms::msg::Imu& sample) {
+  void send_samples(const Recorded& imu, const messages::msg::Imu& sample) {
     for (const auto& [topic, all] : inputs_.samples) {
       const std::uint64_t last = due(topic, imu, sample);
       std::size_t& next = next_[topic];
@@ -347,14 +347,14 @@ class Feeder {
 
   const Inputs& inputs_;
   TopicPublishers publishers_;
-  comms::Publisher<comms::msg::Imu> imu_;
+  dds::Publisher<messages::msg::Imu> imu_;
   Answers& answers_;
   ProcessGroup& control_;
   std::map<std::string, std::size_t> next_;  // of the samples, by topic
   std::map<std::string, std::uint64_t> sent_;
   std::map<std::string, const Recorded*> newest_;
   std::size_t next_between_ = 0;
-  std::optional<comms::msg::Imu> last_;
+  std::optional<messages::msg::Imu> last_;
   std::uint64_t requests_ = 0;
 };
 
@@ -367,14 +367,14 @@ std::string settings_file(const mcap::Reader& file, const std::string& of_vehicl
   const std::optional<std::string> recorded = mcap::attached_file(file, of_vehicle, attachment);
   if (!recorded) return fallback;
   said = "recorded";
-  runtime::write_atomically(folder / attachment, *recorded);
+  io::write_atomically(folder / attachment, *recorded);
   return folder / attachment;
 }
 
 }  // namespace
 
 std::string difference_of(const ControlReplay& replay, double tolerance) {
-  const TopicDifference& commands = replay.commands;
+  const analysis::TopicDifference& commands = replay.commands;
   if (commands.compared == 0 || commands.signals.empty())
     return "none of the recorded commands has a counterpart";
   // A command is repeated with its IMU sample. At the ends of a recording some have no counterpart.
@@ -384,9 +384,9 @@ std::string difference_of(const ControlReplay& replay, double tolerance) {
                        expected);
   if (replay.other_answers > 0)
     return fmt::format("{} requests are answered otherwise", replay.other_answers);
-  const auto worst =
-      std::max_element(commands.signals.begin(), commands.signals.end(),
-                       [](const SignalDifference& a, const SignalDifference& b) { return a.max < b.max; });
+  const auto worst = std::max_element(
+      commands.signals.begin(), commands.signals.end(),
+      [](const analysis::SignalDifference& a, const analysis::SignalDifference& b) { return a.max < b.max; });
   if (worst->max <= tolerance) return "";
   return fmt::format("{} differs by {:.3g} at {:.3f} s", worst->name, worst->max, worst->max_at_s);
 }
@@ -394,7 +394,7 @@ std::string difference_of(const ControlReplay& replay, double tolerance) {
 ControlReplay replay_into_control(const mcap::Reader& file, const ControlReplaySettings& settings,
                                   const std::function<bool(double)>& proceed) {
   const Inputs inputs(file, settings.vehicle);
-  const auto folder = runtime::TemporaryFolder::of_the_system("swiftlet-replay");
+  const auto folder = io::TemporaryFolder::of_the_system("swiftlet-replay");
   ControlReplay replay;
   const std::string vehicle = settings_file(file, settings.vehicle, settings.vehicle_file, "vehicle.yaml",
                                             "kaylion", folder.path(), replay.vehicle_file);
@@ -402,12 +402,12 @@ ControlReplay replay_into_control(const mcap::Reader& file, const ControlReplayS
                                             "motor_lag", folder.path(), replay.control_file);
   const auto level = std::find_if(kLevels.begin(), kLevels.end(),
                                   [&](const Level& one) { return one.topic == inputs.command_topic; });
-  const comms::DomainLock domain;
-  comms::NodeSettings network;
+  const dds::DomainLock domain;
+  dds::NodeSettings network;
   network.name = "plant";
   network.vehicle = settings.vehicle;
   network.domain = domain.domain();
-  comms::Node node(network);
+  dds::Node node(network);
   mcap::Selection recorded;
   const std::string topic = "/" + settings.vehicle + "/" + inputs.command_topic;
   recorded.topics = {topic};
@@ -415,7 +415,7 @@ ControlReplay replay_into_control(const mcap::Reader& file, const ControlReplayS
   Answers answers(node, inputs.command_topic);
   ProcessGroup process(
       {{"swiftlet-control",
-        program_beside("swiftlet-control"),
+        io::program_beside("swiftlet-control"),
         {"--vehicle", vehicle, "--control", control, "--level", level->name, "--clock", "lockstep",
          "--vehicle-name", settings.vehicle, "--domain", std::to_string(network.domain), "--localhost-only"},
         folder.path() / "swiftlet-control.log"}});
@@ -431,7 +431,7 @@ ControlReplay replay_into_control(const mcap::Reader& file, const ControlReplayS
     const auto now = accepted.find(key);
     if (now == accepted.end() || now->second != was_accepted) ++replay.other_answers;
   }
-  replay.commands = difference(before, answers.commands(), 0, 0);
+  replay.commands = analysis::difference(before, answers.commands(), 0, 0);
   return replay;
 }
 

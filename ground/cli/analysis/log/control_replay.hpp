@@ -22,9 +22,9 @@ struct ControlReplay {
   std::string vehicle_file;  // what the controller was started with; "recorded" for an attachment of the file
   std::string control_file;
   std::uint64_t imu_samples = 0;
-  std::uint64_t requests = 0;       // commands, missions, trajectories and settings
-  std::uint64_t other_answers = 0;  // requests that are now accepted and were refused, or the reverse
-  TopicDifference commands;         // A: recorded, B: replayed
+  std::uint64_t requests = 0;          // commands, missions, trajectories and settings
+  std::uint64_t other_answers = 0;     // requests that are now accepted and were refused, or the reverse
+  analysis::TopicDifference commands;  // A: recorded, B: replayed
 };
 
 // Why the replayed controller did not do the same as the recorded one, one sentence; empty if it did. tolerance: the largest

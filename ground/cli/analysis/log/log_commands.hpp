@@ -10,15 +10,15 @@
 
 namespace swiftlet::ground {
 
-Command add_log_info_command(runtime::CommandLine log);
-Command add_log_ls_command(runtime::CommandLine log);
-Command add_log_cut_command(runtime::CommandLine log);
-Command add_log_merge_command(runtime::CommandLine log);
-Command add_log_repair_command(runtime::CommandLine log);
-Command add_log_csv_command(runtime::CommandLine log);
-Command add_log_npz_command(runtime::CommandLine log);
-Command add_log_diff_command(runtime::CommandLine log);
-Command add_log_replay_command(runtime::CommandLine log);
+io::Command add_log_info_command(runtime::CommandLine log);
+io::Command add_log_ls_command(runtime::CommandLine log);
+io::Command add_log_cut_command(runtime::CommandLine log);
+io::Command add_log_merge_command(runtime::CommandLine log);
+io::Command add_log_repair_command(runtime::CommandLine log);
+io::Command add_log_csv_command(runtime::CommandLine log);
+io::Command add_log_npz_command(runtime::CommandLine log);
+io::Command add_log_diff_command(runtime::CommandLine log);
+io::Command add_log_replay_command(runtime::CommandLine log);
 
 // The part of a file that an option selects: times in s from its first message.
 struct TimeRange {

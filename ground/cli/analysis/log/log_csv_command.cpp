@@ -18,7 +18,7 @@ struct LogCsvOptions {
   TimeRange range;
 };
 
-void add_cell(runtime::CsvWriter& csv, const mcap::Value& value) {
+void add_cell(io::CsvWriter& csv, const mcap::Value& value) {
   if (const auto* const number = std::get_if<double>(&value)) {
     csv.exact(*number);
   } else if (const auto* const text = std::get_if<std::string>(&value)) {
@@ -37,29 +37,30 @@ int csv(const LogCsvOptions& options) {
   const mcap::Reader file(name);
   if (options.topic.empty()) {
     if (options.range.is_given())
-      throw InputError("--from, --to: are of the messages of a topic; name a TOPIC");
-    write_flight_csv(
+      throw io::InputError("--from, --to: are of the messages of a topic; name a TOPIC");
+    analysis::write_flight_csv(
         options.output,
         record::read_flight(
             file, record::recorded_vehicle(file, options.vehicle.empty() ? from.vehicle : options.vehicle)));
-    return kDone;
+    return io::kDone;
   }
   std::vector<std::string> names = {"log_time_ns", "publish_time_ns"};
-  for (const mcap::Column& column : columns_of(file, options.topic)) names.push_back(column.name);
-  runtime::CsvWriter csv(options.output, names);
-  for_each_row(file, selection_of(options.range, file), options.topic,
-               [&](const mcap::Message& message, const std::vector<mcap::Value>& values) {
-                 csv.text(std::to_string(message.log_time_ns)).text(std::to_string(message.publish_time_ns));
-                 for (const mcap::Value& value : values) add_cell(csv, value);
-                 csv.end_row();
-               });
+  for (const mcap::Column& column : analysis::columns_of(file, options.topic)) names.push_back(column.name);
+  io::CsvWriter csv(options.output, names);
+  analysis::for_each_row(
+      file, selection_of(options.range, file), options.topic,
+      [&](const mcap::Message& message, const std::vector<mcap::Value>& values) {
+        csv.text(std::to_string(message.log_time_ns)).text(std::to_string(message.publish_time_ns));
+        for (const mcap::Value& value : values) add_cell(csv, value);
+        csv.end_row();
+      });
   csv.finish();
-  return kDone;
+  return io::kDone;
 }
 
 }  // namespace
 
-Command add_log_csv_command(runtime::CommandLine log) {
+io::Command add_log_csv_command(runtime::CommandLine log) {
   const auto options = std::make_shared<LogCsvOptions>();
   const runtime::CommandLine app =
       log.add_subcommand("csv", "Write a flight, or the messages of a topic, as a CSV table");

@@ -20,40 +20,42 @@ struct LogDiffOptions {
 };
 
 nlohmann::ordered_json to_json(const LogDiffOptions& options,
-                               const std::vector<TopicDifference>& differences) {
+                               const std::vector<analysis::TopicDifference>& differences) {
   nlohmann::ordered_json json = {{"a", options.a}, {"b", options.b}};
   json["equal"] = std::all_of(differences.begin(), differences.end(),
-                              [](const TopicDifference& topic) { return topic.equal; });
+                              [](const analysis::TopicDifference& topic) { return topic.equal; });
   json["topics"] = nlohmann::ordered_json::array();
-  for (const TopicDifference& topic : differences) {
+  for (const analysis::TopicDifference& topic : differences) {
     nlohmann::ordered_json row = {
         {"topic", topic.topic},           {"messages_a", topic.messages_a},
         {"messages_b", topic.messages_b}, {"equal", topic.equal},
         {"compared", topic.compared},     {"signals", nlohmann::ordered_json::object()}};
-    for (const SignalDifference& signal : topic.signals)
+    for (const analysis::SignalDifference& signal : topic.signals)
       row["signals"][signal.name] = {{"rms", signal.rms}, {"max", signal.max}, {"max_at_s", signal.max_at_s}};
     json["topics"].push_back(row);
   }
   return json;
 }
 
-void print(const std::vector<TopicDifference>& differences) {
+void print(const std::vector<analysis::TopicDifference>& differences) {
   std::size_t width = 5;
-  for (const TopicDifference& topic : differences) {
+  for (const analysis::TopicDifference& topic : differences) {
     width = std::max(width, topic.topic.size());
-    for (const SignalDifference& signal : topic.signals) width = std::max(width, signal.name.size() + 2);
+    for (const analysis::SignalDifference& signal : topic.signals)
+      width = std::max(width, signal.name.size() + 2);
   }
   fmt::print("{:<{}} {:>10} {:>10} {:>11} {:>11} {:>9}\n", "topic", width, "messages A", "B", "RMS B - A",
              "max", "at, s");
-  for (const TopicDifference& topic : differences) {
-    const bool alike =
-        topic.compared > 0 && std::all_of(topic.signals.begin(), topic.signals.end(),
-                                          [](const SignalDifference& signal) { return signal.max == 0.0; });
+  for (const analysis::TopicDifference& topic : differences) {
+    const bool alike = topic.compared > 0 && std::all_of(topic.signals.begin(), topic.signals.end(),
+                                                         [](const analysis::SignalDifference& signal) {
+                                                           return signal.max == 0.0;
+                                                         });
     fmt::print("{:<{}} {:>10} {:>10}{}\n", topic.topic, width, topic.messages_a, topic.messages_b,
                topic.equal ? "       equal"
                : alike     ? "  no difference"
                            : "");
-    for (const SignalDifference& signal : topic.signals) {
+    for (const analysis::SignalDifference& signal : topic.signals) {
       if (signal.max == 0.0) continue;
       fmt::print("  {:<{}} {:>33.4g} {:>11.4g} {:>9.3f}\n", signal.name, width - 2, signal.rms, signal.max,
                  signal.max_at_s);
@@ -64,19 +66,19 @@ void print(const std::vector<TopicDifference>& differences) {
 int diff(const LogDiffOptions& options) {
   const mcap::Reader a(options.a);
   const mcap::Reader b(options.b);
-  const std::vector<TopicDifference> differences =
-      difference(a, b, {options.topics.begin(), options.topics.end()});
+  const std::vector<analysis::TopicDifference> differences =
+      analysis::difference(a, b, {options.topics.begin(), options.topics.end()});
   if (options.json) {
     std::printf("%s\n", to_json(options, differences).dump(2).c_str());
   } else {
     print(differences);
   }
-  return kDone;
+  return io::kDone;
 }
 
 }  // namespace
 
-Command add_log_diff_command(runtime::CommandLine log) {
+io::Command add_log_diff_command(runtime::CommandLine log) {
   const auto options = std::make_shared<LogDiffOptions>();
   const runtime::CommandLine app =
       log.add_subcommand("diff", "Compare two recorded flights by topic, in figures");

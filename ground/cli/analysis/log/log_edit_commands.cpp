@@ -48,10 +48,10 @@ int cut(const LogEditOptions& options) {
   for (const std::string& topic : selection.topics) {
     bool known = false;
     for (const auto& [id, channel] : file.channels()) known = known || channel.topic == topic;
-    if (!known) throw InputError("--topic " + topic + ": is not in " + options.file);
+    if (!known) throw io::InputError("--topic " + topic + ": is not in " + options.file);
   }
   write("cut", {&file}, selection, options);
-  return kDone;
+  return io::kDone;
 }
 
 int merge_files(const LogEditOptions& options) {
@@ -60,7 +60,7 @@ int merge_files(const LogEditOptions& options) {
   std::vector<const mcap::Reader*> sources;
   for (const std::string& name : options.files) sources.push_back(&files.emplace_back(name));
   write("merge", sources, {}, options);
-  return kDone;
+  return io::kDone;
 }
 
 int repair(const LogEditOptions& options) {
@@ -70,12 +70,12 @@ int repair(const LogEditOptions& options) {
     fmt::print(stderr, "repair: {}: byte {}: {}\n", options.file, damage.offset, damage.what);
   if (!file.finished()) fmt::print(stderr, "repair: {}: its writer was ended\n", options.file);
   write("repair", {&file}, {}, options);
-  return kDone;
+  return io::kDone;
 }
 
 }  // namespace
 
-Command add_log_cut_command(runtime::CommandLine log) {
+io::Command add_log_cut_command(runtime::CommandLine log) {
   const auto options = std::make_shared<LogEditOptions>();
   const runtime::CommandLine app = log.add_subcommand("cut", "Write a part of a recorded file");
   app.add_option("file", options->file, "MCAP file").type_name("FILE").required();
@@ -86,7 +86,7 @@ Command add_log_cut_command(runtime::CommandLine log) {
   return {app, [options] { return cut(*options); }};
 }
 
-Command add_log_merge_command(runtime::CommandLine log) {
+io::Command add_log_merge_command(runtime::CommandLine log) {
   const auto options = std::make_shared<LogEditOptions>();
   const runtime::CommandLine app = log.add_subcommand("merge", "Join recorded files in the order of time");
   app.add_option("files", options->files, "MCAP files").type_name("FILE").required();
@@ -95,7 +95,7 @@ Command add_log_merge_command(runtime::CommandLine log) {
   return {app, [options] { return merge_files(*options); }};
 }
 
-Command add_log_repair_command(runtime::CommandLine log) {
+io::Command add_log_repair_command(runtime::CommandLine log) {
   const auto options = std::make_shared<LogEditOptions>();
   const runtime::CommandLine app = log.add_subcommand(
       "repair", "Write what is readable of a file whose writer was killed or whose bytes are damaged");

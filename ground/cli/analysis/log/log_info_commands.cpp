@@ -125,19 +125,19 @@ int info(const LogInfoOptions& options) {
   } else {
     print(file);
   }
-  return file.damages().empty() ? kDone : kFailed;
+  return file.damages().empty() ? io::kDone : io::kFailed;
 }
 
 int list_signals(const mcap::Reader& file, const LogInfoOptions& options) {
-  const std::vector<mcap::Column> columns = columns_of(file, options.topic);
+  const std::vector<mcap::Column> columns = analysis::columns_of(file, options.topic);
   if (options.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const mcap::Column& column : columns) json.push_back(column.name);
     std::printf("%s\n", json.dump(2).c_str());
-    return kDone;
+    return io::kDone;
   }
   for (const mcap::Column& column : columns) std::printf("%s\n", column.name.c_str());
-  return kDone;
+  return io::kDone;
 }
 
 int ls(const LogInfoOptions& options) {
@@ -146,7 +146,7 @@ int ls(const LogInfoOptions& options) {
   const auto rows = topics_of(file);
   if (options.json) {
     std::printf("%s\n", to_json(file).at("topics").dump(2).c_str());
-    return kDone;
+    return io::kDone;
   }
   std::size_t width = 5;
   for (const auto& [topic, row] : rows) width = std::max(width, topic.size());
@@ -156,12 +156,12 @@ int ls(const LogInfoOptions& options) {
     fmt::print("{:<{}} {:>10} {:>7.1f} Hz  {}\n", topic, width, row.messages, rate_hz(row, duration_s(file)),
                row.type);
   }
-  return kDone;
+  return io::kDone;
 }
 
 }  // namespace
 
-Command add_log_info_command(runtime::CommandLine log) {
+io::Command add_log_info_command(runtime::CommandLine log) {
   const auto options = std::make_shared<LogInfoOptions>();
   const runtime::CommandLine app =
       log.add_subcommand("info", "Show times, counts, metadata and attachments of a recorded file");
@@ -173,7 +173,7 @@ Command add_log_info_command(runtime::CommandLine log) {
   return {app, [options] { return info(*options); }};
 }
 
-Command add_log_ls_command(runtime::CommandLine log) {
+io::Command add_log_ls_command(runtime::CommandLine log) {
   const auto options = std::make_shared<LogInfoOptions>();
   const runtime::CommandLine app =
       log.add_subcommand("ls", "List the topics of a recorded file, or the signals of one");

@@ -19,7 +19,7 @@ struct LogNpzOptions {
 };
 
 template <class Value>
-void add_array(NpzWriter& npz, const std::string& name, const mcap::SignalArray& array,
+void add_array(analysis::NpzWriter& npz, const std::string& name, const mcap::SignalArray& array,
                const std::vector<std::vector<mcap::Value>>& rows) {
   std::vector<Value> values;
   values.reserve(rows.size() * array.count);
@@ -33,18 +33,18 @@ void add_array(NpzWriter& npz, const std::string& name, const mcap::SignalArray&
   }
 }
 
-void add_topic(NpzWriter& npz, const mcap::Reader& file, const mcap::Selection& selection,
+void add_topic(analysis::NpzWriter& npz, const mcap::Reader& file, const mcap::Selection& selection,
                const std::string& topic) {
   std::vector<std::int64_t> log_times;
   std::vector<std::vector<mcap::Value>> rows;
-  for_each_row(file, selection, topic, [&](const mcap::Message& message, const auto& values) {
+  analysis::for_each_row(file, selection, topic, [&](const mcap::Message& message, const auto& values) {
     log_times.push_back(message.log_time_ns);
     rows.push_back(values);
   });
   if (rows.empty()) return;
   const std::string prefix = topic.substr(topic.find_first_not_of('/')) + "/";
   npz.add(prefix + "log_time_ns", log_times, 1);
-  for (const mcap::SignalArray& array : mcap::signal_arrays(columns_of(file, topic))) {
+  for (const mcap::SignalArray& array : mcap::signal_arrays(analysis::columns_of(file, topic))) {
     const std::string name = prefix + array.name;
     switch (array.kind) {
       case mcap::Column::Kind::kFloat:
@@ -66,16 +66,16 @@ void add_topic(NpzWriter& npz, const mcap::Reader& file, const mcap::Selection& 
 int npz(const LogNpzOptions& options) {
   require_new(options.output, options.replace, {options.file});
   const mcap::Reader file(options.file);
-  NpzWriter npz;
+  analysis::NpzWriter npz;
   const std::vector<std::string> topics = options.topics.empty() ? decodable_topics(file) : options.topics;
   for (const std::string& topic : topics) add_topic(npz, file, selection_of(options.range, file), topic);
   npz.write(options.output);
-  return kDone;
+  return io::kDone;
 }
 
 }  // namespace
 
-Command add_log_npz_command(runtime::CommandLine log) {
+io::Command add_log_npz_command(runtime::CommandLine log) {
   const auto options = std::make_shared<LogNpzOptions>();
   const runtime::CommandLine app = log.add_subcommand("npz", "Write topics as arrays for NumPy");
   app.add_option("file", options->file, "MCAP file").type_name("FILE").required();

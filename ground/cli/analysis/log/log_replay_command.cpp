@@ -23,7 +23,7 @@ namespace {
 
 struct LogReplayOptions {
   std::string file;
-  comms::NodeSettings network;
+  dds::NodeSettings network;
   std::string vehicle_names;
   std::vector<std::string> topics;
   TimeRange range;
@@ -40,10 +40,10 @@ std::map<std::string, std::string> names_of(const LogReplayOptions& options, con
   const std::vector<std::string> recorded = record::recorded_vehicles(file);
   if (recorded.empty()) (void)record::recorded_vehicle(file, "");  // says so
   const std::vector<std::string> names =
-      options.vehicle_names.empty() ? recorded : comms::vehicles_of_list(options.vehicle_names);
+      options.vehicle_names.empty() ? recorded : messages::vehicles_of_list(options.vehicle_names);
   if (names.size() != recorded.size())
-    throw InputError(fmt::format("--vehicle-name {}: has {} names, {} has {} vehicles", options.vehicle_names,
-                                 names.size(), options.file, recorded.size()));
+    throw io::InputError(fmt::format("--vehicle-name {}: has {} names, {} has {} vehicles",
+                                     options.vehicle_names, names.size(), options.file, recorded.size()));
   std::map<std::string, std::string> by_vehicle;
   for (std::size_t i = 0; i < recorded.size(); ++i) by_vehicle[recorded[i]] = names[i];
   return by_vehicle;
@@ -58,16 +58,16 @@ int publish(const LogReplayOptions& options, const mcap::Reader& file) {
   for (const std::string& topic : options.topics) {
     if (std::none_of(file.channels().begin(), file.channels().end(),
                      [&](const auto& channel) { return channel.second.topic == topic; }))
-      throw InputError("--topic " + topic + ": is not in " + options.file);
+      throw io::InputError("--topic " + topic + ": is not in " + options.file);
   }
   std::vector<std::string> published;
   for (const auto& [recorded, name] : settings.names) published.push_back(name);
   const Interrupts interrupts;
-  const comms::FlightReservation reservation(options.network, published);
-  comms::NodeSettings network = options.network;
+  const dds::FlightReservation reservation(options.network, published);
+  dds::NodeSettings network = options.network;
   network.name = "replay";
-  const comms::Participant participant(network, published);
-  ProgressLine progress;
+  const dds::Participant participant(network, published);
+  io::ProgressLine progress;
   const ReplayTotals totals = replay(file, participant, settings, [&](const ReplayTotals& now) {
     progress.update(0, fmt::format("{:.1f} s  {} messages", now.time_s, now.published));
     return interrupts.count() == 0;
@@ -94,7 +94,7 @@ int publish(const LogReplayOptions& options, const mcap::Reader& file) {
                options.file, totals.published, totals.time_s, totals.refused, totals.largest_delay_s * 1e3);
   }
   if (!incomplete.empty()) std::fprintf(stderr, "swiftlet: replay: incomplete: %s\n", incomplete.c_str());
-  return incomplete.empty() ? kDone : kFailed;
+  return incomplete.empty() ? io::kDone : io::kFailed;
 }
 
 void print(const LogReplayOptions& options, const ControlReplay& replay, const std::string& difference) {
@@ -102,7 +102,7 @@ void print(const LogReplayOptions& options, const ControlReplay& replay, const s
              options.file, replay.imu_samples, replay.requests, replay.vehicle_file, replay.control_file);
   fmt::print("  {} of {} recorded commands compared, {} requests answered otherwise\n",
              replay.commands.compared, replay.commands.messages_a, replay.other_answers);
-  for (const SignalDifference& signal : replay.commands.signals)
+  for (const analysis::SignalDifference& signal : replay.commands.signals)
     fmt::print("  {:<24} RMS {:>10.3g}, max {:>10.3g} at {:.3f} s\n", signal.name, signal.rms, signal.max,
                signal.max_at_s);
   fmt::print("  {}\n", difference.empty()
@@ -125,7 +125,7 @@ nlohmann::ordered_json to_json(const LogReplayOptions& options, const ControlRep
                                  {"recorded", replay.commands.messages_a},
                                  {"compared", replay.commands.compared},
                                  {"signals", nlohmann::ordered_json::object()}};
-  for (const SignalDifference& signal : replay.commands.signals)
+  for (const analysis::SignalDifference& signal : replay.commands.signals)
     json["signals"][signal.name] = {{"rms", signal.rms}, {"max", signal.max}, {"max_at_s", signal.max_at_s}};
   return json;
 }
@@ -134,11 +134,11 @@ int into_control(const LogReplayOptions& options, const mcap::Reader& file) {
   ControlReplaySettings settings;
   settings.vehicle = record::recorded_vehicle(file, options.vehicle_names);
   if (!options.vehicle.empty())
-    settings.vehicle_file = runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle);
+    settings.vehicle_file = io::configuration_file(io::kinds::kVehicle, options.vehicle);
   if (!options.control.empty())
-    settings.control_file = runtime::configuration_file(runtime::kinds::kControl, options.control);
+    settings.control_file = io::configuration_file(io::kinds::kControl, options.control);
   const Interrupts interrupts;
-  ProgressLine progress;
+  io::ProgressLine progress;
   const ControlReplay replay = replay_into_control(file, settings, [&](double share) {
     progress.update(0, fmt::format("replaying {:.0f} %", 1e2 * share));
     return interrupts.count() == 0;
@@ -150,12 +150,12 @@ int into_control(const LogReplayOptions& options, const mcap::Reader& file) {
   } else {
     print(options, replay, difference);
   }
-  return difference.empty() ? kDone : kFailed;
+  return difference.empty() ? io::kDone : io::kFailed;
 }
 
 }  // namespace
 
-Command add_log_replay_command(runtime::CommandLine log) {
+io::Command add_log_replay_command(runtime::CommandLine log) {
   const auto options = std::make_shared<LogReplayOptions>();
   const runtime::CommandLine app = log.add_subcommand(
       "replay", "Publish a recorded file with its timing, or fly its sensors into a controller again");
@@ -165,7 +165,7 @@ Command add_log_replay_command(runtime::CommandLine log) {
   app.add_option("--vehicle-name", options->vehicle_names,
                  "names under which the vehicles of the file are published, in the order of their own; "
                  "default: their own. With --into-control: which vehicle of the file")
-      .check([](const std::string& names) { return comms::fault_of_vehicle_list(names); }, "NAMES");
+      .check([](const std::string& names) { return messages::fault_of_vehicle_list(names); }, "NAMES");
   add_time_range_options(app, options->range);
   app.add_option("--topic", options->topics, "only this topic; may be repeated").repeated();
   app.add_option("--speed", options->speed, "times as fast as recorded").range(0.01, 1000.0).show_default();
@@ -176,12 +176,12 @@ Command add_log_replay_command(runtime::CommandLine log) {
   app.add_option("--vehicle", options->vehicle,
                  "vehicle file of the controller, or the name of one; default: that of the recording, else "
                  "kaylion")
-      .type_name(runtime::kinds::kVehicle.value)
+      .type_name(io::kinds::kVehicle.value)
       .needs(into);
   app.add_option("--control", options->control,
                  "control settings of the controller, or the name of one; default: those of the recording, "
                  "else motor_lag")
-      .type_name(runtime::kinds::kControl.value)
+      .type_name(io::kinds::kControl.value)
       .needs(into);
   app.add_option("--tolerance", options->tolerance,
                  "largest difference of a command that counts as the same: of throttles, 1 is full")

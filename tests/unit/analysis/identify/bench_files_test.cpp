@@ -11,11 +11,10 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::ground::bench_files_test {
+namespace swiftlet::analysis::bench_files_test {
 
 const plant::Vehicle& kaylion() {
-  static const plant::Vehicle vehicle =
-      runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
+  static const plant::Vehicle vehicle = io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
   return vehicle;
 }
 
@@ -103,4 +102,4 @@ TEST_F(BenchFolder, ReadsItsSettings) {
   EXPECT_NE(tests::refusal([&] { load_bench_settings(folder_.path()); }).find("base"), std::string::npos);
 }
 
-}  // namespace swiftlet::ground::bench_files_test
+}  // namespace swiftlet::analysis::bench_files_test

@@ -17,11 +17,11 @@
 #include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground::bench_to_flight_test {
+namespace swiftlet::analysis::bench_to_flight_test {
 
 // A vehicle with randomly perturbed parameters of `like`.
 plant::Vehicle perturbed(const plant::Vehicle& like, std::uint64_t seed) {
-  plant::RandomStream random(seed, 20250920);
+  math::RandomStream random(seed, 20250920);
   plant::Vehicle out = like;
   const auto scale = [&](double& value, double by) { value *= random.uniform(1.0 - by, 1.0 + by); };
   scale(out.mass_kg, 0.1);
@@ -48,35 +48,36 @@ std::string identified_file(const tests::TemporaryFolder& folder, const plant::V
   identification::BenchIdentification found = identification::identify_bench(bench, base);
   found.vehicle.name = "identified";
   return folder.write("identified.yaml",
-                      runtime::vehicle_text(found.vehicle, found.sources, found.uncertainty, ""));
+                      io::vehicle_text(found.vehicle, found.sources, found.uncertainty, ""));
 }
 
-LaunchConfiguration plan_of(const std::string& vehicle, const tests::TemporaryFolder& folder,
-                            const std::string& dispersion = "") {
-  FlyOptions options;
-  options.launch_mode = LaunchMode::kInProcess;
+ground::LaunchConfiguration plan_of(const std::string& vehicle, const tests::TemporaryFolder& folder,
+                                    const std::string& dispersion = "") {
+  ground::FlyOptions options;
+  options.launch_mode = ground::LaunchMode::kInProcess;
   options.vehicle = vehicle;
   options.dispersion = dispersion;
   options.record = folder.path().string();
-  return plan_flight(options);
+  return ground::plan_flight(options);
 }
 
-FlightReport fly(const LaunchConfiguration& plan, const plant::Vehicle& truth, std::uint64_t seed) {
-  ClosedLoop loop(truth, plan.vehicle, plan.simulation, plan.control, seed);
+FlightReport fly(const ground::LaunchConfiguration& plan, const plant::Vehicle& truth, std::uint64_t seed) {
+  simulation::ClosedLoop loop(truth, plan.vehicle, plan.simulation, plan.control, seed);
   record::Flight flight;
-  return fly_in_process(loop, plan, seed, flight, nullptr, {});
+  return ground::fly_in_process(loop, plan, seed, flight, nullptr, {});
 }
 
 class BenchToFlight : public testing::TestWithParam<std::uint64_t> {
  protected:
   tests::TemporaryFolder folder_;
-  plant::Vehicle kaylion_ = runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
+  plant::Vehicle kaylion_ = io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
   plant::Vehicle truth_ = perturbed(kaylion_, GetParam());
 };
 
 TEST_P(BenchToFlight, FliesTheSquareOnTheTruePlant) {
   ASSERT_TRUE(plant::validate(truth_).empty());
-  const LaunchConfiguration plan = plan_of(identified_file(folder_, truth_, kaylion_, GetParam()), folder_);
+  const ground::LaunchConfiguration plan =
+      plan_of(identified_file(folder_, truth_, kaylion_, GetParam()), folder_);
   const FlightReport report = fly(plan, truth_, GetParam());
   EXPECT_TRUE(report.completed) << report.reason;
   EXPECT_LT(report.errors.rms_3d_m, 0.004);
@@ -85,24 +86,24 @@ TEST_P(BenchToFlight, FliesTheSquareOnTheTruePlant) {
 
 TEST_P(BenchToFlight, KeepsItsMarginsWithinTheBenchUncertainty) {
   const std::string file = identified_file(folder_, truth_, kaylion_, GetParam());
-  const LaunchConfiguration plan = plan_of(file, folder_, kUncertainty);
-  ASSERT_EQ(plan.dispersion.name, kUncertainty);
-  const MarginStudy study = study_margins(control::design(plan.vehicle, plan.control), plan.vehicle,
-                                          plan.dispersion, 300, GetParam());
+  const ground::LaunchConfiguration plan = plan_of(file, folder_, simulation::kUncertainty);
+  ASSERT_EQ(plan.dispersion.name, simulation::kUncertainty);
+  const ground::MarginStudy study = ground::study_margins(control::design(plan.vehicle, plan.control),
+                                                          plan.vehicle, plan.dispersion, 300, GetParam());
   EXPECT_EQ(study.samples, 300U);
   EXPECT_EQ(study.unstable, 0U);
-  for (std::size_t i = 0; i < kLoopNames.size(); ++i) {
-    const MarginStudy::Loop& loop = study.loops[i];
-    EXPECT_GT(loop.worst.phase_deg, 20.0) << kLoopNames[i];
-    EXPECT_GT(loop.worst.delay_s, 0.01) << kLoopNames[i];
-    EXPECT_LE(loop.worst.phase_deg, loop.most.phase_deg) << kLoopNames[i];
-    EXPECT_LE(loop.worst.delay_s, loop.most.delay_s) << kLoopNames[i];
-    EXPECT_GE(loop.worst.gain_decrease, loop.most.gain_decrease) << kLoopNames[i];
+  for (std::size_t i = 0; i < ground::kLoopNames.size(); ++i) {
+    const ground::MarginStudy::Loop& loop = study.loops[i];
+    EXPECT_GT(loop.worst.phase_deg, 20.0) << ground::kLoopNames[i];
+    EXPECT_GT(loop.worst.delay_s, 0.01) << ground::kLoopNames[i];
+    EXPECT_LE(loop.worst.phase_deg, loop.most.phase_deg) << ground::kLoopNames[i];
+    EXPECT_LE(loop.worst.delay_s, loop.most.delay_s) << ground::kLoopNames[i];
+    EXPECT_GE(loop.worst.gain_decrease, loop.most.gain_decrease) << ground::kLoopNames[i];
     // A bench with 0.5 % noise hardly changes the margins.
-    EXPECT_NEAR(loop.most.phase_deg, loop.designed.phase_deg, 3.0) << kLoopNames[i];
+    EXPECT_NEAR(loop.most.phase_deg, loop.designed.phase_deg, 3.0) << ground::kLoopNames[i];
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, BenchToFlight, testing::Values(1, 2, 3, 4, 5));
 
-}  // namespace swiftlet::ground::bench_to_flight_test
+}  // namespace swiftlet::analysis::bench_to_flight_test

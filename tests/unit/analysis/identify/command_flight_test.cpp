@@ -16,7 +16,7 @@
 #include "tests/support/paths.hpp"
 #include "tests/unit/analysis/identify/identified_flights.hpp"
 
-namespace swiftlet::ground::command_flight_test {
+namespace swiftlet::analysis::command_flight_test {
 
 using identification::FlightIdentification;
 using identification::FlightLog;
@@ -25,8 +25,8 @@ using identification::SpeedSource;
 
 constexpr double kDelayS = 0.006;  // added to the commands of simulated flights
 
-LaunchConfiguration delayed_plan() {
-  LaunchConfiguration plan = plan_of("identification");
+ground::LaunchConfiguration delayed_plan() {
+  ground::LaunchConfiguration plan = plan_of("identification");
   plan.simulation.rotor_speed_rate_hz = 0.0;
   delay_commands(plan, kDelayS);
   return plan;
@@ -57,7 +57,7 @@ struct Tally {
   double widest = 0.0;  // largest relative half width
 };
 
-std::map<std::string, Tally> recover(const LaunchConfiguration& plan, const char* what, int seeds) {
+std::map<std::string, Tally> recover(const ground::LaunchConfiguration& plan, const char* what, int seeds) {
   std::map<std::string, Tally> tallies;
   for (int i = 1; i <= seeds; ++i) {
     const auto seed = static_cast<std::uint64_t>(i);
@@ -111,7 +111,7 @@ TEST(CommandFlight, RecoversLagAndGains) {
 }
 
 TEST(CommandFlight, RecoversLagAndGainsInGusts) {
-  LaunchConfiguration plan = delayed_plan();
+  ground::LaunchConfiguration plan = delayed_plan();
   plan.simulation.air.wind_ned = {1.0, -0.7, 0.0};
   plan.simulation.air.gust_sigma_ned = {0.7, 0.7, 0.3};
   expect_true_and_narrow(recover(plan, "gusts", tests::draws(1, 8)));
@@ -119,7 +119,7 @@ TEST(CommandFlight, RecoversLagAndGainsInGusts) {
 
 // GIVEN the log of a real Crazyflie THEN the result is near values published for this type and this log
 TEST(CommandFlight, AgreesWithPublishedValuesOfARealVehicle) {
-  const plant::Vehicle base = runtime::load_vehicle(tests::in_source("config/vehicles/crazyflie2.yaml"));
+  const plant::Vehicle base = io::load_vehicle(tests::in_source("config/vehicles/crazyflie2.yaml"));
   const ReadFlightLog read =
       read_flight_log(tests::in_source("tests/data/crazyflie_flight.csv.gz"), base, BodyAxes::kDetected);
   ASSERT_EQ(read.log.size(), 50496U);
@@ -157,7 +157,7 @@ TEST(CommandFlight, AgreesWithPublishedValuesOfARealVehicle) {
 }
 
 TEST(CommandFlight, RefusesSwappedMotors) {
-  const LaunchConfiguration plan = delayed_plan();
+  const ground::LaunchConfiguration plan = delayed_plan();
   FlightLog log = with_commands_and_imu(flown(plan, plan.vehicle, 4));
   swap_motors(log);
   expect_refused({log}, plan.vehicle, "are the motors in its order");
@@ -165,7 +165,7 @@ TEST(CommandFlight, RefusesSwappedMotors) {
 
 // GIVEN a log in whose columns two motors are exchanged THEN the sentence says which.
 TEST(CommandFlight, NamesExchangedMotors) {
-  const LaunchConfiguration plan = delayed_plan();
+  const ground::LaunchConfiguration plan = delayed_plan();
   FlightLog log = with_commands_and_imu(flown(plan, plan.vehicle, 4));
   for (plant::PerRotor& command : log.command) std::swap(command[0], command[1]);
   expect_refused({log}, plan.vehicle,
@@ -173,7 +173,7 @@ TEST(CommandFlight, NamesExchangedMotors) {
 }
 
 TEST(CommandFlight, NamesExchangedMotorsOfARealVehicle) {
-  const plant::Vehicle base = runtime::load_vehicle(tests::in_source("config/vehicles/crazyflie2.yaml"));
+  const plant::Vehicle base = io::load_vehicle(tests::in_source("config/vehicles/crazyflie2.yaml"));
   const FlightLog log =
       read_flight_log(tests::in_source("tests/data/crazyflie_flight.csv.gz"), base, BodyAxes::kDetected).log;
   const char* const places[] = {"front right", "rear right", "rear left", "front left"};
@@ -191,7 +191,7 @@ TEST(CommandFlight, NamesExchangedMotorsOfARealVehicle) {
 // A hover excites too little to decide.
 TEST(CommandFlight, AcceptsTheOrderOfACalmFlight) {
   const tests::TemporaryFolder folder;
-  const LaunchConfiguration plan = plan_of(folder.write("hover.yaml", R"(name: hover
+  const ground::LaunchConfiguration plan = plan_of(folder.write("hover.yaml", R"(name: hover
 frame: ned
 tolerance_m: 0.2
 items:
@@ -202,4 +202,4 @@ items:
   EXPECT_NO_THROW(identification::require_motor_order(log, {0, log.size()}, plan.vehicle));
 }
 
-}  // namespace swiftlet::ground::command_flight_test
+}  // namespace swiftlet::analysis::command_flight_test

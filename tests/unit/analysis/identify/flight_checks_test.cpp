@@ -7,7 +7,7 @@
 
 #include "tests/unit/analysis/identify/identified_flights.hpp"
 
-namespace swiftlet::ground::flight_checks_test {
+namespace swiftlet::analysis::flight_checks_test {
 
 using identification::FlightIdentification;
 using identification::FlightLog;
@@ -17,7 +17,7 @@ using tests::contains;
 class FlightChecks : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    plan_ = new LaunchConfiguration(plan_of("identification"));
+    plan_ = new ground::LaunchConfiguration(plan_of("identification"));
     log_ = new FlightLog(flown(*plan_, plan_->vehicle, 11));
   }
   static void TearDownTestSuite() {
@@ -36,7 +36,7 @@ class FlightChecks : public testing::Test {
     return identification::identify_flight({log}, plan_->vehicle, {});
   }
 
-  inline static LaunchConfiguration* plan_ = nullptr;
+  inline static ground::LaunchConfiguration* plan_ = nullptr;
   inline static FlightLog* log_ = nullptr;
 };
 
@@ -167,7 +167,7 @@ TEST_F(FlightChecks, RefusesLogsOfDifferentRatesWithoutPoses) {
 }
 
 TEST(CalmFlight, DoesNotIdentifyMomentsOfInertia) {
-  const LaunchConfiguration plan = plan_of("square");
+  const ground::LaunchConfiguration plan = plan_of("square");
   const FlightIdentification found =
       identification::identify_flight({flown(plan, plan.vehicle, 2)}, plan.vehicle, {});
   EXPECT_LT(found.find("inertia.zz")->high(), plan.vehicle.inertia(2, 2))
@@ -177,7 +177,7 @@ TEST(CalmFlight, DoesNotIdentifyMomentsOfInertia) {
 }
 
 TEST(CalmFlight, DoesNotIdentifyInertiaOrLagWithoutPoses) {
-  const LaunchConfiguration plan = plan_of("square");
+  const ground::LaunchConfiguration plan = plan_of("square");
   FlightLog log = flown(plan, plan.vehicle, 2);
   log.poses.clear();
   const FlightIdentification found = identification::identify_flight({log}, plan.vehicle, {});
@@ -186,4 +186,4 @@ TEST(CalmFlight, DoesNotIdentifyInertiaOrLagWithoutPoses) {
   EXPECT_TRUE(contains(found.unexcited, "thrust_to_rate.yaw: r changes by"));
 }
 
-}  // namespace swiftlet::ground::flight_checks_test
+}  // namespace swiftlet::analysis::flight_checks_test

@@ -11,7 +11,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/analysis/identify/identified_flights.hpp"
 
-namespace swiftlet::ground::flight_identification_test {
+namespace swiftlet::analysis::flight_identification_test {
 
 using identification::FlightIdentification;
 using identification::FlightLog;
@@ -36,7 +36,7 @@ struct Tally {
 enum class Channels { kAll, kNoSpeeds };
 
 std::map<std::string, Tally> recover(Channels channels, int seeds) {
-  LaunchConfiguration plan = plan_of("identification");
+  ground::LaunchConfiguration plan = plan_of("identification");
   if (channels == Channels::kNoSpeeds) plan.simulation.rotor_speed_rate_hz = 0.0;
   std::map<std::string, Tally> tallies;
   for (int seed = 1; seed <= seeds; ++seed) {
@@ -105,7 +105,7 @@ TEST(FlightIdentification, RecoversTheVehicleWithoutRotorSpeeds) {
 }
 
 TEST(FlightIdentification, IdentifiesMassWhenThrustIsKnown) {
-  const LaunchConfiguration plan = plan_of("identification");
+  const ground::LaunchConfiguration plan = plan_of("identification");
   plant::Vehicle truth = plan.vehicle;
   truth.mass_kg *= 1.1;
   truth.inertia *= 1.1;
@@ -120,7 +120,7 @@ TEST(FlightIdentification, IdentifiesMassWhenThrustIsKnown) {
 }
 
 TEST(FlightIdentification, RefusesLogsWithDifferentChannels) {
-  const LaunchConfiguration plan = plan_of("identification");
+  const ground::LaunchConfiguration plan = plan_of("identification");
   const FlightLog log = flown(plan, plan.vehicle, 5);
   FlightLog without_poses = log;
   without_poses.poses.clear();
@@ -128,7 +128,7 @@ TEST(FlightIdentification, RefusesLogsWithDifferentChannels) {
 }
 
 TEST(FlightIdentification, IdentifiesACommandDelay) {
-  LaunchConfiguration plan = plan_of("identification");
+  ground::LaunchConfiguration plan = plan_of("identification");
   plan.simulation.rotor_speed_rate_hz = 0.0;
   delay_commands(plan, 0.006);
   const FlightIdentification found =
@@ -137,7 +137,7 @@ TEST(FlightIdentification, IdentifiesACommandDelay) {
 }
 
 TEST(FlightIdentification, IdentifiesAndCorrectsAPoseDelay) {
-  const LaunchConfiguration plan = plan_of("identification");
+  const ground::LaunchConfiguration plan = plan_of("identification");
   const plant::Vehicle truth = perturbed(plan.vehicle, 6);
   FlightLog log = flown(plan, truth, 6);
   const FlightIdentification on_time = identification::identify_flight({log}, plan.vehicle, {});
@@ -153,7 +153,7 @@ TEST(FlightIdentification, IdentifiesAndCorrectsAPoseDelay) {
 }
 
 TEST(FlightIdentification, ReportsUnexcitedParametersOfAHover) {
-  const LaunchConfiguration plan = plan_of(tests::TemporaryFolder().write("hover.yaml", R"(name: hover
+  const ground::LaunchConfiguration plan = plan_of(tests::TemporaryFolder().write("hover.yaml", R"(name: hover
 frame: ned
 tolerance_m: 0.2
 items:
@@ -169,10 +169,10 @@ items:
 }
 
 TEST(FlightIdentification, RefusesSwappedMotors) {
-  const LaunchConfiguration plan = plan_of("identification");
+  const ground::LaunchConfiguration plan = plan_of("identification");
   FlightLog log = flown(plan, plan.vehicle, 4);
   swap_motors(log);
   expect_refused({log}, plan.vehicle, "are the motors in its order");
 }
 
-}  // namespace swiftlet::ground::flight_identification_test
+}  // namespace swiftlet::analysis::flight_identification_test

@@ -7,13 +7,13 @@
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "tests/support/paths.hpp"
 
-namespace swiftlet::ground::identification_report_test {
+namespace swiftlet::analysis::identification_report_test {
 
 IdentificationReport report() {
   IdentificationReport out;
   out.bench_folder = "a <bench>";
   out.base_vehicle = "kaylion";
-  out.base = runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
+  out.base = io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
   identification::BenchNoise noise;
   noise.outliers = 0.05;
   out.bench.data = identification::simulate_bench(out.base, noise, 2);
@@ -75,4 +75,4 @@ TEST(IdentificationTable, NamesParametersOutliersAndFindings) {
     EXPECT_NE(table.find(part), std::string::npos) << part;
 }
 
-}  // namespace swiftlet::ground::identification_report_test
+}  // namespace swiftlet::analysis::identification_report_test

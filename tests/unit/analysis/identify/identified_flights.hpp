@@ -18,20 +18,20 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/identification/bench/sentences.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::analysis {
 
-inline LaunchConfiguration plan_of(const std::string& mission) {
+inline ground::LaunchConfiguration plan_of(const std::string& mission) {
   const tests::TemporaryFolder folder;
-  FlyOptions options;
-  options.launch_mode = LaunchMode::kInProcess;
+  ground::FlyOptions options;
+  options.launch_mode = ground::LaunchMode::kInProcess;
   options.mission = mission;
   options.record = folder.path().string();
-  return plan_flight(options);
+  return ground::plan_flight(options);
 }
 
 // The nominal vehicle with randomly perturbed parameters and the same mass.
 inline plant::Vehicle perturbed(const plant::Vehicle& nominal, std::uint64_t seed) {
-  plant::RandomStream random(seed, 20250919);
+  math::RandomStream random(seed, 20250919);
   plant::Vehicle out = nominal;
   out.rotor.thrust *= random.uniform(0.9, 1.1);
   out.motor.time_constant_s *= random.uniform(0.8, 1.2);
@@ -42,20 +42,20 @@ inline plant::Vehicle perturbed(const plant::Vehicle& nominal, std::uint64_t see
   return out;
 }
 
-inline identification::FlightLog flown(const LaunchConfiguration& plan, const plant::Vehicle& truth,
+inline identification::FlightLog flown(const ground::LaunchConfiguration& plan, const plant::Vehicle& truth,
                                        std::uint64_t seed) {
-  ClosedLoop loop(truth, plan.vehicle, plan.simulation, plan.control, seed);
+  simulation::ClosedLoop loop(truth, plan.vehicle, plan.simulation, plan.control, seed);
   record::Flight recorded;
   loop.sensors = &recorded;
   control::Mission mission = plan.mission.mission;
   mission.id = 1;
-  const SimulatedFlight flight = fly(loop, mission, plan.planned_duration_s, {});
+  const simulation::SimulatedFlight flight = simulation::fly(loop, mission, plan.planned_duration_s, {});
   EXPECT_TRUE(flight.completed) << flight.reason;
   return flight_log_of(recorded);
 }
 
 // Delays the commands to the motors.
-inline void delay_commands(LaunchConfiguration& plan, double delay_s) {
+inline void delay_commands(ground::LaunchConfiguration& plan, double delay_s) {
   plant::Fault late;
   late.kind = plant::FaultKind::kCommandsDelay;
   late.at_s = 0.0;
@@ -81,4 +81,4 @@ inline void expect_refused(const std::vector<identification::FlightLog>& logs, c
   EXPECT_TRUE(tests::contains({tests::refused(work)}, part_of_sentence));
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::analysis

@@ -16,7 +16,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/ulog_writer.hpp"
 
-namespace swiftlet::ground::identify_ulog_test {
+namespace swiftlet::analysis::identify_ulog_test {
 
 using nlohmann::json;
 using tests::UlogWriter;
@@ -37,7 +37,7 @@ class IdentifyUlog : public testing::Test {
     file.subscribe(3, "vehicle_land_detected");
     file.subscribe(4, "battery_status");
     if (with_motors) file.subscribe(5, "actuator_motors");
-    plant::RandomStream random(7, 1);
+    math::RandomStream random(7, 1);
     double throttle = 0.0;
     double lagged = 0.0;
     for (std::uint64_t ms = 0; ms < 24'000; ms += 4) {
@@ -68,12 +68,12 @@ class IdentifyUlog : public testing::Test {
     options.logs = {file};
     options.json = true;
     testing::internal::CaptureStdout();
-    EXPECT_EQ(identify_ulog(options, base_, "kaylion"), kDone);
+    EXPECT_EQ(identify_ulog(options, base_, "kaylion"), io::kDone);
     return json::parse(testing::internal::GetCapturedStdout()).at("thrust_scales").at(0);
   }
 
   tests::TemporaryFolder folder_;
-  const plant::Vehicle base_ = runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
+  const plant::Vehicle base_ = io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
 };
 
 TEST_F(IdentifyUlog, FindsHoverAndSlope) {
@@ -119,4 +119,4 @@ TEST_F(IdentifyUlog, RefusesWhatALogDoesNotHave) {
             std::string::npos);
 }
 
-}  // namespace swiftlet::ground::identify_ulog_test
+}  // namespace swiftlet::analysis::identify_ulog_test

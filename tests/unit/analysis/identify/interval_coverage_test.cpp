@@ -16,7 +16,7 @@
 #include "tests/support/campaign.hpp"
 #include "tests/unit/analysis/identify/identified_flights.hpp"
 
-namespace swiftlet::ground::interval_coverage_test {
+namespace swiftlet::analysis::interval_coverage_test {
 
 using identification::FlightIdentification;
 using identification::FlightLog;
@@ -38,7 +38,7 @@ struct Truth {
   plant::Vehicle vehicle;
   plant::AirSettings air;
 };
-using Unmodelled = std::function<void(plant::RandomStream&, Truth&)>;
+using Unmodelled = std::function<void(math::RandomStream&, Truth&)>;
 
 FlightLog reduced(FlightLog log, Log to) {
   if (to != Log::kSpeeds) log.rotor_speeds.clear();
@@ -114,17 +114,17 @@ class IntervalCoverage : public testing::Test {
 };
 
 void IntervalCoverage::study(const char* what, const Unmodelled& unmodelled) {
-  const LaunchConfiguration nominal = plan_of("identification");
+  const ground::LaunchConfiguration nominal = plan_of("identification");
   // One flight gives 16 intervals. If they were half as wide as they should be, one of them would fail with a probability of
   // 56 %, and of the 64 of all conditions one with 96 % (if independent). A soak counts.
   const int seeds = tests::draws(1, 50);
   Tallies tallies;
   for (int i = 1; i <= seeds; ++i) {
     const auto seed = static_cast<std::uint64_t>(i);
-    plant::RandomStream random(seed, 20251126);
+    math::RandomStream random(seed, 20251126);
     Truth truth{perturbed(nominal.vehicle, seed), nominal.simulation.air};
     unmodelled(random, truth);
-    LaunchConfiguration plan = nominal;
+    ground::LaunchConfiguration plan = nominal;
     plan.simulation.air = truth.air;
     const FlightLog log = flown(plan, truth.vehicle, seed);
     for (const auto& [kind, name] : kLogs) {
@@ -162,28 +162,28 @@ void IntervalCoverage::study(const char* what, const Unmodelled& unmodelled) {
 }
 
 TEST_F(IntervalCoverage, NothingUnmodelled) {
-  study("nothing", [](plant::RandomStream&, Truth&) {});
+  study("nothing", [](math::RandomStream&, Truth&) {});
 }
 
 // An old or cold battery.
 TEST_F(IntervalCoverage, StrongerSag) {
-  study("sag", [](plant::RandomStream& random, Truth& truth) {
+  study("sag", [](math::RandomStream& random, Truth& truth) {
     truth.vehicle.battery.internal_resistance_ohm *= random.uniform(1.2, 2.0);
   });
 }
 
 TEST_F(IntervalCoverage, BladeFlapping) {
-  study("flapping", [](plant::RandomStream& random, Truth& truth) {
+  study("flapping", [](math::RandomStream& random, Truth& truth) {
     truth.air.rotor_drag = kFlappingNS2PerM * random.uniform(0.5, 1.5);
   });
 }
 
 TEST_F(IntervalCoverage, WindAndGusts) {
-  study("gusts", [](plant::RandomStream& random, Truth& truth) {
+  study("gusts", [](math::RandomStream& random, Truth& truth) {
     truth.air.wind_ned = {random.uniform(-1.2, 1.2), random.uniform(-1.2, 1.2), 0.0};
     truth.air.gust_sigma_ned = {0.7, 0.7, 0.3};
     truth.air.dryden = {1.2, 2.0};
   });
 }
 
-}  // namespace swiftlet::ground::interval_coverage_test
+}  // namespace swiftlet::analysis::interval_coverage_test

@@ -10,9 +10,9 @@
 #include "swiftlet/simulation/dispersion.hpp"
 #include "tests/support/paths.hpp"
 
-namespace swiftlet::ground::uncertainty_test {
+namespace swiftlet::analysis::uncertainty_test {
 
-plant::Vehicle kaylion() { return runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
+plant::Vehicle kaylion() { return io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
 
 plant::VehicleUncertainty uncertainty() {
   plant::VehicleUncertainty out;
@@ -25,8 +25,8 @@ plant::VehicleUncertainty uncertainty() {
 
 std::string refused(const plant::VehicleUncertainty& given) {
   try {
-    dispersion_of(given, kaylion(), "v.yaml");
-  } catch (const runtime::ConfigError& fault) {
+    simulation::dispersion_of(given, kaylion(), "v.yaml");
+  } catch (const io::ConfigError& fault) {
     return fault.what();
   }
   ADD_FAILURE() << "expected ConfigError";
@@ -35,7 +35,7 @@ std::string refused(const plant::VehicleUncertainty& given) {
 
 TEST(Uncertainty, SamplesHaveItsVariancesAndCorrelations) {
   const plant::Vehicle vehicle = kaylion();
-  const Dispersion dispersion = dispersion_of(uncertainty(), vehicle, "v.yaml");
+  const simulation::Dispersion dispersion = simulation::dispersion_of(uncertainty(), vehicle, "v.yaml");
   constexpr int kDraws = 4000;
   double k2 = 0.0;
   double k3 = 0.0;
@@ -63,7 +63,7 @@ TEST(Uncertainty, SamplesHaveItsVariancesAndCorrelations) {
 
 TEST(Uncertainty, SampleDependsOnTheSeedAlone) {
   const plant::Vehicle vehicle = kaylion();
-  const Dispersion dispersion = dispersion_of(uncertainty(), vehicle, "v.yaml");
+  const simulation::Dispersion dispersion = simulation::dispersion_of(uncertainty(), vehicle, "v.yaml");
   EXPECT_EQ(draw(dispersion, {vehicle, {}}, 7).values, draw(dispersion, {vehicle, {}}, 7).values);
   EXPECT_NE(draw(dispersion, {vehicle, {}}, 7).values, draw(dispersion, {vehicle, {}}, 8).values);
 }
@@ -80,4 +80,4 @@ TEST(Uncertainty, RefusesParametersThatCannotVary) {
   EXPECT_EQ(refused(given), "v.yaml: uncertainty: esc.pulse_min cannot be varied");
 }
 
-}  // namespace swiftlet::ground::uncertainty_test
+}  // namespace swiftlet::analysis::uncertainty_test

@@ -11,7 +11,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/analysis/flown_flight.hpp"
 
-namespace swiftlet::ground::flight_csv_test {
+namespace swiftlet::analysis::flight_csv_test {
 
 namespace fs = std::filesystem;
 
@@ -91,4 +91,4 @@ TEST_F(FlightCsv, ThrowsWhenTheFolderIsMissing) {
   EXPECT_THROW(write_flight_csv(temporary_.path() / "gone" / "flight.csv", {}), std::runtime_error);
 }
 
-}  // namespace swiftlet::ground::flight_csv_test
+}  // namespace swiftlet::analysis::flight_csv_test

@@ -12,11 +12,11 @@
 #include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground::flight_log_files_test {
+namespace swiftlet::analysis::flight_log_files_test {
 
 using identification::FlightLog;
 
-plant::Vehicle kaylion() { return runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
+plant::Vehicle kaylion() { return io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
 
 // 8 IMU samples 2 ms apart; a pose and a battery sample with every fourth.
 FlightLog recorded() {
@@ -62,7 +62,7 @@ ReadFlightLog read(const std::string& text, BodyAxes axes = BodyAxes::kDetected)
 std::string refused(const std::string& text) {
   try {
     read(text);
-  } catch (const runtime::ConfigError& fault) {
+  } catch (const io::ConfigError& fault) {
     return fault.what();
   }
   ADD_FAILURE() << "was not refused";
@@ -114,7 +114,7 @@ TEST(FlightLogFiles, RefusesAxesThatGravityContradicts) {
                           kRow),
                   "must be negative in forward-right-down axes");
   EXPECT_NO_THROW(read("t [s]," + values + kRow, BodyAxes::kFlu));
-  EXPECT_THROW(read("t [s]," + values + kRow, BodyAxes::kFrd), runtime::ConfigError);
+  EXPECT_THROW(read("t [s]," + values + kRow, BodyAxes::kFrd), io::ConfigError);
 }
 
 TEST(FlightLogFiles, ConvertsPosesFromEnuToNed) {
@@ -177,13 +177,13 @@ TEST(FlightLogFiles, ReadsGzipAndReportsCorruptArchives) {
   gzclose(out);
   EXPECT_EQ(read_flight_log(file, kaylion(), BodyAxes::kDetected).log.size(), 1U);
 
-  const std::string broken = folder.write("broken.csv.gz", runtime::read_text_file(file).substr(0, 40));
+  const std::string broken = folder.write("broken.csv.gz", io::read_text_file(file).substr(0, 40));
   try {
     read_flight_log(broken, kaylion(), BodyAxes::kDetected);
     ADD_FAILURE() << "was not refused";
-  } catch (const runtime::ConfigError& fault) {
+  } catch (const io::ConfigError& fault) {
     expect_contains(fault.what(), "cannot be unpacked");
   }
 }
 
-}  // namespace swiftlet::ground::flight_log_files_test
+}  // namespace swiftlet::analysis::flight_log_files_test

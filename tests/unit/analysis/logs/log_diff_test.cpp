@@ -14,7 +14,7 @@
 #include "swiftlet/services/messages/schemas.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground::log_diff_test {
+namespace swiftlet::analysis::log_diff_test {
 
 constexpr std::int64_t kMs = 1'000'000;
 
@@ -32,12 +32,12 @@ class LogDiff : public testing::Test {
  protected:
   template <class T>
   void write(mcap::Writer& file, const std::string& topic, T message, std::int64_t time_ns) {
-    const comms::MessageSchema& schema = comms::schema_of<T>();
+    const messages::MessageSchema& schema = messages::schema_of<T>();
     auto& channel = channels_[topic];
     if (!channel)
       channel =
           file.add_channel(topic, file.add_schema(schema.name, "ros2msg", schema.definition), "cdr", {});
-    const auto payload = comms::to_payload(message);
+    const auto payload = dds::to_payload(message);
     file.write(mcap::Message{*channel, 1, time_ns, time_ns, {payload.data(), payload.size()}});
   }
 
@@ -46,13 +46,13 @@ class LogDiff : public testing::Test {
     channels_.clear();
     mcap::Writer file(path, {});
     if (flight.with_mission) {
-      comms::msg::MissionStatus status;
+      messages::msg::MissionStatus status;
       status.stamp_ns(flight.start_ns);
-      status.state(comms::msg::MissionStatus_Constants::RUNNING);
+      status.state(messages::msg::MissionStatus_Constants::RUNNING);
       write(file, "/kl1/mission_status", status, flight.start_ns);
     }
     for (std::int64_t t = 0; t <= 2000 * kMs; t += flight.period_ns) {
-      comms::msg::Estimate estimate;
+      messages::msg::Estimate estimate;
       estimate.stamp_ns(flight.start_ns + t);
       estimate.sequence_number(flight.controller + static_cast<std::uint64_t>(t));
       estimate.position_ned({static_cast<double>(t) * 1e-9, flight.east_m, 0.0});
@@ -138,7 +138,7 @@ TEST_F(LogDiff, WithoutAMissionCountsFromTheFirstMessage) {
 TEST_F(LogDiff, NamesATopicThatIsInNeitherFile) {
   const mcap::Reader a = recorded("a.mcap", {});
   const mcap::Reader b = recorded("b.mcap", {});
-  EXPECT_THROW(difference(a, b, {"/kl1/imu"}), runtime::ConfigError);
+  EXPECT_THROW(difference(a, b, {"/kl1/imu"}), io::ConfigError);
 }
 
-}  // namespace swiftlet::ground::log_diff_test
+}  // namespace swiftlet::analysis::log_diff_test

@@ -53,8 +53,8 @@ std::string svg(const Figure& figure) {
                      std::to_string(figure.width) + "," + std::to_string(figure.height) +
                      "\nset output 'picture.svg'\nset multiplot");
   folder.write("script", script);
-  ground::ChildProcess process(
-      {"gnuplot", ground::find_program("gnuplot"), {"script"}, folder.path() / "log", folder.path()});
+  io::ChildProcess process(
+      {"gnuplot", io::find_program("gnuplot"), {"script"}, folder.path() / "log", folder.path()});
   EXPECT_TRUE(process.wait(std::chrono::seconds(30)));
   return text_of(folder.path() / "picture.svg");
 }
@@ -77,7 +77,7 @@ std::vector<Point> texts(const std::string& drawn, const std::string& text) {
 class GnuplotTest : public testing::Test {
  protected:
   void SetUp() override {
-    ASSERT_FALSE(ground::find_program("gnuplot").empty()) << "install the packages of packages.txt";
+    ASSERT_FALSE(io::find_program("gnuplot").empty()) << "install the packages of packages.txt";
   }
   tests::TemporaryFolder temporary_;
   const fs::path folder_ = temporary_.path();
@@ -249,8 +249,8 @@ TEST_F(GnuplotTest, WritesAPngAndTheScriptThatDrawsIt) {
   EXPECT_EQ(picture.substr(0, 8), "\x89PNG\r\n\x1a\n");
   EXPECT_EQ(picture.substr(12, 12), std::string("IHDR\0\0\x03\x21\0\0\x01\x92", 12));  // 801 x 402
   fs::remove(folder_ / "some.png");
-  const fs::path gnuplot = ground::find_program("gnuplot");
-  ground::ChildProcess again({"gnuplot", gnuplot, {"some.gp"}, folder_ / "log", folder_});
+  const fs::path gnuplot = io::find_program("gnuplot");
+  io::ChildProcess again({"gnuplot", gnuplot, {"some.gp"}, folder_ / "log", folder_});
   ASSERT_TRUE(again.wait(std::chrono::seconds(30)));
   EXPECT_EQ(text_of(folder_ / "some.png"), picture);
 }

@@ -12,14 +12,14 @@
 #include "swiftlet/record/mcap/writer.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground::flight_comparison_test {
+namespace swiftlet::analysis::flight_comparison_test {
 
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
 TEST(FlatYaml, EverySettingHasItsKey) {
-  EXPECT_EQ(runtime::flatten_yaml("name: n\nposition:\n  x: {omega_n: 2.0, k: [1, 2]}\n"
-                                  "items:\n  - {kind: land}\n  - {kind: wait, at: ~}\n",
-                                  "a.yaml"),
+  EXPECT_EQ(io::flatten_yaml("name: n\nposition:\n  x: {omega_n: 2.0, k: [1, 2]}\n"
+                             "items:\n  - {kind: land}\n  - {kind: wait, at: ~}\n",
+                             "a.yaml"),
             (Settings{{"name", "n"},
                       {"position.x.omega_n", "2.0"},
                       {"position.x.k", "[1, 2]"},
@@ -30,9 +30,9 @@ TEST(FlatYaml, EverySettingHasItsKey) {
 
 TEST(FlatYaml, NamesTheLineOfInvalidYaml) {
   try {
-    runtime::flatten_yaml("a: 1\nb: [1, 2\n", "a.yaml");
+    io::flatten_yaml("a: 1\nb: [1, 2\n", "a.yaml");
     FAIL();
-  } catch (const runtime::ConfigError& error) {
+  } catch (const io::ConfigError& error) {
     EXPECT_NE(std::string(error.what()).find("a.yaml:"), std::string::npos) << error.what();
   }
 }
@@ -113,12 +113,12 @@ TEST_F(FlightComparison, OfAFileSaysThatNoMissionWasFlown) {
 }
 
 TEST_F(FlightComparison, RefusesWhatHoldsNoFlight) {
-  EXPECT_THROW(load_record(folder_.path()), runtime::ConfigError);
-  EXPECT_THROW(load_record(folder_.path() / "none"), runtime::ConfigError);
-  EXPECT_THROW(newest_record(folder_.path() / "none"), InputError);
+  EXPECT_THROW(load_record(folder_.path()), io::ConfigError);
+  EXPECT_THROW(load_record(folder_.path() / "none"), io::ConfigError);
+  EXPECT_THROW(newest_record(folder_.path() / "none"), io::InputError);
   write_file("flight.mcap", {"kl1"});
   folder_.write("report.json", "{\"completed\": tr");
-  EXPECT_THROW(load_record(folder_.path()), runtime::ConfigError);
+  EXPECT_THROW(load_record(folder_.path()), io::ConfigError);
 }
 
-}  // namespace swiftlet::ground::flight_comparison_test
+}  // namespace swiftlet::analysis::flight_comparison_test

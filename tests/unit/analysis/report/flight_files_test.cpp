@@ -12,7 +12,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/analysis/flown_flight.hpp"
 
-namespace swiftlet::ground::flight_files_test {
+namespace swiftlet::analysis::flight_files_test {
 
 namespace fs = std::filesystem;
 
@@ -29,7 +29,7 @@ std::string text_of(const fs::path& file) {
 }
 
 TEST_F(FlightFilesTest, DrawsAPicture) {
-  ASSERT_FALSE(find_program("gnuplot").empty()) << "install the packages of packages.txt";
+  ASSERT_FALSE(io::find_program("gnuplot").empty()) << "install the packages of packages.txt";
   const record::Window window = {1'000'000'000, 3'000'000'000};
   FlightReport report;
   report.mission = "it's_a 'square'";  // must be escaped for gnuplot
@@ -75,4 +75,4 @@ TEST_F(FlightFilesTest, ThrowsWhenTheFolderIsMissing) {
   EXPECT_THROW(write_report_json(folder_ / "gone" / "report.json", {}), std::runtime_error);
 }
 
-}  // namespace swiftlet::ground::flight_files_test
+}  // namespace swiftlet::analysis::flight_files_test

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace swiftlet::ground::flight_report_test {
+namespace swiftlet::analysis::flight_report_test {
 
 FlightReport flown_report() {
   FlightReport report;
@@ -82,4 +82,4 @@ TEST(FlightReportText, OmitsFiguresThatWereNotMeasured) {
   EXPECT_EQ(text.find("tracking"), std::string::npos) << text;
 }
 
-}  // namespace swiftlet::ground::flight_report_test
+}  // namespace swiftlet::analysis::flight_report_test

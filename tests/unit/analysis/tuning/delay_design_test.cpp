@@ -11,14 +11,14 @@
 #include "swiftlet/io/text_file.hpp"
 #include "tests/support/paths.hpp"
 
-namespace swiftlet::ground::delay_design_test {
+namespace swiftlet::analysis::delay_design_test {
 
 const std::string kFile = tests::in_source("config/control/motor_lag.yaml");
 
 class DelayDesignTest : public testing::Test {
  protected:
-  const control::ControlSettings settings_ = runtime::load_control_settings(kFile);
-  const plant::Vehicle vehicle_ = runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
+  const control::ControlSettings settings_ = io::load_control_settings(kFile);
+  const plant::Vehicle vehicle_ = io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
 };
 
 TEST_F(DelayDesignTest, EveryLoopToleratesTwiceTheDelay) {
@@ -42,8 +42,8 @@ TEST_F(DelayDesignTest, RefusesAHopelessDelay) {
 TEST_F(DelayDesignTest, WritesSettingsThatReadBack) {
   control::ControlSettings slow = slowed(settings_, 0.25);
   slow.name = "slow";
-  const std::string text = runtime::with_scalars(runtime::read_text_file(kFile), kFile, slowed_values(slow));
-  const control::ControlSettings read = runtime::parse_control_settings(text, "slow.yaml");
+  const std::string text = io::with_scalars(io::read_text_file(kFile), kFile, slowed_values(slow));
+  const control::ControlSettings read = io::parse_control_settings(text, "slow.yaml");
   EXPECT_EQ(read.name, "slow");
   EXPECT_DOUBLE_EQ(read.attitude.roll.q[0], 40000.0 / 256.0);
   EXPECT_DOUBLE_EQ(read.position.x.omega_n, 0.5);
@@ -52,4 +52,4 @@ TEST_F(DelayDesignTest, WritesSettingsThatReadBack) {
   EXPECT_EQ(read.limits.max_tilt_rad, settings_.limits.max_tilt_rad);
 }
 
-}  // namespace swiftlet::ground::delay_design_test
+}  // namespace swiftlet::analysis::delay_design_test

@@ -13,12 +13,12 @@
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "tests/support/paths.hpp"
 
-namespace swiftlet::ground::tuning_test {
+namespace swiftlet::analysis::tuning_test {
 
 control::ControlSettings settings(const std::string& name) {
-  return runtime::load_control_settings(tests::in_source("config/control/") + name + ".yaml");
+  return io::load_control_settings(tests::in_source("config/control/") + name + ".yaml");
 }
-plant::Vehicle kaylion() { return runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
+plant::Vehicle kaylion() { return io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
 
 // At the plotted crossover the magnitude is 0 dB, and the phase is the margin above -180 degrees.
 TEST(TuningStudy, CurvesAgreeWithTheMargins) {
@@ -96,4 +96,4 @@ TEST(TuningFigure, HasAStepAndABodePanelForEachLoop) {
   }
 }
 
-}  // namespace swiftlet::ground::tuning_test
+}  // namespace swiftlet::analysis::tuning_test

@@ -52,7 +52,7 @@ struct ControlledVehicle {
 
 AttitudeReference reference_at(const Vector3d& euler) {
   AttitudeReference reference;
-  reference.body_z_ned = quaternion_from_euler(euler) * Vector3d::UnitZ();
+  reference.body_z_ned = math::quaternion_from_euler(euler) * Vector3d::UnitZ();
   reference.heading = euler.z();
   return reference;
 }
@@ -199,7 +199,7 @@ TEST_P(AttitudeControllerTest, SmallErrorsOfEachAxisUseItsGains) {
 
 TEST_P(AttitudeControllerTest, FeedForwardCanBeDisabled) {
   const ControlledVehicle controlled(AttitudeModel::kMotorLag, GetParam(), false);
-  const Quaterniond q = quaternion_from_euler({0.1, 0.2, 0.3});
+  const Quaterniond q = math::quaternion_from_euler({0.1, 0.2, 0.3});
   const Vector3d rates = any(2.0);
   const AttitudeReference still = reference_at({0.3, 0.1, 0.2});
   AttitudeReference moving = still;
@@ -212,7 +212,7 @@ TEST_P(AttitudeControllerTest, FeedForwardCanBeDisabled) {
 TEST_P(AttitudeControllerTest, YawTurnsTheShorterWay) {
   const ControlledVehicle controlled(AttitudeModel::kMotorLag, GetParam());
   const Vector3d moment =
-      controlled.controller->moments(quaternion_from_euler({0.0, 0.0, 3.0}), Vector3d::Zero(),
+      controlled.controller->moments(math::quaternion_from_euler({0.0, 0.0, 3.0}), Vector3d::Zero(),
                                      Vector3d::Zero(), reference_at({0.0, 0.0, -3.0}));
   const double angle = 2.0 * M_PI - 6.0;
   const double error = GetParam() == AttitudeErrorKind::kRotation ? 2.0 * std::sin(0.5 * angle) : angle;
@@ -260,14 +260,14 @@ TEST_P(AttitudeControllerTest, BringsALargeAttitudeErrorToRest) {
     const Vector3d wanted(-0.2, 0.3, -1.0);
     const AttitudeReference reference = reference_at(wanted);
     Body body;
-    body.q = quaternion_from_euler({0.6, -0.5, 1.5});
+    body.q = math::quaternion_from_euler({0.6, -0.5, 1.5});
     body.rates = {3.0, -2.0, 1.0};
     constexpr double kStep = 1e-3;
     for (int i = 0; i < 8000; ++i) {
       body.step(controlled, controlled.controller->moments(body.q, body.rates, body.moment, reference),
                 kStep);
     }
-    EXPECT_LT(body.q.angularDistance(quaternion_from_euler(wanted)), 1e-3);
+    EXPECT_LT(body.q.angularDistance(math::quaternion_from_euler(wanted)), 1e-3);
     EXPECT_LT(body.rates.norm(), 1e-3);
   }
 }
@@ -312,7 +312,7 @@ TEST_P(AttitudeControllerTest, RatesAreThoseAtWhichTheLawAsksForNoMoment) {
   for (int i = 0; i < 100; ++i) {
     AttitudeReference reference = reference_at(any(0.5));
     reference.body_rates = any(1.0);
-    const Quaterniond q = quaternion_from_euler(any(0.5));
+    const Quaterniond q = math::quaternion_from_euler(any(0.5));
     const Vector3d rates = vehicle.controller->rates(q, reference);
     const Vector3d moment = vehicle.controller->moments(q, rates, Vector3d::Zero(), reference);
     EXPECT_LT((moment - rates.cross(vehicle.vehicle.inertia * rates)).norm(), 1e-12);

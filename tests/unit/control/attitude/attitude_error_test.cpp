@@ -36,31 +36,31 @@ TEST_F(AttitudeErrorTest, EulerAnglesMatchEq3) {
     r << ct * cs, sp * st * cs - cp * ss, cp * st * cs + sp * ss,  //
         ct * ss, sp * st * ss + cp * cs, cp * st * ss - sp * cs,   //
         -st, sp * ct, cp * ct;
-    const Quaterniond q = quaternion_from_euler(euler);
+    const Quaterniond q = math::quaternion_from_euler(euler);
     EXPECT_LT((q.toRotationMatrix() - r).norm(), 1e-14);
-    EXPECT_LT((euler_angles(q).vector() - euler).norm(), 1e-11);
+    EXPECT_LT((math::euler_angles(q).vector() - euler).norm(), 1e-11);
   }
 }
 
 TEST_F(AttitudeErrorTest, EulerAnglesAtTheSingularityRoundTrip) {
   for (const double theta : {M_PI / 2.0, -M_PI / 2.0}) {
-    const Quaterniond q = quaternion_from_euler({0.4, theta, 0.9});
-    const Vector3d euler = euler_angles(q).vector();
+    const Quaterniond q = math::quaternion_from_euler({0.4, theta, 0.9});
+    const Vector3d euler = math::euler_angles(q).vector();
     EXPECT_EQ(euler[2], 0.0);
-    EXPECT_LT(quaternion_from_euler(euler).angularDistance(q), 1e-7);
+    EXPECT_LT(math::quaternion_from_euler(euler).angularDistance(q), 1e-7);
   }
 }
 
 TEST_F(AttitudeErrorTest, WrapsAngles) {
-  EXPECT_NEAR(wrap_angle(2.0 * M_PI + 0.3), 0.3, 1e-15);
-  EXPECT_NEAR(wrap_angle(-M_PI - 0.1), M_PI - 0.1, 1e-15);
-  EXPECT_NEAR(wrap_angle(41.0 * M_PI + 0.1), -M_PI + 0.1, 1e-13);
+  EXPECT_NEAR(math::wrap_angle(2.0 * M_PI + 0.3), 0.3, 1e-15);
+  EXPECT_NEAR(math::wrap_angle(-M_PI - 0.1), M_PI - 0.1, 1e-15);
+  EXPECT_NEAR(math::wrap_angle(41.0 * M_PI + 0.1), -M_PI + 0.1, 1e-13);
 }
 
 TEST_F(AttitudeErrorTest, AttitudeAlongHasTheEulerYaw) {
   for (int trial = 0; trial < 1000; ++trial) {
-    const Quaterniond q = quaternion_from_euler(any(1.0).cwiseProduct(Vector3d(1.2, 1.2, M_PI)));
-    const Matrix3d axes = attitude_along(q * Vector3d::UnitZ(), euler_angles(q).vector().z());
+    const Quaterniond q = math::quaternion_from_euler(any(1.0).cwiseProduct(Vector3d(1.2, 1.2, M_PI)));
+    const Matrix3d axes = attitude_along(q * Vector3d::UnitZ(), math::euler_angles(q).vector().z());
     EXPECT_LT((axes - q.toRotationMatrix()).norm(), 1e-13);
   }
 }
@@ -68,7 +68,7 @@ TEST_F(AttitudeErrorTest, AttitudeAlongHasTheEulerYaw) {
 TEST_F(AttitudeErrorTest, IsZeroAtTheReference) {
   for (int trial = 0; trial < 100; ++trial) {
     const Vector3d euler = any(1.0).cwiseProduct(Vector3d(1.2, 1.2, M_PI));
-    const Quaterniond q = quaternion_from_euler(euler);
+    const Quaterniond q = math::quaternion_from_euler(euler);
     EXPECT_LT(euler_error(q, q * Vector3d::UnitZ(), euler.z()).norm(), 1e-12);
     const RotationError error = rotation_error(q, q * Vector3d::UnitZ(), euler.z());
     EXPECT_LT(error.angle.norm(), 1e-7);
@@ -80,9 +80,9 @@ TEST_F(AttitudeErrorTest, IsZeroAtTheReference) {
 TEST_F(AttitudeErrorTest, EulerAndRotationErrorsAgreeNearLevel) {
   for (const double size : {1e-2, 1e-3}) {
     for (int trial = 0; trial < 100; ++trial) {
-      const Quaterniond q = quaternion_from_euler(any(size));
+      const Quaterniond q = math::quaternion_from_euler(any(size));
       const Vector3d wanted = any(size);
-      const Vector3d z = quaternion_from_euler(wanted) * Vector3d::UnitZ();
+      const Vector3d z = math::quaternion_from_euler(wanted) * Vector3d::UnitZ();
       const Vector3d euler = euler_error(q, z, wanted.z());
       EXPECT_LT((rotation_error(q, z, wanted.z()).angle - euler).norm(), 10.0 * size * size);
     }
@@ -92,7 +92,7 @@ TEST_F(AttitudeErrorTest, EulerAndRotationErrorsAgreeNearLevel) {
 TEST_F(AttitudeErrorTest, TiltAndYawPartsComposeToTheRotation) {
   for (int trial = 0; trial < 1000; ++trial) {
     const Quaterniond q = any_attitude();
-    const Vector3d z = quaternion_from_euler(any(1.0)) * Vector3d::UnitZ();
+    const Vector3d z = math::quaternion_from_euler(any(1.0)) * Vector3d::UnitZ();
     const double yaw = any(M_PI).x();
     const RotationError error = rotation_error(q, z, yaw);
     EXPECT_NEAR(error.angle.head<2>().norm(), 2.0 * std::sin(0.5 * std::acos(z.dot(q * Vector3d::UnitZ()))),
@@ -108,7 +108,7 @@ TEST_F(AttitudeErrorTest, TiltAndYawPartsComposeToTheRotation) {
 
 TEST_F(AttitudeErrorTest, IsLargeAndFiniteUpsideDown) {
   for (int trial = 0; trial < 100; ++trial) {
-    const Quaterniond q = quaternion_from_euler(any(1.0)) * AngleAxisd(M_PI, Vector3d::UnitX());
+    const Quaterniond q = math::quaternion_from_euler(any(1.0)) * AngleAxisd(M_PI, Vector3d::UnitX());
     const Vector3d z = -(q * Vector3d::UnitZ());
     const RotationError error = rotation_error(q, z, 0.0);
     EXPECT_TRUE(error.angle.allFinite());

@@ -12,9 +12,9 @@ namespace swiftlet::control::control_gains_test {
 
 ControlGains gains_of(const std::string& name) {
   const ControlSettings settings =
-      runtime::load_control_settings(tests::in_source("config/control/") + name + ".yaml");
-  return control_gains(
-      design(runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")), settings), settings);
+      io::load_control_settings(tests::in_source("config/control/") + name + ".yaml");
+  return control_gains(design(io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")), settings),
+                       settings);
 }
 
 constexpr double kLag_s = 0.0821;

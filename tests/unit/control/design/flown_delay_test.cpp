@@ -11,9 +11,9 @@
 
 namespace swiftlet::control::flown_delay_test {
 
-plant::Vehicle kaylion() { return runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
+plant::Vehicle kaylion() { return io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")); }
 ControlSettings settings(const std::string& name) {
-  return runtime::load_control_settings(tests::in_source("config/control/") + name + ".yaml");
+  return io::load_control_settings(tests::in_source("config/control/") + name + ".yaml");
 }
 
 double slowest_pole(const Loop& loop) {

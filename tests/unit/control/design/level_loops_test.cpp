@@ -31,9 +31,9 @@ VehicleLoops plain_loops() {
 }
 
 ControlGains gains() {
-  const plant::Vehicle vehicle = runtime::load_vehicle(tests::in_source("config/vehicles/crazyflie2.yaml"));
+  const plant::Vehicle vehicle = io::load_vehicle(tests::in_source("config/vehicles/crazyflie2.yaml"));
   const ControlSettings settings =
-      runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml"));
+      io::load_control_settings(tests::in_source("config/control/motor_lag.yaml"));
   return control_gains(design(vehicle, settings), settings);
 }
 

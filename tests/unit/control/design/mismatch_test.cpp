@@ -21,7 +21,7 @@ constexpr double kSupply = 4.0;
 
 const ControlDesign& motor_lag() {
   static const ControlDesign made =
-      design(kaylion(), runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml")));
+      design(kaylion(), io::load_control_settings(tests::in_source("config/control/motor_lag.yaml")));
   return made;
 }
 

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 constexpr double kStep_s = 0.002;
 constexpr double kLift = plant::kGravity;
 const Vector3d kWind(0.8, -0.5, 0.3);  // m/s^2
-const Quaterniond kTilted = quaternion_from_euler({0.2, -0.3, 2.0});
+const Quaterniond kTilted = math::quaternion_from_euler({0.2, -0.3, 2.0});
 
 // Specific force under a lift and a disturbance.
 Vector3d specific_force(const Quaterniond& q, double lift, const Vector3d& disturbance_ned) {

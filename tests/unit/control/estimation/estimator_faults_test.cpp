@@ -422,7 +422,7 @@ TEST_P(EstimatorAtRest, DetectsAFrozenStreamOnlyIfItHadNoise) {
   const bool flips = std::get<1>(GetParam());
   const EstimatorSettings settings;
   Estimator estimator(settings);
-  plant::RandomStream noise(1, 1);
+  math::RandomStream noise(1, 1);
   std::uint64_t sequence = 0;
   PoseSample last;
   const auto rest = [&](double duration_s, bool frozen, RotorState rotors) {

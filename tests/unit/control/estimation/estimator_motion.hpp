@@ -15,8 +15,8 @@
 
 namespace swiftlet::control {
 
-using plant::rotation;
-using plant::rotation_vector;
+using math::rotation;
+using math::rotation_vector;
 
 constexpr std::int64_t kStep_ns = 2'000'000;
 constexpr std::int64_t kFrame_ns = 10'000'000;
@@ -97,7 +97,7 @@ class NoisyMotion {
 
  private:
   EstimatorSettings settings_;
-  plant::RandomStream noise_;
+  math::RandomStream noise_;
   Motion motion_;
   std::uint64_t sequence_ = 0;
 };

@@ -27,7 +27,7 @@ TEST(OdometryMotion, IsWhatAnImuWouldMeasure) {
       << "at rest";
   const MeanMotion north = motion.step(sample(10'000'000, {0.02, 0.0, 0.0}), 0.0);
   EXPECT_TRUE(north.specific_force_frd.isApprox(Vector3d(2.0, 0.0, -plant::kGravity), 1e-9)) << "2 m/s^2";
-  const Quaterniond turned = plant::rotation(Vector3d(0.0, 0.0, 0.01));
+  const Quaterniond turned = math::rotation(Vector3d(0.0, 0.0, 0.01));
   const MeanMotion turning = motion.step(sample(20'000'000, {0.02, 0.0, 0.0}, turned), 0.0);
   EXPECT_NEAR(turning.body_rates_frd.z(), 1.0, 1e-9);
 }
@@ -37,7 +37,7 @@ TEST(OdometryMotion, AJumpIsNone) {
   motion.step(sample(0, {0.0, 0.0, 0.0}), 0.0);
   const MeanMotion before = motion.step(sample(10'000'000, {0.01, 0.0, 0.0}), 0.0);
   plant::OdometrySample jumped =
-      sample(20'000'000, {-3.0, 2.0, 1.0}, plant::rotation(Vector3d(0.0, 0.0, 1.0)));
+      sample(20'000'000, {-3.0, 2.0, 1.0}, math::rotation(Vector3d(0.0, 0.0, 1.0)));
   jumped.resets = 1;
   const MeanMotion after = motion.step(jumped, 0.0);
   EXPECT_EQ(after.specific_force_frd, before.specific_force_frd);

@@ -52,7 +52,7 @@ class PoseImuConsistency : public testing::TestWithParam<std::uint64_t> {
   }
 
   const EstimatorSettings settings_{};
-  plant::RandomStream random_{GetParam(), 1};
+  math::RandomStream random_{GetParam(), 1};
   const Path path_{random_.normal3(), random_.normal3(), rotation(0.3 * random_.normal3())};
   plant::PoseSample pose_;
   PoseImuConsistencyTest test_;

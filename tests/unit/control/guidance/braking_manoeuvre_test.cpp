@@ -48,7 +48,7 @@ Peaks peaks(const PolynomialSegment& segment) {
 }
 
 TEST(BrakingManoeuvre, StaysWithinTheLimitsFromAnyMotionWithinThem) {
-  plant::RandomStream random(1, 1);
+  math::RandomStream random(1, 1);
   double most_acceleration = 0.0, most_jerk = 0.0;
   for (int i = 0; i < 5000; ++i) {
     const Reference from = motion(random.log_uniform(1e-3, 3.0) * random.on_unit_sphere(),
@@ -64,7 +64,7 @@ TEST(BrakingManoeuvre, StaysWithinTheLimitsFromAnyMotionWithinThem) {
 }
 
 TEST(BrakingManoeuvre, StartsFromTheMotionAndEndsAtRest) {
-  plant::RandomStream random(2, 1);
+  math::RandomStream random(2, 1);
   for (int i = 0; i < 200; ++i) {
     const Reference from =
         motion(2.0 * random.on_unit_sphere(), random.uniform(0.0, 4.0) * random.on_unit_sphere());

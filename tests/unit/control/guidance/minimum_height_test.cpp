@@ -202,7 +202,7 @@ TEST_F(MinimumHeight, IsReachedByHoldAfterAnEndedLanding) {
 // Requests at any moment of a fast low flight: the joins of two motions swing out, but not below.
 TEST_F(MinimumHeight, HoldsWhileRequestsInterruptEachOther) {
   ASSERT_TRUE(take_off());
-  plant::RandomStream random(5, 1);
+  math::RandomStream random(5, 1);
   for (int i = 0; i < 300; ++i) {
     const Vector3d to(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), -random.uniform(0.1, 0.6));
     const bool holds = random.uniform() < 0.2;

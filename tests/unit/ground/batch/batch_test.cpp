@@ -70,11 +70,11 @@ class BatchTest : public testing::Test {
   }
 
   // The flight of `sim fly` with the seed of a run.
-  FlightReport repeated(const std::string& parameters, std::uint64_t seed) const {
+  analysis::FlightReport repeated(const std::string& parameters, std::uint64_t seed) const {
     FlyOptions how = options(parameters);
     how.seed = seed;
     const LaunchConfiguration plan = plan_flight(how);
-    ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
+    simulation::ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
     record::Flight flight;
     return fly_in_process(loop, plan, plan.seed, flight, nullptr, never);
   }
@@ -84,7 +84,7 @@ class BatchTest : public testing::Test {
     EXPECT_FALSE(report.completed());
     for (const BatchRun& run : report.batch.runs) {
       if (run.completed) continue;
-      const FlightReport again = repeated(parameters, run.seed);
+      const analysis::FlightReport again = repeated(parameters, run.seed);
       EXPECT_FALSE(again.completed);
       EXPECT_EQ(again.reason, run.reason);
       EXPECT_EQ(again.errors.rms_3d_m, run.rms_3d_m);
@@ -117,7 +117,7 @@ TEST_F(BatchTest, FliesEachRunWithItsOwnSeedAndSample) {
     EXPECT_GT(run.rms_3d_m, 0.0);
     EXPECT_LT(run.rms_3d_m, 0.05);
     EXPECT_GT(run.duration_s, 5.0);
-    const FlightReport again = repeated(kMass + kLatency, run.seed);
+    const analysis::FlightReport again = repeated(kMass + kLatency, run.seed);
     EXPECT_EQ(again.errors.rms_3d_m, run.rms_3d_m);
     EXPECT_EQ(again.errors.peak_3d_m, run.peak_3d_m);
   }
@@ -144,7 +144,7 @@ TEST_F(BatchTest, FliesTheNominalVehicleWithoutDispersion) {
   FlyOptions how = options(kMass);
   how.dispersion.clear();
   const LaunchConfiguration plan = plan_flight(how);
-  const World world = draw(plan, plan.seed).world;
+  const simulation::World world = draw(plan, plan.seed).world;
   EXPECT_EQ(world.vehicle.mass_kg, plan.vehicle.mass_kg);
   EXPECT_EQ(world.vehicle.motor.armature_resistance_ohm, plan.vehicle.motor.armature_resistance_ohm);
 }
@@ -174,7 +174,7 @@ TEST_F(BatchTest, RefusesTooManyJobs) {
 TEST_F(BatchTest, SamplesAllVehiclesBeforeTheFirstFlight) {
   const LaunchConfiguration plan = plan_flight(
       options("  vehicle.inertia.zz: {distribution: uniform, min: 1.5, max: 2, unit: nominal, source: x}\n"));
-  EXPECT_THROW(BatchRunner(plan, 3), runtime::ConfigError);
+  EXPECT_THROW(BatchRunner(plan, 3), io::ConfigError);
 }
 
 // Two runs without flights, the second one failed.
@@ -260,7 +260,7 @@ TEST_F(BatchTest, CsvHasARowForEachRun) {
 }
 
 TEST_F(BatchTest, DrawsAPicture) {
-  ASSERT_FALSE(find_program("gnuplot").empty()) << "install the packages of packages.txt";
+  ASSERT_FALSE(io::find_program("gnuplot").empty()) << "install the packages of packages.txt";
   BatchReport report = fly(kMass + kLatency, 4, 2);
   report.mission = "it's_a 'hop'";
   csv(report);

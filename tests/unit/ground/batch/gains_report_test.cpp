@@ -19,8 +19,7 @@ constexpr double kAny = std::numeric_limits<double>::infinity();
 constexpr FlownDelays kDelays_s = {0.041, 0.042, kAny, 0.031, 0.032, 0.033};
 
 control::ControlSettings settings(control::AttitudeModel model, double integral_pole) {
-  control::ControlSettings s =
-      runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml"));
+  control::ControlSettings s = io::load_control_settings(tests::in_source("config/control/motor_lag.yaml"));
   s.attitude.model = model;
   s.attitude.roll = {Eigen::Vector3d(625.0, 2.0, 0.5), 4.0};
   s.attitude.pitch = {Eigen::Vector3d(500.0, 2.0, 0.5), 4.0};
@@ -30,7 +29,7 @@ control::ControlSettings settings(control::AttitudeModel model, double integral_
 }
 
 control::ControlDesign design(control::AttitudeModel model, double integral_pole) {
-  const plant::Vehicle vehicle = runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
+  const plant::Vehicle vehicle = io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
   return control::design(vehicle, settings(model, integral_pole));
 }
 

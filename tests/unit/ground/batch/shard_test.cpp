@@ -78,7 +78,7 @@ class ShardFile : public testing::Test {
     try {
       merge(shards, {"a", "b", "c"});
       ADD_FAILURE() << "was merged, must be refused: " << sentence;
-    } catch (const InputError& error) {
+    } catch (const io::InputError& error) {
       EXPECT_NE(std::string(error.what()).find(sentence), std::string::npos) << error.what();
     }
   }
@@ -133,13 +133,13 @@ TEST_F(ShardFile, RefusesShardsThatAreNotOfOneBatch) {
 }
 
 TEST_F(ShardFile, RefusesDamagedFiles) {
-  EXPECT_THROW(read_shard(folder_.path()), runtime::ConfigError) << "no file";
+  EXPECT_THROW(read_shard(folder_.path()), io::ConfigError) << "no file";
   const auto expect_damage = [&](const std::string& text, const std::string& sentence) {
     std::ofstream(folder_.path() / kShardFile) << text;
     try {
       read_shard(folder_.path());
       ADD_FAILURE() << "was read, must be refused: " << sentence;
-    } catch (const InputError& error) {
+    } catch (const io::InputError& error) {
       const std::string what = error.what();
       EXPECT_NE(what.find("shard.json: is no result of a shard: "), std::string::npos) << what;
       EXPECT_NE(what.find(sentence), std::string::npos) << what;

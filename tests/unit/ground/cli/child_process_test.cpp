@@ -20,12 +20,12 @@ using namespace std::chrono_literals;
 
 class ChildProcessTest : public testing::Test {
  protected:
-  ProcessSettings shell(const std::string& script) const {
+  io::ProcessSettings shell(const std::string& script) const {
     return {"child", "/bin/sh", {"-c", script}, folder_ / "child.log"};
   }
   // A shell whose traps are set: it has printed `ready`.
-  ChildProcess ready(const std::string& before, const std::string& after) const {
-    ChildProcess child(shell(before + "; echo ready; " + after));
+  io::ChildProcess ready(const std::string& before, const std::string& after) const {
+    io::ChildProcess child(shell(before + "; echo ready; " + after));
     const auto deadline = std::chrono::steady_clock::now() + 10s;
     while (child.last_log_line() != "ready" && std::chrono::steady_clock::now() < deadline)
       std::this_thread::yield();
@@ -37,7 +37,7 @@ class ChildProcessTest : public testing::Test {
 };
 
 TEST_F(ChildProcessTest, ReportsExitStatusAndLastLogLine) {
-  ChildProcess child(shell("echo one; echo two >&2; echo; exit 7"));
+  io::ChildProcess child(shell("echo one; echo two >&2; echo; exit 7"));
   const auto end = child.wait(10s);
   ASSERT_TRUE(end);
   EXPECT_EQ(end->to_string(), "ended with exit status 7");
@@ -45,7 +45,7 @@ TEST_F(ChildProcessTest, ReportsExitStatusAndLastLogLine) {
 }
 
 TEST_F(ChildProcessTest, ReportsTheSignal) {
-  ChildProcess child = ready(":", "exec sleep 100");
+  io::ChildProcess child = ready(":", "exec sleep 100");
   EXPECT_FALSE(child.poll());
   child.signal(SIGKILL);
   const auto end = child.wait(10s);
@@ -54,19 +54,19 @@ TEST_F(ChildProcessTest, ReportsTheSignal) {
 }
 
 TEST_F(ChildProcessTest, StopSendsSigtermFirst) {
-  ChildProcess child = ready("trap 'exit 0' TERM", "while :; do sleep 0.01; done");
+  io::ChildProcess child = ready("trap 'exit 0' TERM", "while :; do sleep 0.01; done");
   EXPECT_EQ(child.stop(10s).to_string(), "ended with exit status 0");
 }
 
 TEST_F(ChildProcessTest, StopKillsAProcessThatIgnoresSigterm) {
-  ChildProcess child = ready("trap '' TERM", "while :; do sleep 0.01; done");
+  io::ChildProcess child = ready("trap '' TERM", "while :; do sleep 0.01; done");
   EXPECT_EQ(child.stop(50ms).to_string(), "was killed by signal 9 (Killed)");
 }
 
 TEST_F(ChildProcessTest, DestructorEndsTheProcess) {
   pid_t pid = -1;
   {
-    const ChildProcess child = ready(":", "exec sleep 100");
+    const io::ChildProcess child = ready(":", "exec sleep 100");
     pid = child.pid();
     ASSERT_EQ(kill(pid, 0), 0);
   }
@@ -75,21 +75,21 @@ TEST_F(ChildProcessTest, DestructorEndsTheProcess) {
 }
 
 TEST_F(ChildProcessTest, HasItsOwnProcessGroup) {
-  const ChildProcess child = ready(":", "exec sleep 100");
+  const io::ChildProcess child = ready(":", "exec sleep 100");
   EXPECT_EQ(getpgid(child.pid()), child.pid()) << "must not receive Ctrl-C of the launcher's terminal";
 }
 
 TEST_F(ChildProcessTest, RunsInTheGivenFolder) {
-  ProcessSettings settings = shell("pwd -P");
+  io::ProcessSettings settings = shell("pwd -P");
   settings.working_directory = folder_;
-  ChildProcess child(settings);
+  io::ChildProcess child(settings);
   ASSERT_TRUE(child.wait(10s));
   EXPECT_EQ(child.last_log_line(), std::filesystem::canonical(folder_).string());
 }
 
 TEST_F(ChildProcessTest, ReportsAProgramThatCannotBeStarted) {
   try {
-    const ChildProcess child({"swiftlet-plant", folder_ / "nothing", {}, folder_ / "child.log"});
+    const io::ChildProcess child({"swiftlet-plant", folder_ / "nothing", {}, folder_ / "child.log"});
     FAIL() << "expected std::runtime_error";
   } catch (const std::runtime_error& error) {
     EXPECT_EQ(std::string(error.what()), "swiftlet-plant: " + (folder_ / "nothing").string() +
@@ -98,10 +98,10 @@ TEST_F(ChildProcessTest, ReportsAProgramThatCannotBeStarted) {
 }
 
 TEST_F(ChildProcessTest, GroupNamesTheExitedProcess) {
-  ProcessSettings well = shell("exec sleep 100");
+  io::ProcessSettings well = shell("exec sleep 100");
   well.name = "well";
   well.log_file = folder_ / "well.log";
-  ProcessSettings ill = shell("echo out of luck; kill -SEGV $$");
+  io::ProcessSettings ill = shell("echo out of luck; kill -SEGV $$");
   ill.name = "ill";
   ProcessGroup processes({well, ill});
   const auto deadline = std::chrono::steady_clock::now() + 10s;
@@ -113,7 +113,7 @@ TEST_F(ChildProcessTest, GroupNamesTheExitedProcess) {
 }
 
 TEST_F(ChildProcessTest, GroupReportsUncleanExits) {
-  ProcessSettings fails = shell("exit 3");
+  io::ProcessSettings fails = shell("exit 3");
   fails.name = "fails";
   ProcessGroup processes({fails});
   const auto deadline = std::chrono::steady_clock::now() + 10s;

@@ -29,7 +29,7 @@ class CommandLine : public testing::Test {
   }
 
   CLI::App app_;
-  std::vector<Command> commands_;
+  std::vector<io::Command> commands_;
 };
 
 TEST_F(CommandLine, GotoAcceptsNegativeNumbers) {
@@ -99,7 +99,7 @@ TEST_F(CommandLine, RefusesInvalidDomainsAndVehicleNames) {
 }
 
 TEST_F(CommandLine, EveryCommandShowsAnExample) {
-  for (const Command& command : commands_) {
+  for (const io::Command& command : commands_) {
     EXPECT_NE(command.app.help().find("example: swiftlet " + command.app.name()), std::string::npos)
         << command.app.name();
   }

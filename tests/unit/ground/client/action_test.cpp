@@ -21,7 +21,7 @@ swiftlet_msgs::msg::ControlStatus status(const RequestStatus& last,
                                          std::int64_t stamp_ns = kAccepted_ns + 1) {
   swiftlet_msgs::msg::ControlStatus status;
   status.stamp_ns(stamp_ns);
-  status.request() = comms::to_message(last);
+  status.request() = messages::to_message(last);
   return status;
 }
 
@@ -53,7 +53,7 @@ TEST(ActionResults, AreReadFromEarlierRequests) {
   for (const control::RequestKey& key : {control::RequestKey{7, 13}, control::RequestKey{8, 12}}) {
     other.key = key;
     auto reported = status(other);
-    reported.earlier_requests()[2] = comms::to_message(in_state(RequestState::kSucceeded));
+    reported.earlier_requests()[2] = messages::to_message(in_state(RequestState::kSucceeded));
     EXPECT_EQ(summary_of(action_result_by(reported, kAnswer)), "done");
   }
 }

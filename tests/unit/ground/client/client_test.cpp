@@ -19,7 +19,7 @@
 
 namespace swiftlet::ground::client_test {
 
-using comms::DomainLock;
+using dds::DomainLock;
 using tests::eventually;
 using tests::Inbox;
 using tests::settings_of;
@@ -31,17 +31,18 @@ class Control {
   explicit Control(const DomainLock& lock, bool answers = false)
       : answers_(answers),
         node_(settings_of("control", lock)),
-        acks_(node_.publish(comms::topics::kCommandAck)),
-        statuses_(node_.publish(comms::topics::kControlStatus)) {
-    commands_ = node_.subscribe<msg::Command>(comms::topics::kCommand, [this](const msg::Command& command) {
-      commands_received_.put(command);
-      received_.put(command.id());
-      if (answers_) answer(command.client(), command.id());
-    });
+        acks_(node_.publish(messages::topics::kCommandAck)),
+        statuses_(node_.publish(messages::topics::kControlStatus)) {
+    commands_ =
+        node_.subscribe<msg::Command>(messages::topics::kCommand, [this](const msg::Command& command) {
+          commands_received_.put(command);
+          received_.put(command.id());
+          if (answers_) answer(command.client(), command.id());
+        });
     missions_ = node_.subscribe<msg::Mission>(
-        comms::topics::kMission, [this](const msg::Mission& mission) { received_.put(mission.id()); });
+        messages::topics::kMission, [this](const msg::Mission& mission) { received_.put(mission.id()); });
   }
-  void publish_status(std::uint64_t sequence_number, std::uint32_t wire_version = comms::kWireVersion) {
+  void publish_status(std::uint64_t sequence_number, std::uint32_t wire_version = messages::kWireVersion) {
     msg::ControlStatus status;
     status.wire_version(wire_version);
     status.sequence_number(sequence_number);
@@ -64,10 +65,10 @@ class Control {
     acks_.publish(ack);
   }
   std::atomic<bool> answers_;
-  comms::Node node_;
-  comms::Publisher<msg::CommandAck> acks_;
-  comms::Publisher<msg::ControlStatus> statuses_;
-  comms::Subscription commands_, missions_;
+  dds::Node node_;
+  dds::Publisher<msg::CommandAck> acks_;
+  dds::Publisher<msg::ControlStatus> statuses_;
+  dds::Subscription commands_, missions_;
 };
 
 class Requests : public testing::Test {
@@ -182,9 +183,9 @@ TEST(Connection, IsThereWhenTheControllerReadsSetpoints) {
   EXPECT_FALSE(vehicle.send(VelocitySetpoint{Eigen::Vector3d::Zero()}));
   auto connecting = std::async(std::launch::async, [&] { return vehicle.connect(60s); });
   EXPECT_EQ(connecting.wait_for(200ms), std::future_status::timeout) << "nobody reads setpoints";
-  comms::Node late(settings_of("late", lock));
-  const comms::Subscription setpoints =
-      late.subscribe<msg::Setpoint>(comms::topics::kSetpoint, [](const auto&) {});
+  dds::Node late(settings_of("late", lock));
+  const dds::Subscription setpoints =
+      late.subscribe<msg::Setpoint>(messages::topics::kSetpoint, [](const auto&) {});
   EXPECT_TRUE(connecting.get().accepted());
   EXPECT_TRUE(vehicle.send(VelocitySetpoint{Eigen::Vector3d::Zero()}));
 }
@@ -193,7 +194,7 @@ TEST(Connection, IsThereWhenTheControllerReadsSetpoints) {
 TEST(Connection, ToAControllerOfAnotherWireVersionIsRefused) {
   const DomainLock lock;
   Control control(lock);
-  control.publish_status(1, comms::kWireVersion + 1);
+  control.publish_status(1, messages::kWireVersion + 1);
   Vehicle vehicle(settings_of("ground", lock));
   const Result refused = vehicle.connect(60s);
   EXPECT_EQ(refused.kind, Result::Kind::kNoControl);

@@ -12,7 +12,7 @@
 
 namespace swiftlet::ground::ground_signals_test {
 
-namespace msg = comms::msg;
+namespace msg = messages::msg;
 using tests::eventually;
 using tests::Inbox;
 
@@ -20,21 +20,21 @@ constexpr std::int64_t kMs = 1'000'000;
 
 class GroundSignals : public testing::Test {
  protected:
-  static comms::NodeSettings settings(const comms::DomainLock& lock, const char* name) {
-    comms::NodeSettings settings;
+  static dds::NodeSettings settings(const dds::DomainLock& lock, const char* name) {
+    dds::NodeSettings settings;
     settings.name = name;
     settings.domain = lock.domain();
     return settings;
   }
-  comms::DomainLock lock_;
-  comms::Node ground_{settings(lock_, "ground")};
-  comms::Node vehicle_{settings(lock_, "vehicle")};
+  dds::DomainLock lock_;
+  dds::Node ground_{settings(lock_, "ground")};
+  dds::Node vehicle_{settings(lock_, "vehicle")};
 };
 
 TEST_F(GroundSignals, HeartbeatIsSentEvery50MsOfTheVehiclesClock) {
   Inbox<msg::GroundLink> inbox;
   const auto subscription = vehicle_.subscribe<msg::GroundLink>(
-      comms::topics::kGroundLink, [&](const msg::GroundLink& heartbeat) { inbox.put(heartbeat); });
+      messages::topics::kGroundLink, [&](const msg::GroundLink& heartbeat) { inbox.put(heartbeat); });
   GroundHeartbeatPublisher publisher(ground_, 42);
   // Heartbeats are lost until both sides have found each other.
   std::int64_t found_ms = 0;
@@ -70,7 +70,7 @@ TEST_F(GroundSignals, HeartbeatIsSentEvery50MsOfTheVehiclesClock) {
 TEST_F(GroundSignals, SimulationClockRunsOneWindowAheadUpToTheGoal) {
   Inbox<std::int64_t> simulation_clock;
   const auto subscription = vehicle_.subscribe<msg::SimulationClock>(
-      comms::topics::kSimulationClock,
+      messages::topics::kSimulationClock,
       [&](const msg::SimulationClock& clock) { simulation_clock.put(clock.advance_to_ns() / kMs); });
   SimulationClockPublisher clock(ground_, 100 * kMs);
   ASSERT_TRUE(eventually([&] { return subscription.matched() == 1; }));

@@ -19,8 +19,8 @@ constexpr auto kPatience = tests::kStuck;
 
 class TopicStreamTest : public testing::Test {
  protected:
-  comms::NodeSettings settings(const std::string& name) const {
-    comms::NodeSettings settings{name, "kl1", domain_.domain()};
+  dds::NodeSettings settings(const std::string& name) const {
+    dds::NodeSettings settings{name, "kl1", domain_.domain()};
     return settings;
   }
   static double number(const TopicStream& stream, const TopicStream::Sample& sample,
@@ -31,17 +31,17 @@ class TopicStreamTest : public testing::Test {
     return std::get<double>(sample.values.at(static_cast<std::size_t>(at - columns.begin())));
   }
 
-  comms::DomainLock domain_;
+  dds::DomainLock domain_;
 };
 
 TEST_F(TopicStreamTest, GivesEachMessageOnceInOrder) {
-  comms::Node sender(settings("plant"));
-  auto infos = sender.publish(comms::topics::kVehicleInfo);  // reliable: none is lost
-  const comms::Participant participant(settings("ground"));
+  dds::Node sender(settings("plant"));
+  auto infos = sender.publish(messages::topics::kVehicleInfo);  // reliable: none is lost
+  const dds::Participant participant(settings("ground"));
   TopicStream stream(participant, "kl1", "vehicle_info");
   EXPECT_FALSE(stream.next(0ms));
-  comms::msg::VehicleInfo message;
-  message.wire_version(comms::kWireVersion);
+  messages::msg::VehicleInfo message;
+  message.wire_version(messages::kWireVersion);
   for (int i = 1; i <= 3; ++i) {
     message.mass_kg(0.5 * i);
     infos.publish(message);
@@ -54,12 +54,12 @@ TEST_F(TopicStreamTest, GivesEachMessageOnceInOrder) {
 }
 
 TEST_F(TopicStreamTest, DropsTheOldestOfTooMany) {
-  comms::Node sender(settings("control"));
-  auto estimates = sender.publish(comms::topics::kEstimate);
-  const comms::Participant participant(settings("ground"));
+  dds::Node sender(settings("control"));
+  auto estimates = sender.publish(messages::topics::kEstimate);
+  const dds::Participant participant(settings("ground"));
   TopicStream stream(participant, "kl1", "estimate", 2);
   ASSERT_TRUE(tests::eventually([&] { return estimates.matched() > 0; }));
-  comms::msg::Estimate message;
+  messages::msg::Estimate message;
   std::uint64_t sent = 0;
   ASSERT_TRUE(tests::eventually([&] {
     message.position_ned({1.0 * static_cast<double>(++sent), 0.0, 0.0});
@@ -72,7 +72,7 @@ TEST_F(TopicStreamTest, DropsTheOldestOfTooMany) {
 }
 
 TEST_F(TopicStreamTest, RefusesAnUnknownTopicAndNamesAll) {
-  const comms::Participant participant(settings("ground"));
+  const dds::Participant participant(settings("ground"));
   try {
     const TopicStream stream(participant, "kl1", "nothing");
     FAIL();

@@ -39,7 +39,7 @@ class FleetCheckTest : public testing::Test {
   std::string refusal_of_file(const std::string& text) {
     try {
       check_fleet(load_fleet_file(folder_.write("f.yaml", text)));
-    } catch (const runtime::ConfigError& error) {
+    } catch (const io::ConfigError& error) {
       return error.what();
     }
     return "";

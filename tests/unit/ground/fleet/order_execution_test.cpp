@@ -6,7 +6,7 @@
 
 namespace swiftlet::ground::order_execution_test {
 
-namespace msg = comms::msg;
+namespace msg = messages::msg;
 using Request = OrderExecution::Request;
 using State = MissionNews::State;
 

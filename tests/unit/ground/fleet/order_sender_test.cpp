@@ -15,7 +15,7 @@ namespace swiftlet::ground::order_sender_test {
 using tests::eventually;
 using tests::settings_of;
 
-class NoProgress final : public Progress {
+class NoProgress final : public io::Progress {
  public:
   void update(int, const std::string&) override {}
   void say(const std::string&) override {}
@@ -23,15 +23,15 @@ class NoProgress final : public Progress {
 
 // GIVEN an order that waits in the sender WHEN the flight is abandoned THEN it is not sent, and cannot end the landing.
 TEST(OrderSender, SendsNothingOnceTheFlightIsAbandoned) {
-  const comms::DomainLock lock;
-  comms::Node control(settings_of("control", lock));
-  tests::Inbox<comms::msg::Command> commands;
-  auto acks = control.publish(comms::topics::kCommandAck);
-  auto missions = control.publish(comms::topics::kMissionStatus);
-  const comms::Subscription subscription = control.subscribe<comms::msg::Command>(
-      comms::topics::kCommand, [&](const comms::msg::Command& command) {
+  const dds::DomainLock lock;
+  dds::Node control(settings_of("control", lock));
+  tests::Inbox<messages::msg::Command> commands;
+  auto acks = control.publish(messages::topics::kCommandAck);
+  auto missions = control.publish(messages::topics::kMissionStatus);
+  const dds::Subscription subscription = control.subscribe<messages::msg::Command>(
+      messages::topics::kCommand, [&](const messages::msg::Command& command) {
         commands.put(command);
-        comms::msg::CommandAck ack;
+        messages::msg::CommandAck ack;
         ack.client(command.client());
         ack.id(command.id());
         ack.accepted(true);
@@ -39,8 +39,8 @@ TEST(OrderSender, SendsNothingOnceTheFlightIsAbandoned) {
       });
   Client client(settings_of("ground", lock));
   ASSERT_TRUE(eventually([&] {
-    comms::msg::MissionStatus running;
-    running.state(comms::msg::MissionStatus_Constants::RUNNING);
+    messages::msg::MissionStatus running;
+    running.state(messages::msg::MissionStatus_Constants::RUNNING);
     missions.publish(running);
     return client.view().mission.seen();
   }));
@@ -59,9 +59,9 @@ TEST(OrderSender, SendsNothingOnceTheFlightIsAbandoned) {
   is_abandoned = false;
   sender.give(pause, "kl2");
   ASSERT_TRUE(commands.wait_for_count(1));
-  EXPECT_EQ(commands.items().front().kind(), comms::msg::Command_Constants::MISSION_PAUSE);
+  EXPECT_EQ(commands.items().front().kind(), messages::msg::Command_Constants::MISSION_PAUSE);
   // Requests are numbered in order: this is the first one that was made.
-  const Result next = client.command(comms::msg::Command(), tests::kStuck);
+  const Result next = client.command(messages::msg::Command(), tests::kStuck);
   EXPECT_EQ(next.key.id, commands.items().front().id() + 1);
 }
 

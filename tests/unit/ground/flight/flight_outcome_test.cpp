@@ -14,8 +14,8 @@ constexpr int kSamples = 1000;
 
 // Report of a 10 s flight whose truth deviates from its reference by error(i) m north, with `samples` samples
 // of telemetry.
-FlightReport judged(const std::function<double(int)>& error, int samples = kSamples,
-                    const std::string& reason = "") {
+analysis::FlightReport judged(const std::function<double(int)>& error, int samples = kSamples,
+                              const std::string& reason = "") {
   record::Evaluation flown;
   flown.window = record::Window{0, kSamples * kSample_ns};
   record::Flight flight;
@@ -29,7 +29,7 @@ FlightReport judged(const std::function<double(int)>& error, int samples = kSamp
     flight.reference.push_back(reference);
     flight.truth.push_back(truth);
   }
-  FlightReport report;
+  analysis::FlightReport report;
   report.tolerance_m = 0.1;
   report.reason = reason;
   flown.errors = record::tracking_errors(flight.truth, flight.reference, *flown.window);
@@ -38,7 +38,7 @@ FlightReport judged(const std::function<double(int)>& error, int samples = kSamp
 }
 
 TEST(Judge, CompletesAFlightWithinTolerance) {
-  const FlightReport report = judged([](int) { return 0.099; });
+  const analysis::FlightReport report = judged([](int) { return 0.099; });
   EXPECT_TRUE(report.completed);
   EXPECT_EQ(report.reason, "");
   EXPECT_NEAR(report.errors.peak_3d_m, 0.099, 1e-12);
@@ -46,28 +46,28 @@ TEST(Judge, CompletesAFlightWithinTolerance) {
 
 // One sample of 0.2 m among 999 of 0.01 m has an RMS of 0.012 m, far below the tolerance.
 TEST(Judge, FailsOnOneSampleBeyondTolerance) {
-  const FlightReport report = judged([](int i) { return i == 700 ? -0.2 : 0.01; });
+  const analysis::FlightReport report = judged([](int i) { return i == 700 ? -0.2 : 0.01; });
   EXPECT_LT(report.errors.rms_3d_m, 0.02);
   EXPECT_FALSE(report.completed);
   EXPECT_EQ(report.reason, "the peak tracking error was 0.200 m, the tolerance is 0.100 m");
 }
 
 TEST(Judge, KeepsTheReasonThatEndedTheFlight) {
-  const FlightReport report = judged([](int) { return 0.5; }, kSamples, "the vehicle is silent");
+  const analysis::FlightReport report = judged([](int) { return 0.5; }, kSamples, "the vehicle is silent");
   EXPECT_FALSE(report.completed);
   EXPECT_EQ(report.reason, "the vehicle is silent");
   EXPECT_NEAR(report.errors.peak_3d_m, 0.5, 1e-12) << "the errors are still evaluated";
 }
 
 TEST(Judge, FailsWithoutTelemetryToTheEnd) {
-  const FlightReport report = judged([](int) { return 0.0; }, kSamples - 30);
+  const analysis::FlightReport report = judged([](int) { return 0.0; }, kSamples - 30);
   EXPECT_FALSE(report.completed);
   EXPECT_NE(report.reason.find("too little telemetry"), std::string::npos) << report.reason;
   EXPECT_FALSE(judged([](int) { return 0.0; }, 0).completed);
 }
 
 TEST(Judge, FailsOnAGroundTruthThatIsNotFinite) {
-  const FlightReport report =
+  const analysis::FlightReport report =
       judged([](int i) { return i == 5 ? std::numeric_limits<double>::quiet_NaN() : 0.0; });
   EXPECT_FALSE(report.completed);
   EXPECT_EQ(report.reason, "the ground truth is not finite");

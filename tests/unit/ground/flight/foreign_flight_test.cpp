@@ -23,8 +23,8 @@ class ForeignFlight : public testing::Test {
     options.record = folder_.path().string();
     plan_ = plan_flight(options);
   }
-  FlightReport fly() {
-    ClosedLoop loop = closed_loop(plan_, draw(plan_, plan_.seed).world, plan_.seed);
+  analysis::FlightReport fly() {
+    simulation::ClosedLoop loop = closed_loop(plan_, draw(plan_, plan_.seed).world, plan_.seed);
     record::Flight flight;
     return fly_in_process(loop, plan_, plan_.seed, flight, nullptr, {});
   }
@@ -46,7 +46,7 @@ class ForeignCsv : public ForeignFlight, public testing::WithParamInterface<cons
 TEST_P(ForeignCsv, IsFeasibleAndTrackedClosely) {
   plan(GetParam());
   expect_feasible();
-  const FlightReport report = fly();
+  const analysis::FlightReport report = fly();
   EXPECT_TRUE(report.completed) << report.reason;
   EXPECT_LT(report.errors.rms_3d_m, 0.005);
   EXPECT_LT(report.errors.peak_3d_m, 0.02);
@@ -56,7 +56,7 @@ INSTANTIATE_TEST_SUITE_P(Files, ForeignCsv, testing::Values("crazyswarm_figure8.
                          [](const auto& file) { return file.index == 0 ? "Crazyswarm" : "UavTrajectories"; });
 
 TEST_F(ForeignFlight, TracksThePx4BoxMission) {
-  std::string settings = runtime::read_text_file(tests::in_source("config/control/motor_lag.yaml"));
+  std::string settings = io::read_text_file(tests::in_source("config/control/motor_lag.yaml"));
   const auto set = [&](const std::string& key, const std::string& value) {
     const std::size_t begin = settings.find(key + ":");
     settings.replace(begin, settings.find('\n', begin) - begin, key + ": " + value);
@@ -64,7 +64,7 @@ TEST_F(ForeignFlight, TracksThePx4BoxMission) {
   set("fence_min_ned_m", "[-30, -30, -12]");  // outdoors
   set("fence_max_ned_m", "[30, 30, 0.2]");
   plan("px4_mission_box.plan", folder_.write("field.yaml", settings));
-  const FlightReport report = fly();
+  const analysis::FlightReport report = fly();
   EXPECT_TRUE(report.completed) << report.reason;
   EXPECT_LT(report.errors.rms_3d_m, 0.01);
 }

@@ -41,13 +41,13 @@ class LaunchConfigurationTest : public testing::Test {
   static std::string refusal(const FlyOptions& options) {
     try {
       plan_flight(options);
-    } catch (const InputError& error) {
+    } catch (const io::InputError& error) {
       return error.what();
     }
     return "it was accepted";
   }
-  static FlightReport fly(const LaunchConfiguration& plan) {
-    ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
+  static analysis::FlightReport fly(const LaunchConfiguration& plan) {
+    simulation::ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
     record::Flight flight;
     return fly_in_process(loop, plan, plan.seed, flight, nullptr, {});
   }
@@ -87,7 +87,7 @@ TEST_F(LaunchConfigurationTest, HasNoGreatestDuration) {
                     "frame: ned\ntolerance_m: 0.1\nitems:\n  - {kind: takeoff, height_m: 1, speed_m_s: 0.5}\n"
                     "  - {kind: wait, duration_s: 720}\n  - {kind: land, speed_m_s: 0.5}\n")));
   EXPECT_NEAR(plan.planned_duration_s, 729.0, 2.0);
-  const FlightReport report = fly(plan);
+  const analysis::FlightReport report = fly(plan);
   EXPECT_TRUE(report.completed) << report.reason;
   EXPECT_NEAR(report.duration_s, plan.planned_duration_s, 2.0);
 }
@@ -105,7 +105,7 @@ TEST_F(LaunchConfigurationTest, KnowsHowLongALandingFromHighUpTakes) {
                     "  - {kind: land, speed_m_s: 2}\n"));
   flight.control = folder_.write("control.yaml", high);
   const LaunchConfiguration plan = plan_flight(flight);
-  const FlightReport report = fly(plan);
+  const analysis::FlightReport report = fly(plan);
   EXPECT_TRUE(report.completed) << report.reason;
   EXPECT_NEAR(report.duration_s, plan.planned_duration_s, 2.0);
 }
@@ -115,7 +115,7 @@ TEST_F(LaunchConfigurationTest, SaysHowMuchSlowerAFileIsWithinTheLimits) {
   std::string reason = "it was accepted";
   try {
     plan_flight(flight);
-  } catch (const runtime::ConfigError& error) {
+  } catch (const io::ConfigError& error) {
     reason = error.what();
   }
   EXPECT_NE(reason.find("the limit is 2.00 m/s; slower by 1."), std::string::npos) << reason;
@@ -132,7 +132,7 @@ TEST_F(LaunchConfigurationTest, FliesModelsThatAreInNoFile) {
   given.mission->name = "mine";
   const LaunchConfiguration plan = plan_flight(options("not used"), given);
   EXPECT_EQ(plan.vehicle.mass_kg, given.vehicle->mass_kg);
-  const FlightReport report = fly(plan);
+  const analysis::FlightReport report = fly(plan);
   EXPECT_TRUE(report.completed) << report.reason;
   EXPECT_EQ(report.vehicle + " " + report.mission, "heavy mine");
 }
@@ -141,7 +141,7 @@ TEST_F(LaunchConfigurationTest, RefusesAModelThatBreaksARuleOrCannotFlyTheMissio
   const auto refusal_of = [&](const FlightInputs& given) -> std::string {
     try {
       plan_flight(options("square"), given);
-    } catch (const InputError& error) {
+    } catch (const io::InputError& error) {
       return error.what();
     }
     return "it was accepted";

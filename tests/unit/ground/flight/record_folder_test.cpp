@@ -23,7 +23,7 @@ class RecordFolderTest : public testing::Test {
     try {
       const RecordFolder made(folder, existing);
       return "none";
-    } catch (const InputError& error) {
+    } catch (const io::InputError& error) {
       return error.what();
     }
   }
@@ -50,7 +50,7 @@ TEST_F(RecordFolderTest, OneOfManyFlightsThatBeginTogetherGetsTheFolder) {
         folders[static_cast<std::size_t>(i)] =
             std::make_unique<RecordFolder>(folder_ / "record", ExistingRecord::kRefused);
         ++made;
-      } catch (const InputError&) {
+      } catch (const io::InputError&) {
         ++refused;
       }
     });
@@ -137,7 +137,7 @@ TEST_F(RecordFolderTest, DoesNotReplaceTheFilesThatTheFlightReads) {
   try {
     const RecordFolder made(folder_ / "first", ExistingRecord::kReplaced, "--record", {mission});
     FAIL() << "the record was replaced";
-  } catch (const InputError& error) {
+  } catch (const io::InputError& error) {
     EXPECT_EQ(error.what(), "--record " + (folder_ / "first").string() + ": --replace would delete " +
                                 mission.string() + ", which this flight reads; choose another folder");
   }
@@ -171,7 +171,7 @@ TEST(RecordSpace, IsCheckedBeforeTheFlight) {
             "the record needs about 12.0 MB, 3.0 MB are free; choose a folder on another disk, or make room");
   const tests::TemporaryFolder folder;
   EXPECT_NO_THROW(require_space(folder.path() / "not" / "yet", 1));
-  EXPECT_THROW(require_space(folder.path() / "not" / "yet", std::uintmax_t{1} << 60), InputError);
+  EXPECT_THROW(require_space(folder.path() / "not" / "yet", std::uintmax_t{1} << 60), io::InputError);
   EXPECT_FALSE(fs::exists(folder.path() / "not"));
 }
 

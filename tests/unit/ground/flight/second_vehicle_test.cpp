@@ -18,9 +18,9 @@ namespace swiftlet::ground::second_vehicle_test {
 
 const std::string kConfig = tests::in_source("config/");
 
-plant::Vehicle crazyflie() { return runtime::load_vehicle(kConfig + "vehicles/crazyflie2.yaml"); }
+plant::Vehicle crazyflie() { return io::load_vehicle(kConfig + "vehicles/crazyflie2.yaml"); }
 
-FlightReport fly(const std::string& mission, const std::string& control) {
+analysis::FlightReport fly(const std::string& mission, const std::string& control) {
   const tests::TemporaryFolder folder;
   FlyOptions options;
   options.launch_mode = LaunchMode::kInProcess;
@@ -29,26 +29,26 @@ FlightReport fly(const std::string& mission, const std::string& control) {
   options.control = control;
   options.record = folder.path().string();
   const LaunchConfiguration plan = plan_flight(options);
-  ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
+  simulation::ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
   record::Flight flight;
   return fly_in_process(loop, plan, plan.seed, flight, nullptr, {});
 }
 
 TEST(SecondVehicle, FliesTheSquare) {
-  const FlightReport report = fly("square", "motor_lag");
+  const analysis::FlightReport report = fly("square", "motor_lag");
   EXPECT_TRUE(report.completed) << report.reason;
   EXPECT_LT(report.errors.rms_3d_m, 0.003);
   EXPECT_LT(report.errors.peak_3d_m, 0.010);
 }
 
 TEST(SecondVehicle, FliesTheZigzag) {
-  const FlightReport report = fly("zigzag", "motor_lag");
+  const analysis::FlightReport report = fly("zigzag", "motor_lag");
   EXPECT_TRUE(report.completed) << report.reason;
   EXPECT_LT(report.errors.rms_3d_m, 0.003);
 }
 
 TEST(SecondVehicle, FliesTheSquareWithThePapersControlLaws) {
-  const FlightReport report = fly("square", "paper");
+  const analysis::FlightReport report = fly("square", "paper");
   EXPECT_TRUE(report.completed) << report.reason;
   EXPECT_LT(report.errors.rms_3d_m, 0.030);
 }
@@ -56,7 +56,8 @@ TEST(SecondVehicle, FliesTheSquareWithThePapersControlLaws) {
 TEST(SecondVehicle, MatchesTheIdentificationFromItsBench) {
   const plant::Vehicle vehicle = crazyflie();
   const std::string folder = tests::in_source("tests/data/crazyflie2_bench");
-  const Bench bench = load_bench(folder, load_bench_settings(folder), vehicle.esc);
+  const analysis::Bench bench =
+      analysis::load_bench(folder, analysis::load_bench_settings(folder), vehicle.esc);
   const plant::Vehicle found = identification::identify_bench(bench.data, vehicle).vehicle;
   EXPECT_NEAR(found.motor.k2 / vehicle.motor.k2, 1.0, 1e-3);
   EXPECT_NEAR(found.motor.k3 / vehicle.motor.k3, 1.0, 1e-3);

@@ -37,8 +37,8 @@ class RandomMissions {
  public:
   explicit RandomMissions(std::uint64_t seed) : random_(seed) {}
 
-  MissionFile next() {
-    MissionFile file;
+  io::MissionFile next() {
+    io::MissionFile file;
     file.name = "random";
     file.mission.id = 1;
     MissionItem takeoff;
@@ -103,7 +103,7 @@ class AgreementTest : public testing::Test {
     double duration_s = 0.0;
   };
   Flown fly(const control::Mission& mission, double planned_duration_s, std::uint64_t seed) const {
-    ClosedLoop loop(vehicle_, vehicle_, world_, settings_, seed);
+    simulation::ClosedLoop loop(vehicle_, vehicle_, world_, settings_, seed);
     Flown out;
     double start_s = 0.0;
     const auto watch = [&] {
@@ -116,14 +116,15 @@ class AgreementTest : public testing::Test {
       out.duration_s = now_s - start_s;
       return false;
     };
-    const SimulatedFlight flight = ground::fly(loop, mission, planned_duration_s, {nullptr, nullptr, watch});
+    const simulation::SimulatedFlight flight =
+        simulation::fly(loop, mission, planned_duration_s, {nullptr, nullptr, watch});
     out.reason = flight.reason;
     return out;
   }
 
-  plant::Vehicle vehicle_ = runtime::load_vehicle(kConfig + "vehicles/kaylion.yaml");
-  control::ControlSettings settings_ = runtime::load_control_settings(kConfig + "control/motor_lag.yaml");
-  plant::SimulationSettings world_ = runtime::load_simulation_settings(kConfig + "simulation/default.yaml");
+  plant::Vehicle vehicle_ = io::load_vehicle(kConfig + "vehicles/kaylion.yaml");
+  control::ControlSettings settings_ = io::load_control_settings(kConfig + "control/motor_lag.yaml");
+  plant::SimulationSettings world_ = io::load_simulation_settings(kConfig + "simulation/default.yaml");
 };
 
 TEST_F(AgreementTest, OfDryRunUploadAndFlight) {
@@ -137,7 +138,7 @@ TEST_F(AgreementTest, OfDryRunUploadAndFlight) {
   constexpr double kNoImpact = 1e9;  // m/s^2
   for (int i = 0; i < cases; ++i) {
     SCOPED_TRACE(fmt::format("case {}", i));
-    const MissionFile file = missions.next();
+    const io::MissionFile file = missions.next();
     const MissionCheck check = check_mission(file, vehicle_, settings_);
     // What the control service knows when the mission is uploaded.
     const control::Outcome limits = control::check(file.mission, settings_.limits);

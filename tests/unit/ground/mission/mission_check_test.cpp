@@ -26,23 +26,24 @@ const std::string kHead = "frame: ned\ntolerance_m: 0.1\nitems:\n";
 
 class MissionCheckTest : public testing::Test {
  protected:
-  MissionFile parse(const std::string& text) const {
-    return parse_mission_file(text, "m.yaml", settings_.limits);
+  io::MissionFile parse(const std::string& text) const {
+    return io::parse_mission_file(text, "m.yaml", settings_.limits);
   }
-  MissionCheck checked(const MissionFile& file) const {
+  MissionCheck checked(const io::MissionFile& file) const {
     return check_mission(file, vehicle_, settings_, {{0.0, 0.0}, 3.3});
   }
   static const WorstDemand& worst(const ItemCheck& item, Demand demand) {
     return item.demands.at(static_cast<std::size_t>(demand));
   }
 
-  plant::Vehicle vehicle_ = runtime::load_vehicle(kConfig + "vehicles/kaylion.yaml");
-  control::ControlSettings settings_ = runtime::load_control_settings(kConfig + "control/motor_lag.yaml");
+  plant::Vehicle vehicle_ = io::load_vehicle(kConfig + "vehicles/kaylion.yaml");
+  control::ControlSettings settings_ = io::load_control_settings(kConfig + "control/motor_lag.yaml");
 };
 
 TEST_F(MissionCheckTest, AcceptsTheConfiguredMissions) {
   for (const char* name : {"square", "zigzag", "tour"}) {
-    const MissionFile file = load_mission_file(kConfig + "missions/" + name + ".yaml", settings_.limits);
+    const io::MissionFile file =
+        io::load_mission_file(kConfig + "missions/" + name + ".yaml", settings_.limits);
     const MissionCheck check = checked(file);
     EXPECT_TRUE(check.feasible()) << check_table(check, file, vehicle_.name);
     EXPECT_EQ(check.items.size(), file.mission.items.size());
@@ -51,11 +52,11 @@ TEST_F(MissionCheckTest, AcceptsTheConfiguredMissions) {
 
 // The controller plans a move of 2 m at 0.5 m/s as a minimum-jerk path of 7.5 s with known peaks.
 TEST_F(MissionCheckTest, FindsTheWorstDemandWithTimeAndPosition) {
-  const MissionFile file = parse(kHead +
-                                 "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5, hold_s: 1.5}\n"
-                                 "  - {kind: waypoint, position_m: [2, 0, -1], speed_m_s: 0.5}\n"
-                                 "  - {kind: wait, duration_s: 2}\n"
-                                 "  - {kind: land, speed_m_s: 0.4}\n");
+  const io::MissionFile file = parse(kHead +
+                                     "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5, hold_s: 1.5}\n"
+                                     "  - {kind: waypoint, position_m: [2, 0, -1], speed_m_s: 0.5}\n"
+                                     "  - {kind: wait, duration_s: 2}\n"
+                                     "  - {kind: land, speed_m_s: 0.4}\n");
   const MissionCheck check = checked(file);
   ASSERT_TRUE(check.feasible()) << check_table(check, file, vehicle_.name);
   ASSERT_EQ(check.items.size(), 4U);
@@ -74,7 +75,7 @@ TEST_F(MissionCheckTest, FindsTheWorstDemandWithTimeAndPosition) {
 }
 
 TEST_F(MissionCheckTest, ReportsWhereATooHeavyVehicleExceedsItsLimit) {
-  const MissionFile file = load_mission_file(kConfig + "missions/square.yaml", settings_.limits);
+  const io::MissionFile file = io::load_mission_file(kConfig + "missions/square.yaml", settings_.limits);
   vehicle_.mass_kg *= 2.5;
   const MissionCheck check = checked(file);
   EXPECT_FALSE(check.feasible());
@@ -96,12 +97,12 @@ TEST_F(MissionCheckTest, ReportsWhereATooHeavyVehicleExceedsItsLimit) {
 // GIVEN a trajectory of two segments after a leg to its start, and a move after a wait THEN the time of each
 // worst demand is mission time, which includes earlier legs, holds and waits
 TEST_F(MissionCheckTest, GivesTheWorstDemandOfALaterLegInMissionTime) {
-  MissionFile file = parse(kHead +
-                           "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5, hold_s: 1}\n"
-                           "  - {kind: waypoint, position_m: [0.5, 0, -1], speed_m_s: 0.5}\n"
-                           "  - {kind: wait, duration_s: 2}\n"
-                           "  - {kind: waypoint, position_m: [0.5, 1, -1], speed_m_s: 0.4}\n"
-                           "  - {kind: land, speed_m_s: 0.4}\n");
+  io::MissionFile file = parse(kHead +
+                               "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5, hold_s: 1}\n"
+                               "  - {kind: waypoint, position_m: [0.5, 0, -1], speed_m_s: 0.5}\n"
+                               "  - {kind: wait, duration_s: 2}\n"
+                               "  - {kind: waypoint, position_m: [0.5, 1, -1], speed_m_s: 0.4}\n"
+                               "  - {kind: land, speed_m_s: 0.4}\n");
   file.mission.segments = {control::minimum_jerk({0.5, 0, -1}, 0.0, {1.0, 0, -1}, 0.0, 4.0),
                            control::minimum_jerk({1.0, 0, -1}, 0.0, {-0.5, 0, -1}, 0.0, 4.0)};
   control::MissionItem& item = file.mission.items[1];
@@ -124,10 +125,10 @@ TEST_F(MissionCheckTest, GivesTheWorstDemandOfALaterLegInMissionTime) {
 
 // A segment within the limits of speed and acceleration can still exceed the tilt limit.
 TEST_F(MissionCheckTest, FindsATrajectoryThatTiltsTooFar) {
-  MissionFile file = parse(kHead +
-                           "  - {kind: takeoff, height_m: 2, speed_m_s: 0.5}\n"
-                           "  - {kind: waypoint, position_m: [-0.5, 0, -2], speed_m_s: 0.5}\n"
-                           "  - {kind: land, speed_m_s: 0.4}\n");
+  io::MissionFile file = parse(kHead +
+                               "  - {kind: takeoff, height_m: 2, speed_m_s: 0.5}\n"
+                               "  - {kind: waypoint, position_m: [-0.5, 0, -2], speed_m_s: 0.5}\n"
+                               "  - {kind: land, speed_m_s: 0.4}\n");
   settings_.limits.max_tilt_rad = 0.3;
   const control::PolynomialSegment lunge = control::minimum_jerk({-0.5, 0, -2}, 0.0, {0.5, 0, -2}, 0.0, 1.2);
   ASSERT_TRUE(control::check_segment("lunge", lunge, settings_.limits).accepted);
@@ -145,10 +146,10 @@ TEST_F(MissionCheckTest, FindsATrajectoryThatTiltsTooFar) {
 }
 
 TEST_F(MissionCheckTest, RefusesWhatTheControlServiceRefuses) {
-  const MissionFile file = parse("geofence: {min_m: [0.5, -1, -2], max_m: [2, 1, 0.2]}\n" + kHead +
-                                 "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5}\n"
-                                 "  - {kind: waypoint, position_m: [1, 0, -1], speed_m_s: 0.5}\n"
-                                 "  - {kind: land, speed_m_s: 0.4}\n");
+  const io::MissionFile file = parse("geofence: {min_m: [0.5, -1, -2], max_m: [2, 1, 0.2]}\n" + kHead +
+                                     "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5}\n"
+                                     "  - {kind: waypoint, position_m: [1, 0, -1], speed_m_s: 0.5}\n"
+                                     "  - {kind: land, speed_m_s: 0.4}\n");
   const MissionCheck outside = checked(file);
   EXPECT_FALSE(outside.feasible());
   EXPECT_EQ(outside.reason,
@@ -159,7 +160,7 @@ TEST_F(MissionCheckTest, RefusesWhatTheControlServiceRefuses) {
 }
 
 TEST_F(MissionCheckTest, StartsAnAirborneMissionFromAHover) {
-  const MissionFile file =
+  const io::MissionFile file =
       parse("ends: hovering\n" + kHead + "  - {kind: waypoint, position_m: [1, 0, -1], speed_m_s: 0.5}\n");
   const MissionCheck check = checked(file);
   EXPECT_TRUE(check.feasible()) << check.reason;
@@ -168,7 +169,7 @@ TEST_F(MissionCheckTest, StartsAnAirborneMissionFromAHover) {
 
 // The legs of the dry run equal the segments of the mission bit for bit.
 TEST_F(MissionCheckTest, DryRunFliesEverySegmentOfATrajectory) {
-  const MissionFile file = load_mission_file(kConfig + "missions/tour.yaml", settings_.limits);
+  const io::MissionFile file = io::load_mission_file(kConfig + "missions/tour.yaml", settings_.limits);
   const MissionDryRun run = dry_run(file.mission, settings_, {0.0, 0.0});
   ASSERT_TRUE(run.completed) << run.reason;
   for (std::size_t i = 0; i < file.mission.items.size(); ++i) {
@@ -186,7 +187,7 @@ TEST_F(MissionCheckTest, DryRunFliesEverySegmentOfATrajectory) {
 
 TEST_F(MissionCheckTest, DrawsThePathAsPng) {
   const tests::TemporaryFolder folder;
-  const MissionFile file = load_mission_file(kConfig + "missions/tour.yaml", settings_.limits);
+  const io::MissionFile file = io::load_mission_file(kConfig + "missions/tour.yaml", settings_.limits);
   const std::filesystem::path png = folder.path() / "tour.png";
   ASSERT_EQ(draw_mission(png, file, dry_run(file.mission, settings_, {0.0, 0.0}), settings_.limits), "");
   std::ifstream picture(png, std::ios::binary);

@@ -20,7 +20,7 @@ namespace swiftlet::ground::pace_test {
 using control::Demand;
 
 const std::string kConfig = tests::in_source("config/");
-const std::string kFigureOfEight = kData + "crazyswarm_figure8.csv";
+const std::string kFigureOfEight = io::kData + "crazyswarm_figure8.csv";
 
 class PaceTest : public testing::Test {
  protected:
@@ -31,13 +31,13 @@ class PaceTest : public testing::Test {
     agile_.limits.max_tilt_rad = 1.2;
     fastest_.as_fast_as_possible = true;
   }
-  bool can_fly(const MissionFile& file, const control::ControlSettings& settings, double reserve) const {
+  bool can_fly(const io::MissionFile& file, const control::ControlSettings& settings, double reserve) const {
     return control::check(file.mission, settings.limits).accepted &&
            check_mission(file, vehicle_, settings, {Eigen::Vector2d::Zero(), {}, reserve}).feasible();
   }
 
-  plant::Vehicle vehicle_ = runtime::load_vehicle(kConfig + "vehicles/kaylion.yaml");
-  control::ControlSettings settings_ = runtime::load_control_settings(kConfig + "control/motor_lag.yaml");
+  plant::Vehicle vehicle_ = io::load_vehicle(kConfig + "vehicles/kaylion.yaml");
+  control::ControlSettings settings_ = io::load_control_settings(kConfig + "control/motor_lag.yaml");
   control::ControlSettings agile_ = settings_;
   ReadingOptions fastest_;
   tests::TemporaryFolder folder_;
@@ -47,10 +47,10 @@ TEST_F(PaceTest, IsTheLeastTimeScaleThatCanBeFlown) {
   for (const std::string& path :
        {kFigureOfEight, kConfig + "missions/square.yaml", kConfig + "missions/tour.yaml"}) {
     for (const control::ControlSettings* const settings : {&settings_, &agile_}) {
-      const MissionFile file = load_mission_file(path, settings->limits);
+      const io::MissionFile file = io::load_mission_file(path, settings->limits);
       const Pace pace = fastest_pace(file, vehicle_, *settings, {Eigen::Vector2d::Zero(), {}, 0.1});
-      EXPECT_TRUE(can_fly(stretched(file, pace.time_scale), *settings, 0.1)) << path;
-      EXPECT_FALSE(can_fly(stretched(file, pace.time_scale / 1.02), *settings, 0.1)) << path;
+      EXPECT_TRUE(can_fly(io::stretched(file, pace.time_scale), *settings, 0.1)) << path;
+      EXPECT_FALSE(can_fly(io::stretched(file, pace.time_scale / 1.02), *settings, 0.1)) << path;
       EXPECT_FALSE(pace.limit.empty());
     }
   }
@@ -60,7 +60,7 @@ TEST_F(PaceTest, MeetsTheLimitOfTheRotorsWithTheReserve) {
   double before = 0.0;
   for (const double reserve : {0.0, 0.1, 0.3}) {
     const CheckConditions conditions{Eigen::Vector2d::Zero(), {}, reserve};
-    const MissionFile file = load_mission_file(kFigureOfEight, agile_.limits);
+    const io::MissionFile file = io::load_mission_file(kFigureOfEight, agile_.limits);
     const Pace pace = fastest_pace(file, vehicle_, agile_, conditions);
     EXPECT_GT(pace.time_scale, before) << "a greater reserve is slower";
     before = pace.time_scale;
@@ -68,7 +68,7 @@ TEST_F(PaceTest, MeetsTheLimitOfTheRotorsWithTheReserve) {
     EXPECT_TRUE(of_rotors) << pace.limit;
     EXPECT_NE(pace.limit.find("item 2 (trajectory): "), std::string::npos) << pace.limit;
     // At the limit itself: without a reserve the same flight uses all but the reserve.
-    const MissionCheck check = check_mission(stretched(file, pace.time_scale), vehicle_, agile_);
+    const MissionCheck check = check_mission(io::stretched(file, pace.time_scale), vehicle_, agile_);
     double least_spare = 1.0;
     for (const ItemCheck& item : check.items) {
       if (item.demands.empty()) continue;
@@ -85,9 +85,9 @@ TEST_F(PaceTest, MeetsTheLimitOfTheRotorsWithTheReserve) {
 // GIVEN a path that is too fast for the control settings THEN it is slowed, and the file is read as with --time-scale.
 TEST_F(PaceTest, SlowsAPathThatIsTooFast) {
   const std::string path =
-      folder_.write("p.csv", kPolynomialHeader + "\n" + polynomial_row(1.0, 0.0, 2.0, 1.0) + "\n");
-  EXPECT_THROW(load_mission(path, {}, vehicle_, settings_), runtime::ConfigError);
-  const MissionFile file = load_mission(path, fastest_, vehicle_, settings_);
+      folder_.write("p.csv", io::kPolynomialHeader + "\n" + io::polynomial_row(1.0, 0.0, 2.0, 1.0) + "\n");
+  EXPECT_THROW(load_mission(path, {}, vehicle_, settings_), io::ConfigError);
+  const io::MissionFile file = load_mission(path, fastest_, vehicle_, settings_);
   EXPECT_TRUE(can_fly(file, settings_, fastest_.reserve));
   EXPECT_TRUE(assumes(file, "as fast as possible with a reserve of 10 %: --time-scale "));
   // 15/8 of 2 m in the time of the path are its greatest speed, 10/sqrt(3) of 2 m in its square the acceleration.
@@ -98,7 +98,7 @@ TEST_F(PaceTest, SlowsAPathThatIsTooFast) {
   EXPECT_NEAR(duration_s, needed_s, 0.01 * needed_s);
   EXPECT_TRUE(assumes(file, "the limit is 2.000 m/s: at ")) << file.assumptions.back();
 
-  const TrajectoryFile trajectory = load_trajectory(path, fastest_, vehicle_, settings_);
+  const io::TrajectoryFile trajectory = load_trajectory(path, fastest_, vehicle_, settings_);
   EXPECT_NEAR(trajectory.segments.front().duration_s, duration_s, 0.01 * duration_s);
 }
 
@@ -107,7 +107,7 @@ TEST_F(PaceTest, SaysWhyAMissionCannotBeFlownAtAnyPace) {
   try {
     load_mission(kConfig + "missions/square.yaml", fastest_, vehicle_, settings_);
     FAIL() << "it was read";
-  } catch (const runtime::ConfigError& error) {
+  } catch (const io::ConfigError& error) {
     EXPECT_NE(std::string(error.what()).find("cannot be flown, also 17.0859 times as slow: item "),
               std::string::npos)
         << error.what();

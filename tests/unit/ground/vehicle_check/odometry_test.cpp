@@ -57,14 +57,14 @@ TEST(OdometryAtRest, DefectsAreNamed) {
       {"vehicle_odometry.level", "upside down",
        [](auto& it) { it.q_ned_from_frd = Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0); }},
       {"vehicle_odometry.level", "Components in another order",
-       [](auto& it) { it.q_ned_from_frd = plant::rotation(Eigen::Vector3d(0.0, 0.5, 0.0)); }},
+       [](auto& it) { it.q_ned_from_frd = math::rotation(Eigen::Vector3d(0.0, 0.5, 0.0)); }},
       {"vehicle_odometry.speed", "moves although the vehicle stands",
        [](auto& it) { it.velocity_ned.x() = 0.4; }},
       {"vehicle_odometry.rates", "degrees/s", [](auto& it) { it.body_rates_frd.z() = 0.6; }},
       {"vehicle_odometry.resets", "jumps while it stands",
        [](auto& it) { it.resets = static_cast<std::uint32_t>(it.sequence / 100); }},
       {"vehicle_odometry.mocap", "differ in tilt",
-       [](auto& it) { it.q_ned_from_frd = plant::rotation(Eigen::Vector3d(0.12, 0.0, 0.0)); }},
+       [](auto& it) { it.q_ned_from_frd = math::rotation(Eigen::Vector3d(0.12, 0.0, 0.0)); }},
       {"vehicle_odometry.stamps", "frozen stamps", [](auto& it) { it.stamp_ns = 1; }},
   };
   for (const Defect& defect : defects) {

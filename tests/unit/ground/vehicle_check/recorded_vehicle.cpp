@@ -182,7 +182,7 @@ class CommandedVehicle {
 
 }  // namespace
 
-plant::Vehicle kaylion() { return runtime::load_vehicle(in_source("config/vehicles/kaylion.yaml")); }
+plant::Vehicle kaylion() { return io::load_vehicle(in_source("config/vehicles/kaylion.yaml")); }
 
 VehicleRecording record_standing() {
   return CarriedVehicle().record(HandPath(start()), kFirstStamp_ns, kFirstStamp_ns + 2'000'000'000);

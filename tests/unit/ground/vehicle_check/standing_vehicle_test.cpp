@@ -74,7 +74,7 @@ void number_again(VehicleRecording& recording) {
 }
 
 void make_stamps_irregular(VehicleRecording& recording) {
-  plant::RandomStream random(1, 1);
+  math::RandomStream random(1, 1);
   for (auto& received : recording.imu.samples)
     received.sample.imu.stamp_ns += static_cast<std::int64_t>(random.uniform(0.0, 1.9e6));
 }

@@ -23,7 +23,7 @@ TEST(Foxglove, TellsOfTheServerItsChannelsAndServices) {
   EXPECT_EQ(info.at("supportedEncodings"), json({"cdr"}));
   EXPECT_EQ(info.at("sessionId"), "ab");
 
-  const auto& schema = comms::schema_of<comms::msg::Imu>();
+  const auto& schema = messages::schema_of<messages::msg::Imu>();
   const json channel = json::parse(advertise({Channel{3, "/kl1/imu", &schema}})).at("channels").at(0);
   EXPECT_EQ(channel, json({{"id", 3},
                            {"topic", "/kl1/imu"},

@@ -31,7 +31,7 @@ namespace swiftlet::ground::view_server_test {
 namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
-namespace msg = comms::msg;
+namespace msg = messages::msg;
 using asio::ip::tcp;
 using boost::system::error_code;
 using nlohmann::json;
@@ -86,9 +86,9 @@ class Server : public testing::Test {
     return client;
   }
 
-  comms::DomainLock lock_;
+  dds::DomainLock lock_;
   Context context_;
-  comms::Node vehicle_;
+  dds::Node vehicle_;
   tests::Inbox<std::string> said_;
   std::unique_ptr<ViewServer> server_;
 };
@@ -101,12 +101,12 @@ msg::Estimate estimate(std::uint64_t number) {
 }
 std::uint64_t number_of(const FoxgloveClient::Message& message) {
   msg::Estimate estimate;
-  EXPECT_TRUE(comms::from_payload(message.payload.data(), message.payload.size(), estimate));
+  EXPECT_TRUE(dds::from_payload(message.payload.data(), message.payload.size(), estimate));
   return estimate.sequence_number();
 }
 // Publishes estimates 1, 2, ... until this viewer has one: what is sent before server and vehicle have found each other is lost.
 // Returns the number of the last.
-std::uint64_t send_until_received(comms::Publisher<msg::Estimate>& publisher, FoxgloveClient& viewer) {
+std::uint64_t send_until_received(dds::Publisher<msg::Estimate>& publisher, FoxgloveClient& viewer) {
   std::uint64_t number = 0;
   std::atomic<bool> is_received{false};
   const auto sent = std::async(std::launch::async, [&] {
@@ -274,7 +274,7 @@ TEST_F(Server, RefusesSubscriptionsThatCannotBe) {
 // GIVEN a viewer of the payloads and one of the standard messages WHEN the vehicle publishes THEN both have them, and a
 // viewer that comes later has the newest.
 TEST_F(Server, SendsPayloadsAsTheyCameAndStandardMessages) {
-  auto publisher = vehicle_.publish(comms::topics::kEstimate);
+  auto publisher = vehicle_.publish(messages::topics::kEstimate);
   const auto first = client();
   const auto second = client();
   first->subscribe(7, first->channel("/kl1/estimate"));
@@ -287,7 +287,7 @@ TEST_F(Server, SendsPayloadsAsTheyCameAndStandardMessages) {
   while (message && number_of(*message) < number) message = first->read_message();
   ASSERT_TRUE(message);
   EXPECT_EQ(message->subscription, 7U);
-  EXPECT_EQ(message->payload, comms::to_payload(estimate(number)));
+  EXPECT_EQ(message->payload, dds::to_payload(estimate(number)));
   EXPECT_EQ(second->read_message()->subscription, 8U);
   const auto third = client();
   third->subscribe(9, third->channel("/kl1/estimate"));
@@ -295,7 +295,7 @@ TEST_F(Server, SendsPayloadsAsTheyCameAndStandardMessages) {
 }
 
 TEST_F(Server, SendsTheNewestToWhoWantsNoMore) {
-  auto publisher = vehicle_.publish(comms::topics::kEstimate);
+  auto publisher = vehicle_.publish(messages::topics::kEstimate);
   const auto viewer = client("/?newest");
   viewer->subscribe(1, viewer->channel("/kl1/estimate"));
   std::uint64_t number = send_until_received(publisher, *viewer);
@@ -310,7 +310,7 @@ TEST_F(Server, SendsTheNewestToWhoWantsNoMore) {
 
 // GIVEN lines of a log before a viewer comes WHEN it subscribes THEN it gets them all, in their order.
 TEST_F(Server, SendsTheLogToWhoComesLater) {
-  auto acks = vehicle_.publish(comms::topics::kCommandAck);
+  auto acks = vehicle_.publish(messages::topics::kCommandAck);
   ASSERT_TRUE(eventually([&] { return acks.matched() == 2; })) << "the log and the vehicle's client";
   const auto first = client("/?newest");
   first->subscribe(1, first->channel("/kl1/log"));
@@ -330,7 +330,7 @@ TEST_F(Server, SendsTheLogToWhoComesLater) {
 // GIVEN a viewer that reads nothing and seven that read WHEN more is sent than fits on its way THEN these seven have every
 // message, and the slow one has the newest when it reads at last.
 TEST_F(Server, ASlowViewerLosesTheOlderAndSlowsNobody) {
-  auto publisher = vehicle_.publish(comms::topics::kFlownMission);
+  auto publisher = vehicle_.publish(messages::topics::kFlownMission);
   constexpr std::size_t kItems = 2000;
   const auto mission = [](std::uint64_t id) {
     msg::Mission out;
@@ -346,7 +346,7 @@ TEST_F(Server, ASlowViewerLosesTheOlderAndSlowsNobody) {
   ASSERT_TRUE(eventually([&] { return publisher.matched() == 1; }));
   const auto id_of = [](const FoxgloveClient::Message& message) {
     msg::Mission out;
-    EXPECT_TRUE(comms::from_payload(message.payload.data(), message.payload.size(), out));
+    EXPECT_TRUE(dds::from_payload(message.payload.data(), message.payload.size(), out));
     return out.id();
   };
   std::uint64_t id = 0;
@@ -369,14 +369,14 @@ TEST_F(Server, ASlowViewerLosesTheOlderAndSlowsNobody) {
 
 // A vehicle whose controller refuses everything but a stop.
 TEST_F(Server, SendsRequestsAndReturnsTheReasonOfARefusal) {
-  auto acks = vehicle_.publish(comms::topics::kCommandAck);
-  auto statuses = vehicle_.publish(comms::topics::kControlStatus);
+  auto acks = vehicle_.publish(messages::topics::kCommandAck);
+  auto statuses = vehicle_.publish(messages::topics::kControlStatus);
   msg::ControlStatus status;
-  status.wire_version(comms::kWireVersion);
+  status.wire_version(messages::kWireVersion);
   statuses.publish(status);
   tests::Inbox<std::uint8_t> asked;
   const auto commands =
-      vehicle_.subscribe<msg::Command>(comms::topics::kCommand, [&](const msg::Command& command) {
+      vehicle_.subscribe<msg::Command>(messages::topics::kCommand, [&](const msg::Command& command) {
         asked.put(command.kind());
         msg::CommandAck ack;
         ack.client(command.client());
@@ -412,7 +412,7 @@ TEST_F(Server, SendsRequestsAndReturnsTheReasonOfARefusal) {
 TEST_F(Server, SendsAStopBesideManyOtherRequests) {
   tests::Inbox<std::uint8_t> asked;
   const auto commands = vehicle_.subscribe<msg::Command>(
-      comms::topics::kCommand, [&](const msg::Command& command) { asked.put(command.kind()); });
+      messages::topics::kCommand, [&](const msg::Command& command) { asked.put(command.kind()); });
   const auto viewer = client();
   const std::uint32_t land = viewer->service("/kl1/land");
   for (std::size_t i = 0; i <= VehicleRequests::kMostUnderWay; ++i) viewer->call(land, {0, 1, 0, 0, 0});

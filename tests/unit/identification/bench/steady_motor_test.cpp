@@ -24,7 +24,7 @@ TEST(SteadyMotorExperiment, FindsEq22WithoutNoise) {
 TEST(SteadyMotorExperiment, IsUnbiasedWithANoisyTachometer) {
   // GIVEN 4,000 readings whose speeds are noisy and whose voltages are not
   SteadyMotorData data;
-  plant::RandomStream random(1, 1);
+  math::RandomStream random(1, 1);
   for (int i = 0; i < 4000; ++i) {
     const double voltage = 0.4 + 3.6 * i / 3999.0;
     data.motor_voltage_v.push_back(voltage);
@@ -54,7 +54,7 @@ TEST(SteadyMotorExperiment, WarnsOfCoulombFriction) {
 
 TEST(SteadyMotorExperiment, WarnsWhenK2AndK3AreNotSeparable) {
   SteadyMotorData data;
-  plant::RandomStream random(3, 1);
+  math::RandomStream random(3, 1);
   for (int i = 0; i < 30; ++i) {
     data.speed_rad_s.push_back(1500.0 + 3.0 * i + 2.0 * random.normal());
     data.motor_voltage_v.push_back(plant::voltage_from_steady_speed(kaylion().motor, 1500.0 + 3.0 * i) +

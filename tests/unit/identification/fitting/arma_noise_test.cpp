@@ -22,7 +22,7 @@ std::vector<double> coloured(const ArmaNoise& noise, const std::vector<double>& 
 }
 
 std::vector<double> white(std::size_t count) {
-  plant::RandomStream random(7, 20251121);
+  math::RandomStream random(7, 20251121);
   std::vector<double> out(count);
   out[0] = 0.0;
   for (std::size_t k = 1; k < count; ++k) out[k] = random.normal();

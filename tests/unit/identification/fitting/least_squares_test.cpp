@@ -16,7 +16,7 @@ struct Line {
   std::vector<double> x, y;
 
   Line(int rows, double sigma, std::uint64_t seed) {
-    plant::RandomStream random(seed, 1);
+    math::RandomStream random(seed, 1);
     for (int i = 0; i < rows; ++i) {
       x.push_back(i / (rows - 1.0));
       y.push_back(2.0 * x.back() + 1.0 + sigma * random.normal());
@@ -98,7 +98,7 @@ TEST(LeastSquares, RarelyFlagsGoodRowsAsOutliers) {
 
 TEST(LeastSquares, WidensIntervalsOfCorrelatedSeries) {
   Line line(400, 0.0, 5);
-  plant::RandomStream random(6, 1);
+  math::RandomStream random(6, 1);
   double drift = 0.0;
   for (double& y : line.y) y += 0.1 * (drift = 0.9 * drift + std::sqrt(1.0 - 0.81) * random.normal());
   FitProblem problem = line.problem();

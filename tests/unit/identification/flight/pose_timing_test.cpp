@@ -29,9 +29,9 @@ struct Swing {
 
 FlightLog log_of(const Swing& swing, double delay_s, double noise_rad, std::uint64_t seed) {
   constexpr int kSteps = 10;  // of the true attitude, in each period
-  plant::RandomStream random(seed, 1);
+  math::RandomStream random(seed, 1);
   FlightLog log;
-  Quaterniond q = plant::rotation({0.1, -0.2, 2.0});
+  Quaterniond q = math::rotation({0.1, -0.2, 2.0});
   for (int i = 0; i * kImuPeriod_s < kDuration_s; ++i) {
     const double t = i * kImuPeriod_s;
     log.time_s.push_back(t);
@@ -39,12 +39,12 @@ FlightLog log_of(const Swing& swing, double delay_s, double noise_rad, std::uint
     if (i % kPosesEvery == 0) {
       FlightPose pose;
       pose.time_s = t + delay_s;
-      pose.q_ned_from_frd = q * plant::rotation(noise_rad * random.normal3());
+      pose.q_ned_from_frd = q * math::rotation(noise_rad * random.normal3());
       log.poses.push_back(pose);
     }
     for (int k = 0; k < kSteps; ++k) {
       const double middle_s = t + (k + 0.5) * kImuPeriod_s / kSteps;
-      q = plant::renormalised(q * plant::rotation(kImuPeriod_s / kSteps * swing.rates(middle_s)));
+      q = math::renormalised(q * math::rotation(kImuPeriod_s / kSteps * swing.rates(middle_s)));
     }
   }
   return log;

@@ -16,7 +16,7 @@ namespace swiftlet::identification::supply_sag_test {
 constexpr double kStep = 2e-3;  // of the command
 
 plant::Vehicle vehicle_named(const std::string& name) {
-  return runtime::load_vehicle(tests::in_source("config/vehicles/") + name + ".yaml");
+  return io::load_vehicle(tests::in_source("config/vehicles/") + name + ".yaml");
 }
 
 // Settled thrust of each rotor, N, at half the charge.

@@ -7,7 +7,7 @@
 #include "swiftlet/io/command_line/command.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::ground::output_files_test {
+namespace swiftlet::io::output_files_test {
 
 TEST(OutputFiles, MustNotOverwriteInputs) {
   const tests::TemporaryFolder folder;
@@ -27,4 +27,4 @@ TEST(OutputFiles, MustBeDistinct) {
   EXPECT_NO_THROW(refuse_overwriting({{"--out", ""}, {"--report", ""}}, {}));
 }
 
-}  // namespace swiftlet::ground::output_files_test
+}  // namespace swiftlet::io::output_files_test

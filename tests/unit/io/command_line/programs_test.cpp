@@ -8,7 +8,7 @@
 
 #include "swiftlet/io/command_line/installation.hpp"
 
-namespace swiftlet::ground::programs_test {
+namespace swiftlet::io::programs_test {
 
 const char* program_of(const std::vector<const char*>& arguments) {
   const ProgramCommand* const command =
@@ -53,4 +53,4 @@ TEST(Programs, CommandTextSurvivesJson) {
 
 TEST(Programs, QuotesWordsOfTheShell) { EXPECT_EQ(shell_quoted("it's a b"), "'it'\\''s a b'"); }
 
-}  // namespace swiftlet::ground::programs_test
+}  // namespace swiftlet::io::programs_test

@@ -204,7 +204,7 @@ TEST(MavlinkParser, FindsAFrameThatBeginsWithinAWrongOne) {
 }
 
 TEST(MavlinkParser, ResultsDoNotDependOnHowTheBytesAreSplit) {
-  plant::RandomStream random(7, 1);
+  math::RandomStream random(7, 1);
   Bytes stream;
   for (std::uint8_t i = 0; i < 50; ++i) {
     for (std::uint64_t noise = random.next() % 20; noise > 0; --noise)

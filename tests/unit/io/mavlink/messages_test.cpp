@@ -204,7 +204,7 @@ TEST(MavlinkMessages, HaveTheFieldsAndChecksumsOfTheirDefinitions) {
 
 // Sets each field to a number from a random stream, and compares two messages by drawing the same numbers again.
 struct Randomiser {
-  plant::RandomStream random{11, 3};
+  math::RandomStream random{11, 3};
   bool compare = false;
   bool equal = true;
 

@@ -14,7 +14,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
 
-namespace swiftlet::ground::crazyflie_log_test {
+namespace swiftlet::io::crazyflie_log_test {
 
 using Eigen::Vector3d;
 
@@ -156,4 +156,4 @@ TEST_F(CrazyflieLogTest, ACutNeedsTwoSamples) {
       std::string::npos);
 }
 
-}  // namespace swiftlet::ground::crazyflie_log_test
+}  // namespace swiftlet::io::crazyflie_log_test

@@ -10,7 +10,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
 
-namespace swiftlet::ground::foreign_table_test {
+namespace swiftlet::io::foreign_table_test {
 
 using Eigen::Vector3d;
 
@@ -167,4 +167,4 @@ TEST_F(ForeignTableTest, ListOfWaypoints) {
       std::string::npos);
 }
 
-}  // namespace swiftlet::ground::foreign_table_test
+}  // namespace swiftlet::io::foreign_table_test

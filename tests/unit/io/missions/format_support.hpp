@@ -10,7 +10,7 @@
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "tests/support/paths.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::io {
 
 inline const std::string kData = tests::in_source("tests/data/");
 
@@ -27,7 +27,7 @@ template <class Parse>
 std::string refusal(Parse&& parse) {
   try {
     parse();
-  } catch (const runtime::ConfigError& error) {
+  } catch (const io::ConfigError& error) {
     return error.what();
   }
   return "it was accepted";
@@ -58,11 +58,11 @@ inline std::string polynomial_row(double duration_s, double x, double distance, 
                                   double yaw = 0.0) {
   const control::PolynomialSegment s =
       control::minimum_jerk({x, 0, height}, yaw, {x + distance, 0, height}, yaw, duration_s);
-  std::string text = runtime::exact(duration_s);
+  std::string text = io::exact(duration_s);
   for (const control::Polynomial* const axis : {&s.x, &s.y, &s.z, &s.yaw}) {
-    for (const double c : *axis) text += "," + runtime::exact(c);
+    for (const double c : *axis) text += "," + io::exact(c);
   }
   return text;
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::io

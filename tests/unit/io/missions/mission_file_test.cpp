@@ -11,11 +11,11 @@
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/planning/waypoint_path.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "tests/support/fault.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tests/unit/ground/fault.hpp"
 
-namespace swiftlet::ground::mission_file_test {
+namespace swiftlet::io::mission_file_test {
 
 using control::MissionItemKind;
 
@@ -30,7 +30,7 @@ MissionFile parse(const std::string& text) { return parse_mission_file(text, "m.
 std::string refusal(const std::string& text) {
   try {
     parse(text);
-  } catch (const runtime::ConfigError& error) {
+  } catch (const io::ConfigError& error) {
     return error.what();
   }
   return "it was accepted";
@@ -163,7 +163,7 @@ TEST(MissionFile, TrajectoriesKeepToTheLimitsAsTheyAreFlown) {
   const std::string path = folder.write(
       "m.yaml", kHead + kTakeoff + "  - {kind: trajectory, file: fast.csv, speed_m_s: 0.5}\n" + kLand);
   FileOptions options;
-  EXPECT_THROW(load_mission_file(path, control::Limits{}, options), runtime::ConfigError);
+  EXPECT_THROW(load_mission_file(path, control::Limits{}, options), io::ConfigError);
   options.time_scale = 3.0;
   const MissionFile file = load_mission_file(path, control::Limits{}, options);
   double duration_s = 0.0;
@@ -206,124 +206,136 @@ TEST(MissionFile, ConvertsTheFenceToNed) {
   EXPECT_EQ(file.mission.bounds.fence_max_ned, Eigen::Vector3d(2.5, 2, 0.1));
 }
 
-class BadMissionFile : public testing::TestWithParam<Fault> {};
+class BadMissionFile : public testing::TestWithParam<tests::Fault> {};
 
 TEST_P(BadMissionFile, IsRefusedWithASentence) { EXPECT_EQ(refusal(GetParam().text), GetParam().sentence); }
 
 INSTANTIATE_TEST_SUITE_P(
     , BadMissionFile,
     testing::Values(
-        Fault{"OutsideTheFence",
-              kHead + kTakeoff + "  - {kind: waypoint, position_m: [0, 7.5, -1], speed_m_s: 0.5}\n",
-              "m.yaml:5: items[1].position_m: east is 7.5 m, must be inside the fence, -3 to 3 m"},
-        Fault{"TooHigh", kHead + "  - {kind: takeoff, height_m: 9, speed_m_s: 0.5}\n",
-              "m.yaml:4: items[0].height_m: down is -9 m, must be inside the fence, -2.5 to 0 m"},
-        Fault{"TooFast", kHead + kTakeoff + "  - {kind: land, speed_m_s: 4}\n",
-              "m.yaml:5: items[1].speed_m_s: is 4, must be above 0 and at most 2"},
-        Fault{"NotANumber",
-              kHead + kTakeoff + "  - {kind: waypoint, position_m: [.nan, 0, -1], speed_m_s: 0.5}\n",
-              "m.yaml:5: items[1].position_m[0]: is .nan, must be a finite number"},
-        Fault{"NegativeHold", kHead + "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5, hold_s: -1}\n",
-              "m.yaml:4: items[0].hold_s: is -1, must be at least 0 and at most 3600"},
-        Fault{"UnknownKind", kHead + "  - {kind: loop, speed_m_s: 0.5}\n",
-              "m.yaml:4: items[0].kind: is loop, must be takeoff, waypoint, path, trajectory, set, wait or "
-              "land"},
-        Fault{"LateTakeoff", kHead + kTakeoff + kTakeoff,
-              "m.yaml:5: items[1]: is a takeoff, which must be the first item"},
-        Fault{"EarlyLand", kHead + kTakeoff + kLand + kWaypoint,
-              "m.yaml:6: items[2]: comes after a land, which must be the last item"},
-        Fault{"NoItems", "frame: ned\ntolerance_m: 0.1\nitems: []\n",
-              "m.yaml:3: items: is a list of 0, must be a list of 1 to 2048"},
-        Fault{"UnknownFrame", "frame: body\ntolerance_m: 0.1\nitems:\n" + kTakeoff,
-              "m.yaml:1: frame: is body, must be ned, enu or nwu"},
-        Fault{"NoTolerance", "frame: ned\nitems:\n" + kTakeoff,
-              "m.yaml:1: tolerance_m: is missing, must be given"},
-        Fault{"ZeroTolerance", "frame: ned\ntolerance_m: 0\nitems:\n" + kTakeoff,
-              "m.yaml:2: tolerance_m: is 0, must be above 0 and at most 10"},
-        Fault{"MisspeltKey", kHead + "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5, hold: 2}\n",
-              "m.yaml:4: items[0].hold: is unknown, must be one of kind, height_m, position_m, points, file, "
-              "duration_s, yaw_rad, speed_m_s, acceptance_radius_m, hold_s, straight, corridor_m or "
-              "smoothness; "
-              "nearest is hold_s"},
-        Fault{"KeyOfAnotherKind", kHead + "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5, yaw_rad: 2}\n",
-              "m.yaml:4: items[0].yaw_rad: is unknown, must be one of kind, height_m, speed_m_s or hold_s"},
-        Fault{"MisspeltRequiredKey",
-              kHead + kTakeoff + "  - {kind: waypoint, positon_m: [1, 0, -1], speed_m_s: 1}\n",
-              "m.yaml:5: items[1].positon_m: is unknown, must be one of kind, height_m, position_m, points, "
-              "file, "
-              "duration_s, yaw_rad, speed_m_s, acceptance_radius_m, hold_s, straight, corridor_m or "
-              "smoothness; "
-              "nearest is position_m"},
-        Fault{"MisspeltKind", kHead + "  - {knd: takeoff, height_m: 1, speed_m_s: 0.5}\n",
-              "m.yaml:4: items[0].knd: is unknown, must be one of kind, height_m, position_m, points, file, "
-              "duration_s, yaw_rad, speed_m_s, acceptance_radius_m, hold_s, straight, corridor_m or "
-              "smoothness; "
-              "nearest is kind"},
-        Fault{"MisspeltRootKey", "fram: ned\ntolerance_m: 0.1\nitems:\n" + kTakeoff + kLand,
-              "m.yaml:1: fram: is unknown, must be one of name, description, frame, tolerance_m, limits, "
-              "geofence, "
-              "ends or items; nearest is frame"},
-        Fault{"KeyTwice", kHead + "  - {kind: takeoff, height_m: 1, height_m: 2, speed_m_s: 0.5}\n",
-              "m.yaml:4: items[0].height_m: is given twice, first in line 4"},
-        Fault{"NoSpeed", kHead + "  - {kind: takeoff, height_m: 1}\n" + kLand,
-              "m.yaml:4: items[0].speed_m_s: is missing, must be given"},
-        Fault{"EmptySet", kHead + "  - {kind: set}\n" + kLand,
-              "m.yaml:4: items[0]: sets nothing, must give one of speed_m_s, yaw_rad, acceptance_radius_m or "
-              "hold_s"},
-        Fault{"NoItemToFly", kHead + "  - {kind: set, speed_m_s: 1}\n",
-              "m.yaml:3: items: has no item to fly, must have at least one besides set"},
-        Fault{"NoLanding", kHead + kTakeoff + kWaypoint,
-              "m.yaml:5: items[1]: is the last item, which must be a land unless the mission has `ends: "
-              "hovering`"},
-        Fault{"LandsButEndsHovering", kHovers + kTakeoff + kLand,
-              "m.yaml:1: ends: is hovering, must be landed: the last item is a land"},
-        Fault{"LooserLimit", "limits: {speed_m_s: 2.5}\n" + kHead + kTakeoff + kLand,
-              "m.yaml:1: limits.speed_m_s: is 2.5, must be above 0 and at most 2"},
-        Fault{"MisspeltLimit", "limits: {spede_m_s: 1}\n" + kHead + kTakeoff + kLand,
-              "m.yaml:1: limits.spede_m_s: is unknown, must be one of speed_m_s, acceleration_m_s2, "
-              "jerk_m_s3 or "
-              "yaw_rate_rad_s; nearest is speed_m_s"},
-        Fault{"FasterThanItsOwnLimit", "limits: {speed_m_s: 0.4}\n" + kHead + kTakeoff + kLand,
-              "m.yaml:5: items[0].speed_m_s: is 0.5, must be above 0 and at most 0.4"},
-        Fault{"LooserFence",
-              "geofence: {min_m: [-9, -1, -2], max_m: [1, 1, 0.2]}\n" + kHead + kTakeoff + kLand,
-              "m.yaml:1: geofence: the mission's fence, minimum corner: x is -9.000 m, outside the fence "
-              "of -3.000 "
-              "to 3.000 m"},
-        Fault{"EmptyFence", "geofence: {min_m: [-1, 1, -2], max_m: [1, 1, 0.2]}\n" + kHead + kTakeoff + kLand,
-              "m.yaml:1: geofence.max_m: number 2 is 1, must be above that of min_m, 1"},
-        Fault{"OutsideItsOwnFence",
-              "geofence: {min_m: [-1, -1, -2], max_m: [1, 1, 0.2]}\n" + kHead + kTakeoff + kWaypoint + kLand,
-              "m.yaml:6: items[1].position_m: north is 2 m, must be inside the fence, -1 to 1 m"},
-        Fault{"KeyAfterTheItems", kHead + kTakeoff + kLand + "name: late\n",
-              "m.yaml:6: name: stands after items, must stand before them: a truncated file would "
-              "lose it silently"},
-        Fault{"PathOfOnePoint", kHead + kTakeoff + "  - {kind: path, points: [[1, 0, -1]], speed_m_s: 1}\n",
-              "m.yaml:5: items[1].points: is a list of 1, must be a list of 2 to 1025"},
-        Fault{"PathOutsideTheFence",
-              kHead + kTakeoff + "  - {kind: path, points: [[1, 0, -1], [7, 0, -1]], speed_m_s: 1}\n",
-              "m.yaml:5: items[1].points[1]: north is 7 m, must be inside the fence, -3 to 3 m"},
-        Fault{"StraightCorridor",
-              kHead + kTakeoff +
-                  "  - {kind: path, points: [[1, 0, -1], [2, 0, -1]], speed_m_s: 1, straight: true, "
-                  "corridor_m: 1}\n",
-              "m.yaml:5: items[1].corridor_m: is given for a path of straight legs, must be left out"},
-        Fault{
+        tests::Fault{"OutsideTheFence",
+                     kHead + kTakeoff + "  - {kind: waypoint, position_m: [0, 7.5, -1], speed_m_s: 0.5}\n",
+                     "m.yaml:5: items[1].position_m: east is 7.5 m, must be inside the fence, -3 to 3 m"},
+        tests::Fault{"TooHigh", kHead + "  - {kind: takeoff, height_m: 9, speed_m_s: 0.5}\n",
+                     "m.yaml:4: items[0].height_m: down is -9 m, must be inside the fence, -2.5 to 0 m"},
+        tests::Fault{"TooFast", kHead + kTakeoff + "  - {kind: land, speed_m_s: 4}\n",
+                     "m.yaml:5: items[1].speed_m_s: is 4, must be above 0 and at most 2"},
+        tests::Fault{"NotANumber",
+                     kHead + kTakeoff + "  - {kind: waypoint, position_m: [.nan, 0, -1], speed_m_s: 0.5}\n",
+                     "m.yaml:5: items[1].position_m[0]: is .nan, must be a finite number"},
+        tests::Fault{"NegativeHold", kHead + "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5, hold_s: -1}\n",
+                     "m.yaml:4: items[0].hold_s: is -1, must be at least 0 and at most 3600"},
+        tests::Fault{
+            "UnknownKind", kHead + "  - {kind: loop, speed_m_s: 0.5}\n",
+            "m.yaml:4: items[0].kind: is loop, must be takeoff, waypoint, path, trajectory, set, wait or "
+            "land"},
+        tests::Fault{"LateTakeoff", kHead + kTakeoff + kTakeoff,
+                     "m.yaml:5: items[1]: is a takeoff, which must be the first item"},
+        tests::Fault{"EarlyLand", kHead + kTakeoff + kLand + kWaypoint,
+                     "m.yaml:6: items[2]: comes after a land, which must be the last item"},
+        tests::Fault{"NoItems", "frame: ned\ntolerance_m: 0.1\nitems: []\n",
+                     "m.yaml:3: items: is a list of 0, must be a list of 1 to 2048"},
+        tests::Fault{"UnknownFrame", "frame: body\ntolerance_m: 0.1\nitems:\n" + kTakeoff,
+                     "m.yaml:1: frame: is body, must be ned, enu or nwu"},
+        tests::Fault{"NoTolerance", "frame: ned\nitems:\n" + kTakeoff,
+                     "m.yaml:1: tolerance_m: is missing, must be given"},
+        tests::Fault{"ZeroTolerance", "frame: ned\ntolerance_m: 0\nitems:\n" + kTakeoff,
+                     "m.yaml:2: tolerance_m: is 0, must be above 0 and at most 10"},
+        tests::Fault{
+            "MisspeltKey", kHead + "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5, hold: 2}\n",
+            "m.yaml:4: items[0].hold: is unknown, must be one of kind, height_m, position_m, points, file, "
+            "duration_s, yaw_rad, speed_m_s, acceptance_radius_m, hold_s, straight, corridor_m or "
+            "smoothness; "
+            "nearest is hold_s"},
+        tests::Fault{
+            "KeyOfAnotherKind", kHead + "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5, yaw_rad: 2}\n",
+            "m.yaml:4: items[0].yaw_rad: is unknown, must be one of kind, height_m, speed_m_s or hold_s"},
+        tests::Fault{
+            "MisspeltRequiredKey",
+            kHead + kTakeoff + "  - {kind: waypoint, positon_m: [1, 0, -1], speed_m_s: 1}\n",
+            "m.yaml:5: items[1].positon_m: is unknown, must be one of kind, height_m, position_m, points, "
+            "file, "
+            "duration_s, yaw_rad, speed_m_s, acceptance_radius_m, hold_s, straight, corridor_m or "
+            "smoothness; "
+            "nearest is position_m"},
+        tests::Fault{
+            "MisspeltKind", kHead + "  - {knd: takeoff, height_m: 1, speed_m_s: 0.5}\n",
+            "m.yaml:4: items[0].knd: is unknown, must be one of kind, height_m, position_m, points, file, "
+            "duration_s, yaw_rad, speed_m_s, acceptance_radius_m, hold_s, straight, corridor_m or "
+            "smoothness; "
+            "nearest is kind"},
+        tests::Fault{
+            "MisspeltRootKey", "fram: ned\ntolerance_m: 0.1\nitems:\n" + kTakeoff + kLand,
+            "m.yaml:1: fram: is unknown, must be one of name, description, frame, tolerance_m, limits, "
+            "geofence, "
+            "ends or items; nearest is frame"},
+        tests::Fault{"KeyTwice", kHead + "  - {kind: takeoff, height_m: 1, height_m: 2, speed_m_s: 0.5}\n",
+                     "m.yaml:4: items[0].height_m: is given twice, first in line 4"},
+        tests::Fault{"NoSpeed", kHead + "  - {kind: takeoff, height_m: 1}\n" + kLand,
+                     "m.yaml:4: items[0].speed_m_s: is missing, must be given"},
+        tests::Fault{
+            "EmptySet", kHead + "  - {kind: set}\n" + kLand,
+            "m.yaml:4: items[0]: sets nothing, must give one of speed_m_s, yaw_rad, acceptance_radius_m or "
+            "hold_s"},
+        tests::Fault{"NoItemToFly", kHead + "  - {kind: set, speed_m_s: 1}\n",
+                     "m.yaml:3: items: has no item to fly, must have at least one besides set"},
+        tests::Fault{
+            "NoLanding", kHead + kTakeoff + kWaypoint,
+            "m.yaml:5: items[1]: is the last item, which must be a land unless the mission has `ends: "
+            "hovering`"},
+        tests::Fault{"LandsButEndsHovering", kHovers + kTakeoff + kLand,
+                     "m.yaml:1: ends: is hovering, must be landed: the last item is a land"},
+        tests::Fault{"LooserLimit", "limits: {speed_m_s: 2.5}\n" + kHead + kTakeoff + kLand,
+                     "m.yaml:1: limits.speed_m_s: is 2.5, must be above 0 and at most 2"},
+        tests::Fault{"MisspeltLimit", "limits: {spede_m_s: 1}\n" + kHead + kTakeoff + kLand,
+                     "m.yaml:1: limits.spede_m_s: is unknown, must be one of speed_m_s, acceleration_m_s2, "
+                     "jerk_m_s3 or "
+                     "yaw_rate_rad_s; nearest is speed_m_s"},
+        tests::Fault{"FasterThanItsOwnLimit", "limits: {speed_m_s: 0.4}\n" + kHead + kTakeoff + kLand,
+                     "m.yaml:5: items[0].speed_m_s: is 0.5, must be above 0 and at most 0.4"},
+        tests::Fault{
+            "LooserFence", "geofence: {min_m: [-9, -1, -2], max_m: [1, 1, 0.2]}\n" + kHead + kTakeoff + kLand,
+            "m.yaml:1: geofence: the mission's fence, minimum corner: x is -9.000 m, outside the fence "
+            "of -3.000 "
+            "to 3.000 m"},
+        tests::Fault{"EmptyFence",
+                     "geofence: {min_m: [-1, 1, -2], max_m: [1, 1, 0.2]}\n" + kHead + kTakeoff + kLand,
+                     "m.yaml:1: geofence.max_m: number 2 is 1, must be above that of min_m, 1"},
+        tests::Fault{
+            "OutsideItsOwnFence",
+            "geofence: {min_m: [-1, -1, -2], max_m: [1, 1, 0.2]}\n" + kHead + kTakeoff + kWaypoint + kLand,
+            "m.yaml:6: items[1].position_m: north is 2 m, must be inside the fence, -1 to 1 m"},
+        tests::Fault{"KeyAfterTheItems", kHead + kTakeoff + kLand + "name: late\n",
+                     "m.yaml:6: name: stands after items, must stand before them: a truncated file would "
+                     "lose it silently"},
+        tests::Fault{"PathOfOnePoint",
+                     kHead + kTakeoff + "  - {kind: path, points: [[1, 0, -1]], speed_m_s: 1}\n",
+                     "m.yaml:5: items[1].points: is a list of 1, must be a list of 2 to 1025"},
+        tests::Fault{"PathOutsideTheFence",
+                     kHead + kTakeoff + "  - {kind: path, points: [[1, 0, -1], [7, 0, -1]], speed_m_s: 1}\n",
+                     "m.yaml:5: items[1].points[1]: north is 7 m, must be inside the fence, -3 to 3 m"},
+        tests::Fault{"StraightCorridor",
+                     kHead + kTakeoff +
+                         "  - {kind: path, points: [[1, 0, -1], [2, 0, -1]], speed_m_s: 1, straight: true, "
+                         "corridor_m: 1}\n",
+                     "m.yaml:5: items[1].corridor_m: is given for a path of straight legs, must be left out"},
+        tests::Fault{
             "YawNotANumber",
             kHead + kTakeoff + "  - {kind: waypoint, position_m: [1, 0, -1], speed_m_s: 1, yaw_rad: north}\n",
             "m.yaml:5: items[1].yaw_rad: is north, must be a number"},
-        Fault{"RadiusBelowZero",
-              kHead + kTakeoff +
-                  "  - {kind: waypoint, position_m: [1, 0, -1], speed_m_s: 1, acceptance_radius_m: -1}\n",
-              "m.yaml:5: items[1].acceptance_radius_m: is -1, must be at least 0 and at most 10"},
-        Fault{"EmptyWait", kHead + kTakeoff + "  - {kind: wait, duration_s: 0}\n",
-              "m.yaml:5: items[1].duration_s: is 0, must be above 0 and at most 3600"},
-        Fault{"MissingTrajectory",
-              kHead + kTakeoff + "  - {kind: trajectory, file: none.csv, speed_m_s: 1}\n",
-              "m.yaml:5: items[1].file: is none.csv, must be an existing file: looked for none.csv"},
-        Fault{"NameWithAFolder", "name: ../x\n" + kHead + kTakeoff,
-              "m.yaml:1: name: must be at most 64 characters and hold no /"}),
-    name_of);
+        tests::Fault{
+            "RadiusBelowZero",
+            kHead + kTakeoff +
+                "  - {kind: waypoint, position_m: [1, 0, -1], speed_m_s: 1, acceptance_radius_m: -1}\n",
+            "m.yaml:5: items[1].acceptance_radius_m: is -1, must be at least 0 and at most 10"},
+        tests::Fault{"EmptyWait", kHead + kTakeoff + "  - {kind: wait, duration_s: 0}\n",
+                     "m.yaml:5: items[1].duration_s: is 0, must be above 0 and at most 3600"},
+        tests::Fault{"MissingTrajectory",
+                     kHead + kTakeoff + "  - {kind: trajectory, file: none.csv, speed_m_s: 1}\n",
+                     "m.yaml:5: items[1].file: is none.csv, must be an existing file: looked for none.csv"},
+        tests::Fault{"NameWithAFolder", "name: ../x\n" + kHead + kTakeoff,
+                     "m.yaml:1: name: must be at most 64 characters and hold no /"}),
+    tests::name_of);
 
 TEST(MissionFile, RefusesEveryTruncation) {
   const std::string whole =
@@ -371,4 +383,4 @@ TEST_P(PaperMission, TakesAboutFortySecondsWithinTheFigureAxes) {
 
 INSTANTIATE_TEST_SUITE_P(, PaperMission, testing::Values("square", "zigzag"));
 
-}  // namespace swiftlet::ground::mission_file_test
+}  // namespace swiftlet::io::mission_file_test

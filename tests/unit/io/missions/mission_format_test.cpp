@@ -7,7 +7,7 @@
 #include "tests/support/paths.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
 
-namespace swiftlet::ground::mission_format_test {
+namespace swiftlet::io::mission_format_test {
 
 using Eigen::Vector3d;
 
@@ -96,4 +96,4 @@ TEST(CsvFrame, OfAFileThatNamesNoneIsThatOfTheOption) {
       1e-9);
 }
 
-}  // namespace swiftlet::ground::mission_format_test
+}  // namespace swiftlet::io::mission_format_test

@@ -10,7 +10,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
 
-namespace swiftlet::ground::placement_test {
+namespace swiftlet::io::placement_test {
 
 using Eigen::Vector3d;
 
@@ -97,9 +97,9 @@ TEST_F(PlacementTest, PlacesSamples) {
   const control::PolynomialSegment path = control::minimum_jerk({0, 0, 1}, 0.2, {2, 1, 1.5}, 1.0, 4.0);
   for (int i = 0; i <= 80; ++i) {
     const control::Reference at = control::evaluate(path, 0.05 * i);
-    text += runtime::exact(0.05 * i) + "," + runtime::exact(at.position_ned.x()) + "," +
-            runtime::exact(at.position_ned.y()) + "," + runtime::exact(at.position_ned.z()) + "," +
-            runtime::exact(at.yaw_rad) + "\n";
+    text += io::exact(0.05 * i) + "," + io::exact(at.position_ned.x()) + "," +
+            io::exact(at.position_ned.y()) + "," + io::exact(at.position_ned.z()) + "," +
+            io::exact(at.yaw_rad) + "\n";
   }
   expect_placed_path("s.csv", text, options_, 1e-9);
 }
@@ -196,4 +196,4 @@ TEST_F(PlacementTest, EveryFormIsHeldInsideTheFenceOption) {
   EXPECT_EQ(refused("q.plan", kPlan).rfind("--fence: ", 0), 0U) << refused("q.plan", kPlan);
 }
 
-}  // namespace swiftlet::ground::placement_test
+}  // namespace swiftlet::io::placement_test

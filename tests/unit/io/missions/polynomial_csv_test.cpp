@@ -7,10 +7,10 @@
 #include "swiftlet/control/types/polynomial.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
-#include "tests/unit/ground/fault.hpp"
+#include "tests/support/fault.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
 
-namespace swiftlet::ground::polynomial_csv_test {
+namespace swiftlet::io::polynomial_csv_test {
 
 using control::MissionItemKind;
 using Eigen::Vector3d;
@@ -63,7 +63,7 @@ std::string replaced(const std::string& text, std::size_t column, const std::str
 }
 const std::string kRow = polynomial_row(4.0, 0.0, 1.0, 1.0);
 
-class BadPolynomialCsv : public testing::TestWithParam<Fault> {};
+class BadPolynomialCsv : public testing::TestWithParam<tests::Fault> {};
 TEST_P(BadPolynomialCsv, IsRefusedWithASentence) {
   EXPECT_EQ(refusal([] { polynomials(GetParam().text); }), GetParam().sentence);
 }
@@ -77,43 +77,44 @@ std::string repeated_hover(int rows) {
 INSTANTIATE_TEST_SUITE_P(
     , BadPolynomialCsv,
     testing::Values(
-        Fault{"empty", "", "p.csv: is empty, must begin with the header " + kPolynomialHeader},
-        Fault{"no_rows", kPolynomialHeader + "\n",
-              "p.csv: has 0 rows behind the header, must have at least 1"},
-        Fault{"missing_column", kPolynomialHeader + "\n" + kRow.substr(0, kRow.rfind(',')) + "\n",
-              "p.csv:2: has 32 fields, must have 33: " + kPolynomialHeader},
-        Fault{"extra_column", kPolynomialHeader + "\n" + kRow + "\n" + kRow + ",1\n",
-              "p.csv:3: has 34 fields, must have 33: " + kPolynomialHeader},
-        Fault{"two_trailing_commas", kPolynomialHeader + "\n" + kRow + ",,\n",
-              "p.csv:2: has 34 fields, must have 33: " + kPolynomialHeader},
-        Fault{"nan", kPolynomialHeader + "\n" + replaced(kRow, 4, "nan"),
-              "p.csv:2: x^3: is nan, must be a finite number"},
-        Fault{"infinity", kPolynomialHeader + "\n" + replaced(kRow, 32, "-inf"),
-              "p.csv:2: yaw^7: is -inf, must be a finite number"},
-        Fault{"word", kPolynomialHeader + "\n" + replaced(kRow, 9, "north"),
-              "p.csv:2: y^0: is north, must be a finite number"},
-        Fault{"zero_duration", kPolynomialHeader + "\n" + replaced(kRow, 0, "0"),
-              "p.csv:2: duration: is 0, must be above 0 and at most 3600 s"},
-        Fault{"duration_above_limit", kPolynomialHeader + "\n" + replaced(kRow, 0, "3600.1"),
-              "p.csv:2: duration: is 3600.1, must be above 0 and at most 3600 s"},
-        Fault{"too_many_segments", repeated_hover(1025),
-              "p.csv:1026: duration: is segment 1025, at most 1024 fit"},
-        Fault{"outside_the_fence", kPolynomialHeader + "\n" + polynomial_row(9.0, 0.0, 3.01, 1.0),
-              "p.csv:2: segment 1 in NED: y is 3.010 m, outside the fence of -3.000 to 3.000 m"},
-        Fault{"too_fast", kPolynomialHeader + "\n" + polynomial_row(1.8, 0.0, 2.0, 1.0),
-              "p.csv:2: segment 1 in NED reaches 2.08 m/s, the limit is 2.00 m/s; slower by 1.05: "
-              "--time-scale 1.05"},
-        Fault{"discontinuous",
-              kPolynomialHeader + "\n" + polynomial_row(4.0, 0.0, 1.0, 1.0) + "\n" +
-                  polynomial_row(4.0, 1.1, 1.0, 1.0),
-              "p.csv:3: segment 2 in NED does not start where the previous one ends: 0.100 m and 0.000 m/s "
-              "apart"},
-        Fault{"starts_in_motion", kPolynomialHeader + "\n" + replaced(kRow, 2, "0.5"),
-              "p.csv:2: segment 1 in NED starts at 0.50 m/s, must start at rest"}),
-    name_of);
+        tests::Fault{"empty", "", "p.csv: is empty, must begin with the header " + kPolynomialHeader},
+        tests::Fault{"no_rows", kPolynomialHeader + "\n",
+                     "p.csv: has 0 rows behind the header, must have at least 1"},
+        tests::Fault{"missing_column", kPolynomialHeader + "\n" + kRow.substr(0, kRow.rfind(',')) + "\n",
+                     "p.csv:2: has 32 fields, must have 33: " + kPolynomialHeader},
+        tests::Fault{"extra_column", kPolynomialHeader + "\n" + kRow + "\n" + kRow + ",1\n",
+                     "p.csv:3: has 34 fields, must have 33: " + kPolynomialHeader},
+        tests::Fault{"two_trailing_commas", kPolynomialHeader + "\n" + kRow + ",,\n",
+                     "p.csv:2: has 34 fields, must have 33: " + kPolynomialHeader},
+        tests::Fault{"nan", kPolynomialHeader + "\n" + replaced(kRow, 4, "nan"),
+                     "p.csv:2: x^3: is nan, must be a finite number"},
+        tests::Fault{"infinity", kPolynomialHeader + "\n" + replaced(kRow, 32, "-inf"),
+                     "p.csv:2: yaw^7: is -inf, must be a finite number"},
+        tests::Fault{"word", kPolynomialHeader + "\n" + replaced(kRow, 9, "north"),
+                     "p.csv:2: y^0: is north, must be a finite number"},
+        tests::Fault{"zero_duration", kPolynomialHeader + "\n" + replaced(kRow, 0, "0"),
+                     "p.csv:2: duration: is 0, must be above 0 and at most 3600 s"},
+        tests::Fault{"duration_above_limit", kPolynomialHeader + "\n" + replaced(kRow, 0, "3600.1"),
+                     "p.csv:2: duration: is 3600.1, must be above 0 and at most 3600 s"},
+        tests::Fault{"too_many_segments", repeated_hover(1025),
+                     "p.csv:1026: duration: is segment 1025, at most 1024 fit"},
+        tests::Fault{"outside_the_fence", kPolynomialHeader + "\n" + polynomial_row(9.0, 0.0, 3.01, 1.0),
+                     "p.csv:2: segment 1 in NED: y is 3.010 m, outside the fence of -3.000 to 3.000 m"},
+        tests::Fault{"too_fast", kPolynomialHeader + "\n" + polynomial_row(1.8, 0.0, 2.0, 1.0),
+                     "p.csv:2: segment 1 in NED reaches 2.08 m/s, the limit is 2.00 m/s; slower by 1.05: "
+                     "--time-scale 1.05"},
+        tests::Fault{
+            "discontinuous",
+            kPolynomialHeader + "\n" + polynomial_row(4.0, 0.0, 1.0, 1.0) + "\n" +
+                polynomial_row(4.0, 1.1, 1.0, 1.0),
+            "p.csv:3: segment 2 in NED does not start where the previous one ends: 0.100 m and 0.000 m/s "
+            "apart"},
+        tests::Fault{"starts_in_motion", kPolynomialHeader + "\n" + replaced(kRow, 2, "0.5"),
+                     "p.csv:2: segment 1 in NED starts at 0.50 m/s, must start at rest"}),
+    tests::name_of);
 
 TEST(PolynomialCsv, AcceptsTheMaximumOfSegments) {
   EXPECT_EQ(polynomials(repeated_hover(1024)).mission.segments.size(), 1024U);
 }
 
-}  // namespace swiftlet::ground::polynomial_csv_test
+}  // namespace swiftlet::io::polynomial_csv_test

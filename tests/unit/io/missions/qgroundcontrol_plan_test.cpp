@@ -5,10 +5,10 @@
 
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
-#include "tests/unit/ground/fault.hpp"
+#include "tests/support/fault.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
 
-namespace swiftlet::ground::qgroundcontrol_plan_test {
+namespace swiftlet::io::qgroundcontrol_plan_test {
 
 using control::MissionItemKind;
 using Eigen::Vector3d;
@@ -96,56 +96,64 @@ TEST(QGroundControlPlan, AcceptsAnyWhiteSpace) {
 
 const std::string kUp = item(22, 1, "0,0,0,null,null,null,-1");
 
-class BadPlan : public testing::TestWithParam<Fault> {};
+class BadPlan : public testing::TestWithParam<tests::Fault> {};
 TEST_P(BadPlan, IsRefusedWithASentence) {
   EXPECT_EQ(refusal([] { qgc(GetParam().text); }), GetParam().sentence);
 }
 INSTANTIATE_TEST_SUITE_P(
     , BadPlan,
     testing::Values(
-        Fault{"empty", "", "q.plan:1: column 1: the file is empty, must be a JSON document"},
-        Fault{"truncated", "{\n \"fileType\": \"Plan\",\n \"mission", "q.plan:3: column 9: is invalid JSON"},
-        Fault{"number_overflow", plan(item(16, 1, "0,0,0,null,1e309,1,-1")),
-              "q.plan: holds a number beyond 1.8e308, must hold smaller ones"},
-        Fault{"other_file_type", "{\"fileType\": \"Fence\"}", "q.plan:1: fileType: is Fence, must be Plan"},
-        Fault{"no_items", plan(""), "q.plan:4: mission.items: is a list of 0, must be a list of 1 to 2048"},
-        Fault{"unsupported_command", plan(kUp + ",\n" + item(206, 2, "1,2,3,4,5,6,7")),
-              "q.plan:6: mission.items[1].command: is 206, must be 16 (waypoint), 19 (loiter for a time), 20 "
-              "(return to "
-              "launch), 21 (land), 22 (take-off) or 178 (change speed)"},
-        Fault{"complex_item", plan("{\"type\": \"ComplexItem\"}"),
-              "q.plan:5: mission.items[0].type: is ComplexItem, must be SimpleItem: draw the pattern as "
-              "waypoints"},
-        Fault{"unknown_frame", plan(item(16, 10, "0,0,0,null,1,1,1")),
-              "q.plan:5: mission.items[0].frame: is 10, must be 0 or 3 (global, altitude above the sea or "
-              "above home), 1 (local "
-              "NED) or 4 (local ENU)"},
-        Fault{"six_parameters", plan(item(16, 1, "0,0,0,null,1,1")),
-              "q.plan:5: mission.items[0].params: is a list of 6, must be a list of 7"},
-        Fault{"no_latitude", plan(item(16, 3, "0,0,0,null,null,8.5,1")),
-              "q.plan:5: mission.items[0].params[4]: is empty, must be a number"},
-        Fault{"latitude_out_of_range", plan(item(16, 3, "0,0,0,null,90.5,8.5,1")),
-              "q.plan:5: mission.items[0].params[4]: is 90.5, must be at least -90 and at most 90"},
-        Fault{"home_out_of_range", plan(kUp, "47, 181, 0"),
-              "q.plan:3: mission.plannedHomePosition[1]: is 181, must be at least -180 and at most 180"},
-        Fault{"outside_the_fence", plan(kUp + ",\n" + item(16, 1, "0,0,0,null,3.5,1,-1")),
-              "q.plan:6: mission.items[1]: north is 3.500 m, must be inside the fence, -3 to 3 m"},
-        Fault{
+        tests::Fault{"empty", "", "q.plan:1: column 1: the file is empty, must be a JSON document"},
+        tests::Fault{"truncated", "{\n \"fileType\": \"Plan\",\n \"mission",
+                     "q.plan:3: column 9: is invalid JSON"},
+        tests::Fault{"number_overflow", plan(item(16, 1, "0,0,0,null,1e309,1,-1")),
+                     "q.plan: holds a number beyond 1.8e308, must hold smaller ones"},
+        tests::Fault{"other_file_type", "{\"fileType\": \"Fence\"}",
+                     "q.plan:1: fileType: is Fence, must be Plan"},
+        tests::Fault{"no_items", plan(""),
+                     "q.plan:4: mission.items: is a list of 0, must be a list of 1 to 2048"},
+        tests::Fault{
+            "unsupported_command", plan(kUp + ",\n" + item(206, 2, "1,2,3,4,5,6,7")),
+            "q.plan:6: mission.items[1].command: is 206, must be 16 (waypoint), 19 (loiter for a time), 20 "
+            "(return to "
+            "launch), 21 (land), 22 (take-off) or 178 (change speed)"},
+        tests::Fault{
+            "complex_item", plan("{\"type\": \"ComplexItem\"}"),
+            "q.plan:5: mission.items[0].type: is ComplexItem, must be SimpleItem: draw the pattern as "
+            "waypoints"},
+        tests::Fault{
+            "unknown_frame", plan(item(16, 10, "0,0,0,null,1,1,1")),
+            "q.plan:5: mission.items[0].frame: is 10, must be 0 or 3 (global, altitude above the sea or "
+            "above home), 1 (local "
+            "NED) or 4 (local ENU)"},
+        tests::Fault{"six_parameters", plan(item(16, 1, "0,0,0,null,1,1")),
+                     "q.plan:5: mission.items[0].params: is a list of 6, must be a list of 7"},
+        tests::Fault{"no_latitude", plan(item(16, 3, "0,0,0,null,null,8.5,1")),
+                     "q.plan:5: mission.items[0].params[4]: is empty, must be a number"},
+        tests::Fault{"latitude_out_of_range", plan(item(16, 3, "0,0,0,null,90.5,8.5,1")),
+                     "q.plan:5: mission.items[0].params[4]: is 90.5, must be at least -90 and at most 90"},
+        tests::Fault{
+            "home_out_of_range", plan(kUp, "47, 181, 0"),
+            "q.plan:3: mission.plannedHomePosition[1]: is 181, must be at least -180 and at most 180"},
+        tests::Fault{"outside_the_fence", plan(kUp + ",\n" + item(16, 1, "0,0,0,null,3.5,1,-1")),
+                     "q.plan:6: mission.items[1]: north is 3.500 m, must be inside the fence, -3 to 3 m"},
+        tests::Fault{
             "takes_off_elsewhere", plan(item(22, 1, "0,0,0,null,2,0,-1")),
             "q.plan:5: mission.items[0]: takes off 2.0 m from home, must be at most 1 m: the vehicle stands "
             "at home"},
-        Fault{"lands_first", plan(item(21, 1, "0,0,0,null,0,0,0")),
-              "q.plan:5: mission.items[0]: is the first item, must follow a take-off or a waypoint"},
-        Fault{"item_after_landing",
-              plan(kUp + ",\n" + item(21, 1, "0,0,0,null,0,0,0") + ",\n" + item(16, 1, "0,0,0,null,0,0,-1")),
-              "q.plan:7: mission.items[2]: follows a landing, which must be the last item"},
-        Fault{"hold_above_limit", plan(item(16, 1, "3601,0,0,null,1,1,-1")),
-              "q.plan:5: mission.items[0].params[0]: is 3601, must be at least 0 and at most 3600"},
-        Fault{"zero_speed", plan(item(178, 2, "1,0,-1,0,0,0,0")),
-              "q.plan:5: mission.items[0].params[1]: is 0, must be above 0"},
-        Fault{"no_item_to_fly", plan(item(178, 2, "1,1,-1,0,0,0,0")),
-              "q.plan:4: mission.items: has no item to fly, must have a take-off or a waypoint"}),
-    name_of);
+        tests::Fault{"lands_first", plan(item(21, 1, "0,0,0,null,0,0,0")),
+                     "q.plan:5: mission.items[0]: is the first item, must follow a take-off or a waypoint"},
+        tests::Fault{
+            "item_after_landing",
+            plan(kUp + ",\n" + item(21, 1, "0,0,0,null,0,0,0") + ",\n" + item(16, 1, "0,0,0,null,0,0,-1")),
+            "q.plan:7: mission.items[2]: follows a landing, which must be the last item"},
+        tests::Fault{"hold_above_limit", plan(item(16, 1, "3601,0,0,null,1,1,-1")),
+                     "q.plan:5: mission.items[0].params[0]: is 3601, must be at least 0 and at most 3600"},
+        tests::Fault{"zero_speed", plan(item(178, 2, "1,0,-1,0,0,0,0")),
+                     "q.plan:5: mission.items[0].params[1]: is 0, must be above 0"},
+        tests::Fault{"no_item_to_fly", plan(item(178, 2, "1,1,-1,0,0,0,0")),
+                     "q.plan:4: mission.items: has no item to fly, must have a take-off or a waypoint"}),
+    tests::name_of);
 
 TEST(QGroundControlPlan, RequiresAHomeForGeographicItems) {
   std::string text = plan(item(16, 3, "0,0,0,null,47,8,1"));
@@ -155,4 +163,4 @@ TEST(QGroundControlPlan, RequiresAHomeForGeographicItems) {
             "q.plan:3: mission: has items with geographic coordinates, must have a plannedHomePosition");
 }
 
-}  // namespace swiftlet::ground::qgroundcontrol_plan_test
+}  // namespace swiftlet::io::qgroundcontrol_plan_test

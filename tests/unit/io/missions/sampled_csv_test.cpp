@@ -10,10 +10,10 @@
 #include "swiftlet/control/types/polynomial.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
-#include "tests/unit/ground/fault.hpp"
+#include "tests/support/fault.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
 
-namespace swiftlet::ground::sampled_csv_test {
+namespace swiftlet::io::sampled_csv_test {
 
 using Eigen::Vector3d;
 
@@ -87,7 +87,7 @@ std::string still(const std::vector<std::string>& stamps) {
 
 TEST(SampledCsv, UndoesTheRoundingOfStamps) {
   std::vector<std::string> stamps;
-  for (int i = 0; i <= 90; ++i) stamps.push_back(runtime::exact(std::round(i / 30.0 * 1e3) / 1e3));
+  for (int i = 0; i <= 90; ++i) stamps.push_back(io::exact(std::round(i / 30.0 * 1e3) / 1e3));
   EXPECT_TRUE(assumes(samples(still(stamps)), "91 samples at 30 Hz"));
   EXPECT_TRUE(assumes(samples(still(stamps)), "stamps are rounded by up to 0.00033 s: even steps are used"));
 }
@@ -95,7 +95,7 @@ TEST(SampledCsv, UndoesTheRoundingOfStamps) {
 TEST(SampledCsv, TellsGapsAndJitterByTheirLines) {
   std::vector<std::string> stamps;
   for (int i = 0; i <= 50; ++i) {
-    if (i < 20 || i > 30) stamps.push_back(runtime::exact(0.01 * i + (i == 40 ? 0.004 : 0.0)));
+    if (i < 20 || i > 30) stamps.push_back(io::exact(0.01 * i + (i == 40 ? 0.004 : 0.0)));
   }
   const MissionFile file = samples(still(stamps));
   EXPECT_TRUE(assumes(file, "line 22: no samples for 0.12 s before it, the usual step is 0.01 s"));
@@ -105,7 +105,7 @@ TEST(SampledCsv, TellsGapsAndJitterByTheirLines) {
 TEST(SampledCsv, PassesSamplesByAsFarAsItMay) {
   std::string text = "t,x,y,z\n";
   for (int i = 0; i <= 400; ++i)  // 2 mm of noise
-    text += runtime::exact(0.01 * i) + "," + runtime::exact(i % 2 == 0 ? 0.001 : -0.001) + ",0,1.000000\n";
+    text += io::exact(0.01 * i) + "," + io::exact(i % 2 == 0 ? 0.001 : -0.001) + ",0,1.000000\n";
   const auto strongest_with = [&](std::optional<double> tolerance_m) {
     double strongest = 0.0;
     control::Limits limits;
@@ -162,9 +162,9 @@ std::string flight_table(const std::string& header, bool older) {
     const control::PolynomialSegment s = control::minimum_jerk(from, 0.3, to, 0.3, duration_s);
     for (int i = 0; i < std::lround(duration_s * 100); ++i) {
       const control::Reference r = control::evaluate(s, i * 0.01);
-      text += runtime::exact(begin_s + i * 0.01) + (older ? ",4,0" : ",mission,0");
+      text += io::exact(begin_s + i * 0.01) + (older ? ",4,0" : ",mission,0");
       const auto add = [&](const Vector3d& v) {
-        for (int axis = 0; axis < 3; ++axis) text += "," + runtime::exact(v[axis]);
+        for (int axis = 0; axis < 3; ++axis) text += "," + io::exact(v[axis]);
       };
       add(r.position_ned);
       add(r.velocity_ned);
@@ -213,34 +213,40 @@ TEST(FlightTable, IsRefusedWithoutAFlight) {
             "s.csv:1: header: has no column ref_py, which the table of a flight has");
 }
 
-class BadSampledCsv : public testing::TestWithParam<Fault> {};
+class BadSampledCsv : public testing::TestWithParam<tests::Fault> {};
 TEST_P(BadSampledCsv, IsRefusedWithASentence) {
   EXPECT_EQ(refusal([] { samples(GetParam().text); }), GetParam().sentence);
 }
 INSTANTIATE_TEST_SUITE_P(
     , BadSampledCsv,
     testing::Values(
-        Fault{"one_row", "t,x,y,z\n0,0,0,1\n", "s.csv: has 1 rows behind the header, must have at least 2"},
-        Fault{"time_repeats", "t,x,y,z\n0,0,0,1\n1,0,0,1\n1,0,0,1\n",
-              "s.csv:4: t: is 1 again, stamps must rise from row to row"},
-        Fault{"time_decreases", "t,x,y,z\n5,0,0,1\n4,0,0,1\n",
-              "s.csv:3: t: is 4, must be at least 5.0001 and at most 3605 s"},
-        Fault{"nan", "t,x,y,z\n0,0,0,1\n1,0,nan,1\n", "s.csv:3: y: is nan, must be a finite number"},
-        Fault{"part_of_a_velocity", "t,x,y,z,vx\n0,0,0,1,0\n",
-              "s.csv:1: header: has no column vy [m/s], must have vx [m/s], vy [m/s] and vz [m/s]"},
-        Fault{"unused_column", "t,x,y,z,roll\n0,0,0,1,0\n",
-              "s.csv:1: header: has the column roll [rad], which a trajectory does not use"},
-        Fault{"velocities_alone", "t [s],vx_ned [m/s],vy_ned [m/s],vz_ned [m/s]\n0,0,0,0\n1,0,0,0\n",
-              "s.csv:1: header: has no positions, must have x [m], y [m] and z [m]; `swiftlet stream` flies "
-              "velocities, accelerations, attitudes and body rates"},
-        Fault{"no_frame", "t [s],x [m],y [m],z [m]\n0,0,0,1\n1,0,0,1\n",
-              "s.csv:1: header: names no frame: write x_ned [m] (north, east, down), x_enu [m] (east, "
-              "north, up) or x_nwu [m] (north, west, up), or add --frame ned, --frame enu or --frame nwu"},
-        Fault{"missing_field", "t,x,y,z\n0,0,0,1\n1,0,0\n", "s.csv:3: has 3 fields, must have 4: t,x,y,z"},
-        Fault{"starts_in_motion", "t,x,y,z,vx,vy,vz\n0,0,0,1,0.5,0,0\n1,0.5,0,1,0.5,0,0\n2,1,0,1,0,0,0\n",
-              "s.csv:2: the path starts at 0.50 m/s, must start at rest"},
-        Fault{"step", "t,x,y,z\n0,0,0,1\n1,0,0,1\n1.01,0.3,0,1\n2,0.3,0,1\n",
-              "s.csv:4: is 0.300 m from the row before, 0.01 s earlier: 30.00 m/s, the limit is 2.00 m/s"}),
-    name_of);
+        tests::Fault{"one_row", "t,x,y,z\n0,0,0,1\n",
+                     "s.csv: has 1 rows behind the header, must have at least 2"},
+        tests::Fault{"time_repeats", "t,x,y,z\n0,0,0,1\n1,0,0,1\n1,0,0,1\n",
+                     "s.csv:4: t: is 1 again, stamps must rise from row to row"},
+        tests::Fault{"time_decreases", "t,x,y,z\n5,0,0,1\n4,0,0,1\n",
+                     "s.csv:3: t: is 4, must be at least 5.0001 and at most 3605 s"},
+        tests::Fault{"nan", "t,x,y,z\n0,0,0,1\n1,0,nan,1\n", "s.csv:3: y: is nan, must be a finite number"},
+        tests::Fault{"part_of_a_velocity", "t,x,y,z,vx\n0,0,0,1,0\n",
+                     "s.csv:1: header: has no column vy [m/s], must have vx [m/s], vy [m/s] and vz [m/s]"},
+        tests::Fault{"unused_column", "t,x,y,z,roll\n0,0,0,1,0\n",
+                     "s.csv:1: header: has the column roll [rad], which a trajectory does not use"},
+        tests::Fault{
+            "velocities_alone", "t [s],vx_ned [m/s],vy_ned [m/s],vz_ned [m/s]\n0,0,0,0\n1,0,0,0\n",
+            "s.csv:1: header: has no positions, must have x [m], y [m] and z [m]; `swiftlet stream` flies "
+            "velocities, accelerations, attitudes and body rates"},
+        tests::Fault{
+            "no_frame", "t [s],x [m],y [m],z [m]\n0,0,0,1\n1,0,0,1\n",
+            "s.csv:1: header: names no frame: write x_ned [m] (north, east, down), x_enu [m] (east, "
+            "north, up) or x_nwu [m] (north, west, up), or add --frame ned, --frame enu or --frame nwu"},
+        tests::Fault{"missing_field", "t,x,y,z\n0,0,0,1\n1,0,0\n",
+                     "s.csv:3: has 3 fields, must have 4: t,x,y,z"},
+        tests::Fault{"starts_in_motion",
+                     "t,x,y,z,vx,vy,vz\n0,0,0,1,0.5,0,0\n1,0.5,0,1,0.5,0,0\n2,1,0,1,0,0,0\n",
+                     "s.csv:2: the path starts at 0.50 m/s, must start at rest"},
+        tests::Fault{
+            "step", "t,x,y,z\n0,0,0,1\n1,0,0,1\n1.01,0.3,0,1\n2,0.3,0,1\n",
+            "s.csv:4: is 0.300 m from the row before, 0.01 s earlier: 30.00 m/s, the limit is 2.00 m/s"}),
+    tests::name_of);
 
-}  // namespace swiftlet::ground::sampled_csv_test
+}  // namespace swiftlet::io::sampled_csv_test

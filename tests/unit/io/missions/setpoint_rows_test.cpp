@@ -8,14 +8,14 @@
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/math/euler.hpp"
 
-namespace swiftlet::ground::setpoint_rows_test {
+namespace swiftlet::io::setpoint_rows_test {
 
 using control::SetpointKind;
 using Eigen::Vector3d;
 
 SetpointRows reader(const std::string& header, const std::string& file,
                     std::optional<MissionFrame> frame = std::nullopt) {
-  return {runtime::first_csv_line(header, file), file, frame};
+  return {io::first_csv_line(header, file), file, frame};
 }
 
 std::string refusal(const std::string& header, const std::vector<std::string>& lines = {},
@@ -23,7 +23,7 @@ std::string refusal(const std::string& header, const std::vector<std::string>& l
   try {
     SetpointRows rows = reader(header, "s.csv", frame);
     for (const std::string& line : lines) rows.read(line);
-  } catch (const runtime::ConfigError& error) {
+  } catch (const io::ConfigError& error) {
     return error.what();
   }
   return "none";
@@ -68,7 +68,7 @@ TEST(SetpointRows, ConvertToSiUnits) {
   SetpointRows attitudes = reader("t [s],roll [deg],pitch [deg],yaw [deg],thrust [g]", "f");
   const auto attitude = attitudes.read("0,10,-5,30,1");
   EXPECT_NEAR(attitude->setpoint.specific_thrust, 9.80665, 1e-12);
-  const Vector3d euler = control::euler_angles(attitude->setpoint.q_ned_from_frd).vector();
+  const Vector3d euler = math::euler_angles(attitude->setpoint.q_ned_from_frd).vector();
   EXPECT_LT((euler * 180.0 / M_PI - Vector3d(10, -5, 30)).norm(), 1e-9);
 }
 
@@ -171,4 +171,4 @@ TEST(Resampled, InterpolatesLinearlyAndTakesTheShorterTurn) {
   EXPECT_FALSE(resampled(of({}), 4.0)());
 }
 
-}  // namespace swiftlet::ground::setpoint_rows_test
+}  // namespace swiftlet::io::setpoint_rows_test

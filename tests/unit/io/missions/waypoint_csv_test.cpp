@@ -6,10 +6,10 @@
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/types/polynomial.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
-#include "tests/unit/ground/fault.hpp"
+#include "tests/support/fault.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
 
-namespace swiftlet::ground::waypoint_csv_test {
+namespace swiftlet::io::waypoint_csv_test {
 
 using Eigen::Vector3d;
 
@@ -38,7 +38,7 @@ TEST(WaypointCsv, ReadsAUavTrajectoriesFile) {
   EXPECT_TRUE(control::check(file.mission, control::Limits()).accepted);
 }
 
-class BadWaypointCsv : public testing::TestWithParam<Fault> {};
+class BadWaypointCsv : public testing::TestWithParam<tests::Fault> {};
 TEST_P(BadWaypointCsv, IsRefusedWithASentence) {
   EXPECT_EQ(refusal([] { waypoints(GetParam().text); }), GetParam().sentence);
 }
@@ -50,18 +50,19 @@ std::string hover_points(int rows) {
 INSTANTIATE_TEST_SUITE_P(
     , BadWaypointCsv,
     testing::Values(
-        Fault{"one_point", "0,0,1\n", "w.csv: has 1 rows, must have at least 2"},
-        Fault{"missing_field", "0,0,1\n1,0\n", "w.csv:2: has 2 fields, must have 3: x,y,z"},
-        Fault{"infinite", "0,0,1\n1,inf,1\n", "w.csv:2: y: is inf, must be a finite number"},
-        Fault{"degrees", "0,0,1,0\n1,0,1,90\n",
-              "w.csv:2: yaw: waypoint 2: yaw is 90 rad, more than a full turn: 90 degrees are 1.5708 "
-              "rad, 90 rad are the yaw 2.0354 rad"},
-        Fault{"outside_the_fence", "0,0,1\n3.1,0,1\n",
-              "w.csv:2: x,y,z: in NED: y is 3.100 m, outside the fence of -3.000 to 3.000 m"},
-        Fault{"equal_points", "0,0,1\n0,0,1\n", "w.csv: the path has no length: all points are at one place"},
-        Fault{"too_many_points", hover_points(1026),
-              "w.csv:1026: x,y,z: is waypoint 1026, at most 1025 fit"}),
-    name_of);
+        tests::Fault{"one_point", "0,0,1\n", "w.csv: has 1 rows, must have at least 2"},
+        tests::Fault{"missing_field", "0,0,1\n1,0\n", "w.csv:2: has 2 fields, must have 3: x,y,z"},
+        tests::Fault{"infinite", "0,0,1\n1,inf,1\n", "w.csv:2: y: is inf, must be a finite number"},
+        tests::Fault{"degrees", "0,0,1,0\n1,0,1,90\n",
+                     "w.csv:2: yaw: waypoint 2: yaw is 90 rad, more than a full turn: 90 degrees are 1.5708 "
+                     "rad, 90 rad are the yaw 2.0354 rad"},
+        tests::Fault{"outside_the_fence", "0,0,1\n3.1,0,1\n",
+                     "w.csv:2: x,y,z: in NED: y is 3.100 m, outside the fence of -3.000 to 3.000 m"},
+        tests::Fault{"equal_points", "0,0,1\n0,0,1\n",
+                     "w.csv: the path has no length: all points are at one place"},
+        tests::Fault{"too_many_points", hover_points(1026),
+                     "w.csv:1026: x,y,z: is waypoint 1026, at most 1025 fit"}),
+    tests::name_of);
 
 TEST(WaypointCsv, NamesTheWaypointBeforeAFenceViolation) {
   const std::string sentence = refusal([] { waypoints("0,0,1\n3,0,1\n3,2.9,1\n0,0,1\n"); });
@@ -73,4 +74,4 @@ TEST(WaypointCsv, AcceptsTheMaximumOfPoints) {
   EXPECT_EQ(waypoints(hover_points(1025)).mission.segments.size(), 1024U);
 }
 
-}  // namespace swiftlet::ground::waypoint_csv_test
+}  // namespace swiftlet::io::waypoint_csv_test

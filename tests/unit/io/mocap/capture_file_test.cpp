@@ -33,7 +33,7 @@ std::string pcap(std::uint32_t magic, std::uint32_t link_type, const std::string
 }
 
 TEST(Capture, OfMotiveIsRead) {
-  const auto datagrams = parse_capture(runtime::read_text_file(kFile), kFile);
+  const auto datagrams = parse_capture(io::read_text_file(kFile), kFile);
   EXPECT_EQ(datagrams.size(), 550U);
   EXPECT_EQ(datagrams.front().source, 0xc0a80064U);  // 192.168.0.100
   EXPECT_EQ(datagrams.front().destination_port, 1510);
@@ -83,7 +83,7 @@ TEST(Capture, ThatIsNoneOrCutIsRefused) {
   const std::string whole = pcap(0xa1b2c3d4, 101, packet());
   EXPECT_EQ(fault(whole.substr(0, whole.size() - 1)), "c: ends within a packet");
   EXPECT_EQ(fault(whole.substr(0, 20)), "c: ends within its header");
-  const std::string text = runtime::read_text_file(kFile);
+  const std::string text = io::read_text_file(kFile);
   EXPECT_EQ(fault(text.substr(0, text.size() - 1)), "c: ends within a block");
 }
 

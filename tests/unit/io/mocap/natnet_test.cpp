@@ -24,7 +24,7 @@ const std::vector<Version> kVersions = {{3, 0}, {3, 1}, {4, 0}, {4, 1}, {4, 2}};
 
 std::vector<CapturedDatagram> traffic() {
   const std::string path = kData + "natnet_3.0_traffic.pcapng";
-  return parse_capture(runtime::read_text_file(path), path);
+  return parse_capture(io::read_text_file(path), path);
 }
 
 // The first message of this kind in the capture.
@@ -37,10 +37,10 @@ CapturedDatagram captured(MessageId id) {
   return {};
 }
 
-runtime::ByteReader payload_of(const std::vector<std::uint8_t>& datagram) {
+io::ByteReader payload_of(const std::vector<std::uint8_t>& datagram) {
   const auto message = parse_message(datagram.data(), datagram.size());
   EXPECT_TRUE(message);
-  return message ? message->payload : runtime::ByteReader(nullptr, 0, true);
+  return message ? message->payload : io::ByteReader(nullptr, 0, true);
 }
 
 packets::Frame two_bodies() {
@@ -67,10 +67,10 @@ TEST(NatNetCapture, IsReadAsTheVendorsClientReadsIt) {
   EXPECT_TRUE(server.multicast);
   EXPECT_EQ(server.group, kMulticastGroup);
 
-  const runtime::CsvTable printed =
-      runtime::load_csv(kData + "natnet_3.0_sample_client.csv",
-                        {"frame", "timestamp_s", "software_latency_ms", "system_latency_ms", "id", "valid",
-                         "x", "y", "z", "qx", "qy", "qz", "qw", "markers", "occluded"});
+  const io::CsvTable printed =
+      io::load_csv(kData + "natnet_3.0_sample_client.csv",
+                   {"frame", "timestamp_s", "software_latency_ms", "system_latency_ms", "id", "valid", "x",
+                    "y", "z", "qx", "qy", "qz", "qw", "markers", "occluded"});
   std::map<int, std::size_t> row_of;
   for (std::size_t row = 0; row < printed.row_count(); ++row)
     row_of[static_cast<int>(printed.number(row, 0))] = row;

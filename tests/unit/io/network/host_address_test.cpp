@@ -8,7 +8,7 @@
 
 #include "swiftlet/io/network/interfaces.hpp"
 
-namespace swiftlet::runtime::host_address_test {
+namespace swiftlet::io::host_address_test {
 
 TEST(HostAddress, IsANameOrAddressWithOrWithoutPort) {
   for (const char* text : {"lab2", "lab-2.example.org", "10.0.0.7", "10.0.0.7:7412", "lab2:1", "lab2:65535"})
@@ -66,4 +66,4 @@ TEST(DiscoveryServers, AreRefusedIfOneIsMalformed) {
   EXPECT_NE(fault_of_discovery_servers(std::string(256, ';') + "lab1"), "");
 }
 
-}  // namespace swiftlet::runtime::host_address_test
+}  // namespace swiftlet::io::host_address_test

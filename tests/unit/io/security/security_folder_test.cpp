@@ -13,7 +13,7 @@
 #include "swiftlet/io/text_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::runtime::security_folder_test {
+namespace swiftlet::io::security_folder_test {
 
 namespace fs = std::filesystem;
 
@@ -48,7 +48,7 @@ class SecurityFolderTest : public testing::Test {
     return {read_text_file(folder.certificate(role)), read_text_file(folder.private_key(role))};
   }
   static bool is_revoked(const SecurityFolder& folder, const std::string& certificate) {
-    return runtime::is_revoked(certificate, read_text_file(folder.revoked()));
+    return io::is_revoked(certificate, read_text_file(folder.revoked()));
   }
   // What the function throws, without the names of folders; "" if nothing.
   template <class Function>
@@ -268,4 +268,4 @@ TEST_F(SecurityFolderTest, NamesTheAuthorityThatHasExpired) {
   EXPECT_EQ(refusal([&] { renew_identity(folder, "control", 30); }), sentence);
 }
 
-}  // namespace swiftlet::runtime::security_folder_test
+}  // namespace swiftlet::io::security_folder_test

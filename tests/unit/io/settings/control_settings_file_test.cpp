@@ -8,7 +8,7 @@
 #include "tests/support/paths.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::runtime::control_settings_file_test {
+namespace swiftlet::io::control_settings_file_test {
 
 using control::AttitudeModel;
 using control::ControlSettings;
@@ -392,4 +392,4 @@ const Fault kFaults[] = {
 
 INSTANTIATE_TEST_SUITE_P(Control, SettingsFaults, testing::ValuesIn(kFaults));
 
-}  // namespace swiftlet::runtime::control_settings_file_test
+}  // namespace swiftlet::io::control_settings_file_test

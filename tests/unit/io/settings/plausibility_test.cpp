@@ -10,18 +10,18 @@
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "tests/support/paths.hpp"
 
-namespace swiftlet::plant::plausibility_test {
+namespace swiftlet::io::plausibility_test {
 
-Vehicle shipped(const std::string& name) {
-  return runtime::load_vehicle(tests::in_source("config/vehicles/") + name + ".yaml");
+plant::Vehicle shipped(const std::string& name) {
+  return io::load_vehicle(tests::in_source("config/vehicles/") + name + ".yaml");
 }
 
 // A vehicle of 10 kg with arms of half a metre.
-Vehicle large() {
-  Vehicle vehicle = shipped("kaylion");
+plant::Vehicle large() {
+  plant::Vehicle vehicle = shipped("kaylion");
   vehicle.mass_kg = 10.0;
   vehicle.inertia = Eigen::Vector3d(0.3, 0.3, 0.5).asDiagonal();
-  for (RotorMount& mount : vehicle.rotors) mount.position_frd *= 0.5 / 0.0695;
+  for (plant::RotorMount& mount : vehicle.rotors) mount.position_frd *= 0.5 / 0.0695;
   vehicle.rotor = {3e-4, 8e-6};
   vehicle.motor.k2 = 0.03;
   vehicle.motor.k3 = 1e-5;
@@ -35,16 +35,16 @@ Vehicle large() {
 }
 
 TEST(Plausibility, HoldsForVehiclesOfAllSizes) {
-  for (const Vehicle& vehicle : {shipped("kaylion"), shipped("crazyflie2"), large()}) {
-    EXPECT_TRUE(validate(vehicle).empty()) << vehicle.mass_kg;
-    for (const Violation& violation : implausible(vehicle))
+  for (const plant::Vehicle& vehicle : {shipped("kaylion"), shipped("crazyflie2"), large()}) {
+    EXPECT_TRUE(plant::validate(vehicle).empty()) << vehicle.mass_kg;
+    for (const plant::Violation& violation : plant::implausible(vehicle))
       ADD_FAILURE() << violation.key << violation.message;
   }
 }
 
 struct Mistake {
   const char* name;
-  std::function<void(Vehicle&)> make;
+  std::function<void(plant::Vehicle&)> make;
   const char* key;
   const char* suspicion;
 };
@@ -53,10 +53,10 @@ void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; 
 class Mistakes : public testing::TestWithParam<Mistake> {};
 
 TEST_P(Mistakes, AreSuspectedByTheirUnit) {
-  for (const Vehicle& right : {shipped("kaylion"), shipped("crazyflie2"), large()}) {
-    Vehicle vehicle = right;
+  for (const plant::Vehicle& right : {shipped("kaylion"), shipped("crazyflie2"), large()}) {
+    plant::Vehicle vehicle = right;
     GetParam().make(vehicle);
-    const std::vector<Violation> found = implausible(vehicle);
+    const std::vector<plant::Violation> found = plant::implausible(vehicle);
     ASSERT_FALSE(found.empty());
     EXPECT_EQ(found.front().key, GetParam().key);
     EXPECT_NE(found.front().message.find(GetParam().suspicion), std::string::npos) << found.front().message;
@@ -65,26 +65,26 @@ TEST_P(Mistakes, AreSuspectedByTheirUnit) {
 
 const Mistake kMistakes[] = {
     {"ArmsInMillimetres",
-     [](Vehicle& v) {
-       for (RotorMount& mount : v.rotors) mount.position_frd *= 1e3;
+     [](plant::Vehicle& v) {
+       for (plant::RotorMount& mount : v.rotors) mount.position_frd *= 1e3;
      },
      "rotors[0].position_frd", "; mm entered as m?"},
-    {"InertiaInGramsTimesSquareCentimetres", [](Vehicle& v) { v.inertia *= 1e7; }, "inertia",
+    {"InertiaInGramsTimesSquareCentimetres", [](plant::Vehicle& v) { v.inertia *= 1e7; }, "inertia",
      "; g*cm^2 entered as kg*m^2?"},
-    {"TimeConstantInMilliseconds", [](Vehicle& v) { v.motor.time_constant_s *= 1e3; }, "motor.time_constant",
-     "; ms entered as s?"},
-    {"CapacityInMilliamperes", [](Vehicle& v) { v.battery.capacity_ah *= 1e3; }, "battery.capacity",
+    {"TimeConstantInMilliseconds", [](plant::Vehicle& v) { v.motor.time_constant_s *= 1e3; },
+     "motor.time_constant", "; ms entered as s?"},
+    {"CapacityInMilliamperes", [](plant::Vehicle& v) { v.battery.capacity_ah *= 1e3; }, "battery.capacity",
      "; mA*h entered as A*h?"},
-    {"CurrentInMilliamperes", [](Vehicle& v) { v.battery.electronics_current_a *= 1e3; },
+    {"CurrentInMilliamperes", [](plant::Vehicle& v) { v.battery.electronics_current_a *= 1e3; },
      "battery.electronics_current", "; mA entered as A?"},
-    {"ResistanceInMilliohms", [](Vehicle& v) { v.battery.internal_resistance_ohm *= 1e3; },
+    {"ResistanceInMilliohms", [](plant::Vehicle& v) { v.battery.internal_resistance_ohm *= 1e3; },
      "battery.internal_resistance", "; mohm entered as ohm?"},
-    {"TorqueInNewtonMillimetres", [](Vehicle& v) { v.rotor.torque *= 1e3; }, "rotor.torque_factor",
+    {"TorqueInNewtonMillimetres", [](plant::Vehicle& v) { v.rotor.torque *= 1e3; }, "rotor.torque_factor",
      "; N*mm*s^2 entered as N*m*s^2?"},
-    {"ThrustInGrams", [](Vehicle& v) { v.rotor.thrust *= 1e3 / kGravity; }, "rotor.thrust_factor",
-     "; gf*s^2 entered as N*s^2?"},
+    {"ThrustInGrams", [](plant::Vehicle& v) { v.rotor.thrust *= 1e3 / plant::kGravity; },
+     "rotor.thrust_factor", "; gf*s^2 entered as N*s^2?"},
     {"VoltageInMillivolts",
-     [](Vehicle& v) {
+     [](plant::Vehicle& v) {
        for (double& voltage : v.battery.open_circuit_voltage_v) voltage *= 1e3;
      },
      "battery.open_circuit.voltage", "; mV entered as V?"},
@@ -93,22 +93,22 @@ INSTANTIATE_TEST_SUITE_P(Units, Mistakes, testing::ValuesIn(kMistakes),
                          [](const auto& mistake) { return mistake.param.name; });
 
 TEST(Plausibility, SuspectsGramsOfAMicroVehicle) {
-  Vehicle vehicle = shipped("crazyflie2");
+  plant::Vehicle vehicle = shipped("crazyflie2");
   vehicle.mass_kg = 27.0;
-  ASSERT_FALSE(implausible(vehicle).empty());
+  ASSERT_FALSE(plant::implausible(vehicle).empty());
   EXPECT_EQ(
-      implausible(vehicle).front().message,
+      plant::implausible(vehicle).front().message,
       "is 27 kg, which is implausible: the mass over the longest arm cubed, in kg/m^3, is 277390, must be "
       "between 0.5 and 50000; g entered as kg?");
 }
 
 TEST(Plausibility, LeavesInvalidValuesToTheOtherRules) {
-  Vehicle vehicle = shipped("kaylion");
+  plant::Vehicle vehicle = shipped("kaylion");
   vehicle.mass_kg = std::numeric_limits<double>::quiet_NaN();
   vehicle.rotor.thrust = -1.0;
   vehicle.motor.time_constant_s = 0.0;
-  EXPECT_TRUE(implausible(vehicle).empty());
-  EXPECT_TRUE(implausible(Vehicle()).empty());
+  EXPECT_TRUE(plant::implausible(vehicle).empty());
+  EXPECT_TRUE(plant::implausible(plant::Vehicle()).empty());
 }
 
-}  // namespace swiftlet::plant::plausibility_test
+}  // namespace swiftlet::io::plausibility_test

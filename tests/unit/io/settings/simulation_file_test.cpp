@@ -6,7 +6,7 @@
 #include "tests/support/paths.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::runtime::simulation_file_test {
+namespace swiftlet::io::simulation_file_test {
 
 using plant::SimulationSettings;
 using tests::refusal;
@@ -257,4 +257,4 @@ TEST(SimulationFile, NamesAMissingFile) {
             std::string::npos);
 }
 
-}  // namespace swiftlet::runtime::simulation_file_test
+}  // namespace swiftlet::io::simulation_file_test

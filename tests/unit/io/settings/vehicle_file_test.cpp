@@ -11,7 +11,7 @@
 #include "tests/support/paths.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::runtime::vehicle_file_test {
+namespace swiftlet::io::vehicle_file_test {
 
 using plant::Vehicle;
 using tests::refusal;
@@ -225,4 +225,4 @@ TEST(VehicleFile, IgnoresCommentsAndBlankLines) {
   EXPECT_EQ(numbers(parse_vehicle(flow, "v.yaml")), numbers(parse_vehicle(kaylion_text(), "v.yaml")));
 }
 
-}  // namespace swiftlet::runtime::vehicle_file_test
+}  // namespace swiftlet::io::vehicle_file_test

@@ -7,7 +7,7 @@
 #include "tests/support/paths.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 
-namespace swiftlet::runtime::vehicle_writer_test {
+namespace swiftlet::io::vehicle_writer_test {
 
 using tests::refusal;
 
@@ -86,4 +86,4 @@ TEST(VehicleUncertaintySection, RefusesInvalidEntries) {
   EXPECT_NE(refused(bad).find("value: is 1.5, must be"), std::string::npos);
 }
 
-}  // namespace swiftlet::runtime::vehicle_writer_test
+}  // namespace swiftlet::io::vehicle_writer_test

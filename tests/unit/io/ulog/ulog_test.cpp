@@ -80,7 +80,7 @@ TEST(Ulog, AppendedDataIsReadBehindAMessageThatWasCutOff) {
       Log(with_appended_at(whole.bytes() + more.bytes().substr(begin), whole.bytes().size()), "a.ulg")
           .ends_early());
   EXPECT_TRUE(Log(with_appended_at(cut, cut.size() + 100), "a.ulg").ends_early()) << "it was lost itself";
-  EXPECT_THROW(Log(with_appended_at(bytes, 20), "a.ulg"), runtime::ConfigError) << "within the flags";
+  EXPECT_THROW(Log(with_appended_at(bytes, 20), "a.ulg"), io::ConfigError) << "within the flags";
 }
 
 TEST(Ulog, PaddingHasItsPlaceAndIsNotLoggedAtTheEnd) {
@@ -98,7 +98,7 @@ TEST(Ulog, PaddingHasItsPlaceAndIsNotLoggedAtTheEnd) {
 std::string fault_of(const std::string& bytes, const std::string& topic, const std::string& field) {
   try {
     Log(bytes, "a.ulg").read(topic, {field});
-  } catch (const runtime::ConfigError& fault) {
+  } catch (const io::ConfigError& fault) {
     return fault.what();
   }
   return "";
@@ -110,7 +110,7 @@ TEST(Ulog, NamesWhatIsMissing) {
   EXPECT_EQ(fault_of(file.bytes(), "attitude", "q"), "a.ulg: has no messages of topic attitude");
   EXPECT_EQ(fault_of(file.bytes(), "motion", "w"), "a.ulg: topic motion has no number w");
   EXPECT_EQ(fault_of(file.bytes(), "motion", "text[0]"), "a.ulg: topic motion has no number text[0]");
-  EXPECT_THROW(Log(file.bytes(), "a.ulg").parameter("NONE"), runtime::ConfigError);
+  EXPECT_THROW(Log(file.bytes(), "a.ulg").parameter("NONE"), io::ConfigError);
   file.format("loop:uint64_t timestamp;loop inside;");
   file.subscribe(9, "loop");
   file.data(9, 1, "");

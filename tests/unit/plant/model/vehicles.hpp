@@ -12,7 +12,7 @@ namespace swiftlet::tests {
 
 // The vehicle of config/vehicles/kaylion.yaml.
 inline const plant::Vehicle& kaylion() {
-  static const plant::Vehicle vehicle = runtime::load_vehicle(in_source("config/vehicles/kaylion.yaml"));
+  static const plant::Vehicle vehicle = io::load_vehicle(in_source("config/vehicles/kaylion.yaml"));
   return vehicle;
 }
 

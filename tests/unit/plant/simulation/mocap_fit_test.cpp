@@ -23,7 +23,7 @@ struct Frame {
 
 // The recorded session; t, x, y, z, qx, qy, qz, qw below a header.
 std::vector<Frame> recorded() {
-  const std::string text = runtime::read_text_file(in_source("tests/data/optitrack_poses.csv"));
+  const std::string text = io::read_text_file(in_source("tests/data/optitrack_poses.csv"));
   std::vector<Frame> frames;
   for (std::size_t at = text.find('\n') + 1; at < text.size(); at = text.find('\n', at) + 1) {
     Frame frame;
@@ -43,7 +43,7 @@ std::vector<Frame> recorded() {
 // Frames of the model for a vehicle at rest, by arrival time as in the session.
 std::vector<Frame> modelled(double time_s) {
   plant::MocapSettings settings =
-      runtime::load_simulation_settings(in_source("config/simulation/optitrack.yaml")).mocap;
+      io::load_simulation_settings(in_source("config/simulation/optitrack.yaml")).mocap;
   settings.misalignment_rad = 0.0;
   plant::Mocap mocap(settings, 3);
   std::vector<Frame> frames;

@@ -108,7 +108,7 @@ TEST_P(McapWith, ASpoiledByteIsNeverRead) {
         const Reader file(view_of(spoiled), "spoiled", access);
         known = !file.finished() || !file.damages().empty();
         messages = messages_of(file);
-      } catch (const runtime::ConfigError&) {
+      } catch (const io::ConfigError&) {
         known = true;
       }
       EXPECT_TRUE(known || messages == first_messages(kCount)) << "byte " << i;
@@ -236,7 +236,7 @@ TEST_F(McapTest, ATopicOfTwoTypesIsRefused) {
     file.close();
     try {
       TopicDecoder(Reader(path), "/kl1/a");
-    } catch (const runtime::ConfigError& fault) {
+    } catch (const io::ConfigError& fault) {
       return fault.what();
     }
     return "";

@@ -15,7 +15,7 @@
 #include "tests/support/eventually.hpp"
 #include "tests/support/private_domain.hpp"
 
-namespace swiftlet::comms::clock_client_test {
+namespace swiftlet::clocks::clock_client_test {
 
 using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
@@ -28,9 +28,9 @@ std::int64_t own_ns() {
 
 class Clocks : public testing::Test {
  protected:
-  const DomainLock lock_;
-  Node vehicle_{swiftlet::tests::settings_of("plant", lock_)};
-  Node asking_{swiftlet::tests::settings_of("mocap", lock_)};
+  const dds::DomainLock lock_;
+  dds::Node vehicle_{swiftlet::tests::settings_of("plant", lock_)};
+  dds::Node asking_{swiftlet::tests::settings_of("mocap", lock_)};
 };
 
 TEST_F(Clocks, AreTranslated) {
@@ -48,10 +48,10 @@ TEST_F(Clocks, AreTranslated) {
 // GIVEN a stranger that asks with the number of the client, and with the highest sequence number, before each of its
 // requests is answered THEN the client still takes the answers to its own.
 TEST_F(Clocks, AreTranslatedAlthoughAStrangerAsksInTheNameOfTheClient) {
-  auto replies = vehicle_.publish(topics::kClockReply);
-  const auto requests =
-      vehicle_.subscribe<msg::ClockRequest>(topics::kClockRequest, [&](const msg::ClockRequest& request) {
-        msg::ClockReply reply;
+  auto replies = vehicle_.publish(messages::topics::kClockReply);
+  const auto requests = vehicle_.subscribe<messages::msg::ClockRequest>(
+      messages::topics::kClockRequest, [&](const messages::msg::ClockRequest& request) {
+        messages::msg::ClockReply reply;
         reply.client(request.client());
         reply.sent_ns(request.sent_ns());
         reply.received_ns(own_ns() + kOffset_ns);
@@ -75,11 +75,11 @@ TEST_F(Clocks, AnswerWhileTheyRun) {
     const std::int64_t reading = ++readings;
     return reading == 0 ? std::nullopt : std::optional(reading);
   });
-  Inbox<msg::ClockReply> replies;
-  const Subscription subscription = asking_.subscribe<msg::ClockReply>(
-      topics::kClockReply, [&](const msg::ClockReply& reply) { replies.put(reply); });
-  auto requests = asking_.publish(topics::kClockRequest);
-  msg::ClockRequest request;
+  Inbox<messages::msg::ClockReply> replies;
+  const dds::Subscription subscription = asking_.subscribe<messages::msg::ClockReply>(
+      messages::topics::kClockReply, [&](const messages::msg::ClockReply& reply) { replies.put(reply); });
+  auto requests = asking_.publish(messages::topics::kClockRequest);
+  messages::msg::ClockRequest request;
   request.client(7);
   request.sent_ns(42);
   ASSERT_TRUE(eventually([&] {
@@ -87,7 +87,7 @@ TEST_F(Clocks, AnswerWhileTheyRun) {
     requests.publish(request);
     return replies.size() > 0;
   }));
-  const msg::ClockReply reply = replies.items().front();
+  const messages::msg::ClockReply reply = replies.items().front();
   EXPECT_EQ(reply.client(), 7U);
   EXPECT_GT(reply.sequence_number(), 1U);
   EXPECT_EQ(reply.sent_ns(), 42);
@@ -95,4 +95,4 @@ TEST_F(Clocks, AnswerWhileTheyRun) {
   EXPECT_GT(reply.received_ns(), 0);
 }
 
-}  // namespace swiftlet::comms::clock_client_test
+}  // namespace swiftlet::clocks::clock_client_test

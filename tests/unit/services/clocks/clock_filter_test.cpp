@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::comms::clock_filter_test {
+namespace swiftlet::clocks::clock_filter_test {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kS = 1'000'000'000;
@@ -95,7 +95,7 @@ TEST_P(ClockFilterTest, TrustsTheShortestRoundTripsWhereOneDirectionQueues) {
   std::int64_t at_ns = kStartNs;
   for (int i = 0; i < kExchanges; ++i, at_ns += kPeriodNs) {
     const ClockExchange exchange = network_.exchange(at_ns);
-    sum_ns += static_cast<double>(comms::offset_ns(exchange) - kS);
+    sum_ns += static_cast<double>(clocks::offset_ns(exchange) - kS);
     ASSERT_EQ(filter_.add(exchange), nullptr);
   }
   EXPECT_LT(error_ns(at_ns), 0.2 * sum_ns / kExchanges);
@@ -210,4 +210,4 @@ TEST(ClockFilter, RefusesAnExchangeThatIsNotNewer) {
   EXPECT_EQ(filter.estimate()->measured_ns, 2250);
 }
 
-}  // namespace swiftlet::comms::clock_filter_test
+}  // namespace swiftlet::clocks::clock_filter_test

@@ -14,16 +14,16 @@
 
 namespace swiftlet::services {
 
-namespace msg = comms::msg;
-namespace Command_Constants = comms::msg::Command_Constants;
+namespace msg = messages::msg;
+namespace Command_Constants = messages::msg::Command_Constants;
 
 constexpr std::uint64_t kClient = 77;
 
 class CommandServerTest : public testing::Test {
  protected:
   CommandServerTest()
-      : vehicle_(runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"))),
-        settings_(runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml"))),
+      : vehicle_(io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"))),
+        settings_(io::load_control_settings(tests::in_source("config/control/motor_lag.yaml"))),
         loop_(vehicle_, settings_),
         command_server_(loop_, vehicle_, settings_, GainDesigner(vehicle_, settings_), wake_) {}
 
@@ -77,7 +77,7 @@ class CommandServerTest : public testing::Test {
     mission.items.push_back({control::MissionItemKind::kTakeoff, {0.0, 0.0, -1.0}, 0.0, true, 0.5, 0.0});
     mission.items.push_back({control::MissionItemKind::kWaypoint, {x, 0.0, -1.0}, 0.0, true, 0.5, 0.0});
     mission.items.push_back({control::MissionItemKind::kLand, {0.0, 0.0, 0.0}, 0.0, true, 0.5, 0.0});
-    msg::Mission message = comms::to_message(mission);
+    msg::Mission message = messages::to_message(mission);
     message.client(kClient);
     return message;
   }
@@ -88,7 +88,7 @@ class CommandServerTest : public testing::Test {
     settings.name = "soft";
     settings.position.x.omega_n = omega_n;
     settings.position.x.zeta = zeta;
-    msg::ControlSettings message = comms::to_message(control::settings_request(settings, {}, 1.0));
+    msg::ControlSettings message = messages::to_message(control::settings_request(settings, {}, 1.0));
     message.client(kClient);
     message.id(id);
     return message;

@@ -144,7 +144,7 @@ TEST_F(CommandServerTest, ARequestClaimsItsKeyBeforeItIsChecked) {
   };
   for (std::uint64_t id = 1; id <= 5; ++id) {  // the threads may be delayed now and then
     lengthy.id = id;
-    msg::Mission mission = comms::to_message(lengthy);
+    msg::Mission mission = messages::to_message(lengthy);
     mission.client(kClient);
     std::atomic<bool> begins{false};
     std::thread upload([&] {
@@ -202,7 +202,7 @@ TEST_F(CommandServerTest, RefusesPathsBeyondItsRotors) {
   control::Trajectory spin;
   spin.id = 1;
   spin.segments = {control::minimum_jerk({0, 0, -1}, 0.0, {0, 0, -1}, 1.0, 0.1)};
-  msg::Trajectory message = comms::to_message(spin);
+  msg::Trajectory message = messages::to_message(spin);
   message.client(kClient);
   command_server_.on_trajectory(message);
   control::Mission around;
@@ -212,7 +212,7 @@ TEST_F(CommandServerTest, RefusesPathsBeyondItsRotors) {
       {control::MissionItemKind::kTakeoff, {0, 0, -1}, 0.0, true, 0.5, 0.0},
       {control::MissionItemKind::kTrajectory, {0, 0, 0}, 0.0, false, 0.5, 0.0, 0, 1},
   };
-  msg::Mission mission = comms::to_message(around);
+  msg::Mission mission = messages::to_message(around);
   mission.client(kClient);
   command_server_.on_mission(mission);
   const std::vector<RequestResult> answers = command_server_.collect();

@@ -24,8 +24,8 @@
 
 namespace swiftlet::services::control_service_test {
 
-namespace msg = comms::msg;
-namespace topics = comms::topics;
+namespace msg = messages::msg;
+namespace topics = messages::topics;
 using swiftlet::tests::eventually;
 
 std::vector<pid_t> realtime_threads() {
@@ -61,8 +61,8 @@ class RealtimeService : public testing::Test {
     runtime::RealtimeSettings realtime;
     realtime.priority = 10;
     service_ = std::make_unique<ControlService>(
-        runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")),
-        runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml")), 0, control_node_,
+        io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")),
+        io::load_control_settings(tests::in_source("config/control/motor_lag.yaml")), 0, control_node_,
         realtime, runtime::Clock::kRealtime);
     telemetry_ = std::thread([this] { service_->run(stop_); });
   }
@@ -73,7 +73,7 @@ class RealtimeService : public testing::Test {
     imu.stamp_ns(static_cast<std::int64_t>(sequence_) * 2'000'000);
     imu.sequence_number(sequence_);
     imu.specific_force_frd({0.0, 0.0, -9.81});
-    imu.obeyed(comms::to_message(plant::ObeyedCommand{true, false, 0, 0}));
+    imu.obeyed(messages::to_message(plant::ObeyedCommand{true, false, 0, 0}));
     imu_.publish(imu);
     last_imu_ = imu;
     msg::MocapPose pose;
@@ -93,16 +93,16 @@ class RealtimeService : public testing::Test {
   }
   void forget_reported() { reported_ = -1; }
 
-  comms::DomainLock lock_;
-  comms::Node vehicle_node_{tests::settings_of("plant", lock_)};
-  comms::Node control_node_{tests::settings_of("control", lock_)};
+  dds::DomainLock lock_;
+  dds::Node vehicle_node_{tests::settings_of("plant", lock_)};
+  dds::Node control_node_{tests::settings_of("control", lock_)};
   std::atomic<int> reported_{-1};
-  comms::Subscription status_ = vehicle_node_.subscribe<msg::ControlStatus>(
+  dds::Subscription status_ = vehicle_node_.subscribe<msg::ControlStatus>(
       topics::kControlStatus, [this](const msg::ControlStatus& status) {
         reported_ = static_cast<int>(status.realtime_scheduling());
       });
-  comms::Publisher<msg::Imu> imu_ = vehicle_node_.publish(topics::kImu);
-  comms::Publisher<msg::MocapPose> pose_ = vehicle_node_.publish(topics::kMocapPose);
+  dds::Publisher<msg::Imu> imu_ = vehicle_node_.publish(topics::kImu);
+  dds::Publisher<msg::MocapPose> pose_ = vehicle_node_.publish(topics::kMocapPose);
   std::uint64_t sequence_ = 0;
   msg::Imu last_imu_;
   std::atomic<bool> stop_{false};
@@ -158,7 +158,7 @@ TEST_F(RealtimeService, AVehicleOfAnotherWireVersionIsNotArmed) {
   auto infos = vehicle_node_.publish(topics::kVehicleInfo);
   auto commands = vehicle_node_.publish(topics::kCommand);
   msg::VehicleInfo info;
-  info.wire_version(comms::kWireVersion + 1);
+  info.wire_version(messages::kWireVersion + 1);
   infos.publish(info);
   ASSERT_TRUE(eventually([&] { return commands.matched() == 1 && infos.matched() == 1; }));
   ASSERT_TRUE(infos.wait_until_received(std::chrono::seconds(10)));
@@ -176,7 +176,7 @@ TEST_F(RealtimeService, AVehicleOfAnotherWireVersionIsNotArmed) {
   }));
   for (const msg::CommandAck& answer : answers.items()) EXPECT_FALSE(answer.accepted());
 
-  info.wire_version(comms::kWireVersion);
+  info.wire_version(messages::kWireVersion);
   infos.publish(info);
   EXPECT_TRUE(eventually([&] {
     send_samples();

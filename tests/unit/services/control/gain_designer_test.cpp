@@ -19,17 +19,17 @@ class GainDesignerTest : public testing::Test {
  protected:
   // The request for the settings of the file, after a replacement in its text.
   control::SettingsRequest request(const std::string& old_text = "", const std::string& new_text = "") const {
-    std::string text = runtime::read_text_file(kFile);
+    std::string text = io::read_text_file(kFile);
     if (!old_text.empty()) text.replace(text.find(old_text), old_text.size(), new_text);
-    return control::settings_request(runtime::parse_control_settings(text, "mine.yaml"),
-                                     runtime::parse_fixed_settings(text, "mine.yaml"), 2.0);
+    return control::settings_request(io::parse_control_settings(text, "mine.yaml"),
+                                     io::parse_fixed_settings(text, "mine.yaml"), 2.0);
   }
   std::string refusal(const control::SettingsRequest& asked) {
     return designer_.design(asked, designer_.initial(), change_).reason;
   }
 
-  GainDesigner designer_{runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")),
-                         runtime::load_control_settings(kFile), runtime::load_fixed_settings(kFile)};
+  GainDesigner designer_{io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")),
+                         io::load_control_settings(kFile), io::load_fixed_settings(kFile)};
   control::GainChange change_;
 };
 

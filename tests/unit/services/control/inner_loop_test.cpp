@@ -43,15 +43,15 @@ class StandbyLoop : public testing::Test {
       loop_.step(imu_, imu_.stamp_ns, Role::kStandby, kTerm);
       loop_.finish(imu_.stamp_ns);
     }
-    comms::ControllerReport report;
+    messages::ControllerReport report;
     loop_.report(report);
     return report.ready;
   }
 
   plant::ImuSample imu_;
   plant::PoseSample pose_;
-  InnerLoop loop_{runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")),
-                  runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml"))};
+  InnerLoop loop_{io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml")),
+                  io::load_control_settings(tests::in_source("config/control/motor_lag.yaml"))};
 };
 
 TEST_F(StandbyLoop, IsReadyWhenItsEstimateHasSettled) {

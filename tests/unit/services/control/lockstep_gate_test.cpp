@@ -8,7 +8,7 @@ using Stream = LockstepGate::Stream;
 
 VehicleSample imu(std::uint64_t number, std::uint64_t pose, std::uint64_t battery,
                   std::uint64_t rotor_speeds) {
-  comms::msg::Imu message;
+  messages::msg::Imu message;
   message.sequence_number(number);
   message.lockstep().mocap_pose(pose);
   message.lockstep().battery(battery);

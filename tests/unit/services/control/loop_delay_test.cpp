@@ -67,8 +67,8 @@ TEST(LoopDelay, IgnoresTheCommandThatWasObeyedBeforeTheFirstSample) {
 class DelayMargin : public testing::Test {
  protected:
   const control::ControlSettings settings_ =
-      runtime::load_control_settings(tests::in_source("config/control/motor_lag.yaml"));
-  const plant::Vehicle vehicle_ = runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
+      io::load_control_settings(tests::in_source("config/control/motor_lag.yaml"));
+  const plant::Vehicle vehicle_ = io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
   const control::ControlDesign design_ = control::design(vehicle_, settings_);
   const control::ControlGains gains_ = control::control_gains(design_, settings_);
   const control::ObservedRotors rotors_ = control::observed_rotors(design_.rotor_lag_s, settings_);

@@ -22,11 +22,11 @@ class StandbyCommandServerTest : public CommandServerTest {
 
   // Passes the report of the active controller to the standby.
   void pass_state_to_standby(std::uint32_t term = kTerm) {
-    comms::ControllerReport report;
+    messages::ControllerReport report;
     loop_.report(report);
     ASSERT_TRUE(report.active);
-    comms::ControllerReport received;
-    ASSERT_FALSE(comms::from_message(comms::to_message(report), received));
+    messages::ControllerReport received;
+    ASSERT_FALSE(messages::from_message(messages::to_message(report), received));
     FailoverState failover_state;
     failover_state.term = term;
     failover_state.flight = received.flight;
@@ -58,7 +58,7 @@ class StandbyCommandServerTest : public CommandServerTest {
     }
   }
   control::SupervisorState standby_state() {
-    comms::ControllerReport report;
+    messages::ControllerReport report;
     standby_loop_.step(last_imu_, 0, Role::kActive);
     standby_loop_.report(report);
     return report.flight.supervisor;
@@ -150,7 +150,7 @@ TEST_F(StandbyCommandServerTest, ContinuesAMissionKnownFromItsUpload) {
     EXPECT_EQ(followed.rotor_state, flown.rotor_state);
   }
   ASSERT_EQ(mode(), control::Mode::kMission);
-  comms::ControllerReport active;
+  messages::ControllerReport active;
   loop_.report(active);
   const control::SupervisorState state = standby_state();
   EXPECT_EQ(state.mode, control::Mode::kMission);

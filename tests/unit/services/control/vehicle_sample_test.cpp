@@ -12,9 +12,9 @@ namespace swiftlet::services::vehicle_sample_test {
 constexpr std::int64_t kSecond = 1'000'000'000;
 
 TEST(VehicleSample, HasWhatTheMessagesShare) {
-  comms::msg::VehicleOdometry message = comms::fixtures::example<comms::msg::VehicleOdometry>();
+  messages::msg::VehicleOdometry message = messages::fixtures::example<messages::msg::VehicleOdometry>();
   message.lockstep().battery(4);
-  message.obeyed(comms::to_message(plant::ObeyedCommand{true, true, 7, 99}));
+  message.obeyed(messages::to_message(plant::ObeyedCommand{true, true, 7, 99}));
   const VehicleSample sample = vehicle_sample(message);
   EXPECT_EQ(sample.stamp_ns(), message.stamp_ns());
   EXPECT_EQ(sample.sequence(), message.sequence_number());
@@ -24,7 +24,7 @@ TEST(VehicleSample, HasWhatTheMessagesShare) {
 }
 
 TEST(VehicleSample, AnInvalidMessageIsNotFinite) {
-  comms::msg::VehicleOdometry message = comms::fixtures::example<comms::msg::VehicleOdometry>();
+  messages::msg::VehicleOdometry message = messages::fixtures::example<messages::msg::VehicleOdometry>();
   message.q_ned_from_frd({0.0, 0.0, 0.0, 0.0});
   const VehicleSample sample = vehicle_sample(message);
   EXPECT_EQ(sample.stamp_ns(), message.stamp_ns());

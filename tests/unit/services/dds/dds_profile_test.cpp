@@ -10,7 +10,7 @@
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::comms::dds_profile_test {
+namespace swiftlet::dds::dds_profile_test {
 
 // Fast DDS keeps the profiles of all files that it has read.
 std::string unique_name() {
@@ -46,7 +46,7 @@ class DdsProfiles : public testing::Test {
     try {
       const Node node(settings_with(folder_.write(name, text)));
       return "accepted";
-    } catch (const runtime::ConfigError& error) {
+    } catch (const io::ConfigError& error) {
       const std::string prefix = (folder_.path() / name).string() + ":";
       const std::string what = error.what();
       return what.rfind(prefix, 0) == 0 ? what.substr(prefix.size()) : what;
@@ -103,7 +103,7 @@ TEST_F(DdsProfiles, AreRefusedIfBroken) {
   eprosima::fastdds::dds::Log::Flush();
   const std::string errors = testing::internal::GetCapturedStderr();
   EXPECT_NE(errors.find("sendSocketBufferSize"), std::string::npos) << errors;
-  EXPECT_THROW(Node(settings_with("/no/such/profile.xml")), runtime::ConfigError);
+  EXPECT_THROW(Node(settings_with("/no/such/profile.xml")), io::ConfigError);
 }
 
 // What Swiftlet sets itself is set over the profile.
@@ -125,4 +125,4 @@ TEST_F(DdsProfiles, DoNotChangeWhatSwiftletSets) {
   there.on_peer({});
 }
 
-}  // namespace swiftlet::comms::dds_profile_test
+}  // namespace swiftlet::dds::dds_profile_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/log_text.hpp"
 
-namespace swiftlet::comms::limited_log_test {
+namespace swiftlet::dds::limited_log_test {
 
 using namespace std::chrono_literals;
 
@@ -37,4 +37,4 @@ TEST(LimitedLog, WritesFewLinesInAPeriod) {
   EXPECT_EQ(text.lines(), "last\n");
 }
 
-}  // namespace swiftlet::comms::limited_log_test
+}  // namespace swiftlet::dds::limited_log_test

@@ -9,7 +9,7 @@
 #include "swiftlet/services/dds/node_options.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::comms::network_file_test {
+namespace swiftlet::dds::network_file_test {
 
 NodeSettings applied(const std::string& text, NodeSettings settings = {}) {
   apply_network_file(text, "/etc/swiftlet/network.yaml", settings);
@@ -20,7 +20,7 @@ std::string refusal(const std::string& text) {
   try {
     applied(text);
     return "accepted";
-  } catch (const runtime::ConfigError& error) {
+  } catch (const io::ConfigError& error) {
     return error.what();
   }
 }
@@ -39,7 +39,7 @@ TEST(NetworkFile, SetsWhatItHas) {
 
 TEST(NetworkFile, NamesAValidNetworkKey) {
   const swiftlet::tests::TemporaryFolder folder;
-  runtime::write_network_keys(folder.path() / "lab.key", {runtime::random_network_key()});
+  io::write_network_keys(folder.path() / "lab.key", {io::random_network_key()});
   NodeSettings settings;
   apply_network_file("network_key: lab.key\n", folder.path() / "network.yaml", settings);
   EXPECT_EQ(settings.network_key_file, folder.path() / "lab.key");
@@ -62,7 +62,7 @@ TEST(NetworkFile, NamesWhatIsWrong) {
   EXPECT_EQ(refusal("open_network: true\ninterfaces: [wlan9]\n"),
             file +
                 "2: interfaces[0]: is 'wlan9', must be an interface that is up, by name or IPv4 address: " +
-                runtime::interfaces_text(false));
+                io::interfaces_text(false));
   EXPECT_EQ(refusal("peers: [lab2]\ndiscovery_servers: [lab1]\n"),
             file + "2: discovery_servers: excludes peers");
   for (const std::string key : {"peer", "transport", "localhost_only"}) {
@@ -73,4 +73,4 @@ TEST(NetworkFile, NamesWhatIsWrong) {
   EXPECT_NE(refusal("open_network: yes please\n"), "accepted");
 }
 
-}  // namespace swiftlet::comms::network_file_test
+}  // namespace swiftlet::dds::network_file_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/temporary_folder.hpp"
 
-namespace swiftlet::comms::node_options_test {
+namespace swiftlet::dds::node_options_test {
 
 class NodeOptions : public testing::Test {
  protected:
@@ -114,4 +114,4 @@ TEST_F(NodeOptions, TakeTheProfileOfEitherFastDds) {
   unsetenv("FASTRTPS_DEFAULT_PROFILES_FILE");
 }
 
-}  // namespace swiftlet::comms::node_options_test
+}  // namespace swiftlet::dds::node_options_test

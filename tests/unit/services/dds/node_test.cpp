@@ -27,9 +27,9 @@
 #include "tests/unit/services/dds/steady_sender.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::comms::fixtures::node_test {
+namespace swiftlet::dds::fixtures::node_test {
 
-using swiftlet::comms::DomainLock;
+using swiftlet::dds::DomainLock;
 using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
 using namespace std::chrono_literals;
@@ -43,10 +43,10 @@ NodeSettings settings(const DomainLock& lock, const char* name) {
 
 template <class T>
 struct TopicOf;
-#define SWIFTLET_TOPIC_OF(Name)                                           \
-  template <>                                                             \
-  struct TopicOf<msg::Name> {                                             \
-    static constexpr Topic<msg::Name> topic() { return topics::k##Name; } \
+#define SWIFTLET_TOPIC_OF(Name)                                                                         \
+  template <>                                                                                           \
+  struct TopicOf<messages::msg::Name> {                                                                 \
+    static constexpr messages::Topic<messages::msg::Name> topic() { return messages::topics::k##Name; } \
   };
 SWIFTLET_TOPIC_OF(Imu)
 SWIFTLET_TOPIC_OF(ActuatorCommand)
@@ -99,16 +99,18 @@ TEST(Node, ACallbackThatThrowsEndsItsSubscriptionAlone) {
   std::atomic<int> ill_calls{0};
   Node ill(there, "kl1", [&](const std::string& fault) { faults.put(fault); });
   Node well(there, "kl1");
-  Inbox<msg::Imu> inbox;
-  const auto throws = ill.subscribe<msg::Imu>(topics::kImu, [&](const msg::Imu&) {
-    ++ill_calls;
-    throw std::runtime_error("the step failed");
-  });
-  const auto receives = well.subscribe<msg::Imu>(topics::kImu, [&](const msg::Imu& imu) { inbox.put(imu); });
-  auto publisher = here.publish(topics::kImu);
+  Inbox<messages::msg::Imu> inbox;
+  const auto throws =
+      ill.subscribe<messages::msg::Imu>(messages::topics::kImu, [&](const messages::msg::Imu&) {
+        ++ill_calls;
+        throw std::runtime_error("the step failed");
+      });
+  const auto receives = well.subscribe<messages::msg::Imu>(
+      messages::topics::kImu, [&](const messages::msg::Imu& imu) { inbox.put(imu); });
+  auto publisher = here.publish(messages::topics::kImu);
   ASSERT_TRUE(eventually([&] { return publisher.matched() == 2; }));
   ASSERT_TRUE(eventually([&] {
-    publisher.publish(example<msg::Imu>());
+    publisher.publish(messages::fixtures::example<messages::msg::Imu>());
     return faults.size() > 0 && inbox.size() > 5;
   }));
   EXPECT_EQ(faults.items(), std::vector<std::string>({"the step failed"}));
@@ -121,12 +123,13 @@ TEST(NodeDeathTest, ACallbackThatThrowsEndsTheProcess) {
     const DomainLock lock;
     Node here(settings(lock, "here"));
     Node there(settings(lock, "there"));
-    const auto throws = there.subscribe<msg::Imu>(
-        topics::kImu, [](const msg::Imu&) { throw std::runtime_error("the step failed"); });
-    auto publisher = here.publish(topics::kImu);
+    const auto throws = there.subscribe<messages::msg::Imu>(
+        messages::topics::kImu,
+        [](const messages::msg::Imu&) { throw std::runtime_error("the step failed"); });
+    auto publisher = here.publish(messages::topics::kImu);
     eventually(
         [&] {
-          publisher.publish(example<msg::Imu>());
+          publisher.publish(messages::fixtures::example<messages::msg::Imu>());
           return false;
         },
         20s);
@@ -155,11 +158,14 @@ TEST(Node, NoNameOfAPeerControlsATerminal) {
 template <class T>
 class EachTopic : public testing::Test {};
 using Messages =
-    testing::Types<msg::Imu, msg::ActuatorCommand, msg::RatesSetpoint, msg::AttitudeSetpoint,
-                   msg::TrajectorySetpoint, msg::MocapPose, msg::RotorSpeeds, msg::Setpoint, msg::Battery,
-                   msg::Estimate, msg::Reference, msg::GroundTruth, msg::ControlStatus, msg::MissionStatus,
-                   msg::VehicleInfo, msg::GroundLink, msg::Command, msg::Mission, msg::Trajectory,
-                   msg::CommandAck, msg::ClockRequest, msg::ClockReply, msg::ClockStatus>;
+    testing::Types<messages::msg::Imu, messages::msg::ActuatorCommand, messages::msg::RatesSetpoint,
+                   messages::msg::AttitudeSetpoint, messages::msg::TrajectorySetpoint,
+                   messages::msg::MocapPose, messages::msg::RotorSpeeds, messages::msg::Setpoint,
+                   messages::msg::Battery, messages::msg::Estimate, messages::msg::Reference,
+                   messages::msg::GroundTruth, messages::msg::ControlStatus, messages::msg::MissionStatus,
+                   messages::msg::VehicleInfo, messages::msg::GroundLink, messages::msg::Command,
+                   messages::msg::Mission, messages::msg::Trajectory, messages::msg::CommandAck,
+                   messages::msg::ClockRequest, messages::msg::ClockReply, messages::msg::ClockStatus>;
 TYPED_TEST_SUITE(EachTopic, Messages);
 
 TYPED_TEST(EachTopic, ArrivesUnchanged) {
@@ -172,7 +178,7 @@ TYPED_TEST(EachTopic, ArrivesUnchanged) {
   auto publisher = here.publish(TopicOf<TypeParam>::topic());
   ASSERT_TRUE(eventually([&] { return publisher.matched() == 1 && subscription.matched() == 1; }));
 
-  const TypeParam sent = example<TypeParam>();
+  const TypeParam sent = messages::fixtures::example<TypeParam>();
   ASSERT_TRUE(publisher.publish(sent));
 
   ASSERT_TRUE(inbox.wait_for_count(1));
@@ -183,22 +189,23 @@ TEST(LongMission, ArrivesWhole) {
   const DomainLock lock;
   Node ground(settings(lock, "ground"));
   Node control(settings(lock, "control"));
-  Inbox<msg::Mission> missions;
-  Inbox<msg::Trajectory> trajectories;
-  const auto mission_subscription =
-      control.subscribe<msg::Mission>(topics::kMission, [&](const msg::Mission& m) { missions.put(m); });
-  const auto trajectory_subscription = control.subscribe<msg::Trajectory>(
-      topics::kTrajectory, [&](const msg::Trajectory& t) { trajectories.put(t); });
-  auto mission_publisher = ground.publish(topics::kMission);
-  auto trajectory_publisher = ground.publish(topics::kTrajectory);
+  Inbox<messages::msg::Mission> missions;
+  Inbox<messages::msg::Trajectory> trajectories;
+  const auto mission_subscription = control.subscribe<messages::msg::Mission>(
+      messages::topics::kMission, [&](const messages::msg::Mission& m) { missions.put(m); });
+  const auto trajectory_subscription = control.subscribe<messages::msg::Trajectory>(
+      messages::topics::kTrajectory, [&](const messages::msg::Trajectory& t) { trajectories.put(t); });
+  auto mission_publisher = ground.publish(messages::topics::kMission);
+  auto trajectory_publisher = ground.publish(messages::topics::kTrajectory);
   ASSERT_TRUE(
       eventually([&] { return mission_publisher.matched() == 1 && mission_subscription.matched() == 1; }));
   ASSERT_TRUE(eventually(
       [&] { return trajectory_publisher.matched() == 1 && trajectory_subscription.matched() == 1; }));
 
-  const msg::Mission mission =
-      to_message(fixtures::mission(control::kMaxMissionItems, control::kMaxTrajectorySegments));
-  const msg::Trajectory trajectory = to_message(fixtures::trajectory(control::kMaxTrajectorySegments));
+  const messages::msg::Mission mission = messages::to_message(
+      messages::fixtures::mission(control::kMaxMissionItems, control::kMaxTrajectorySegments));
+  const messages::msg::Trajectory trajectory =
+      messages::to_message(messages::fixtures::trajectory(control::kMaxTrajectorySegments));
   ASSERT_TRUE(mission_publisher.publish(mission));
   ASSERT_TRUE(trajectory_publisher.publish(trajectory));
 
@@ -220,17 +227,17 @@ TEST(RawSubscription, DeliversThePayloadWithStampAndNumber) {
   Node here(settings(lock, "here"));
   Node there(settings(lock, "there"));
   Inbox<Kept> raw;
-  Inbox<msg::Command> converted;
+  Inbox<messages::msg::Command> converted;
   const auto keep = [&](const RawSample& sample) {
     raw.put({{sample.payload, sample.payload + sample.size},
              sample.source_stamp_ns,
              sample.sequence_number,
              sample.writer});
   };
-  const Subscription recorded = there.subscribe_raw<msg::Command>(topics::kCommand, keep);
-  const Subscription used = there.subscribe<msg::Command>(
-      topics::kCommand, [&](const msg::Command& command) { converted.put(command); });
-  Publisher<msg::Command> publisher = here.publish(topics::kCommand);
+  const Subscription recorded = there.subscribe_raw<messages::msg::Command>(messages::topics::kCommand, keep);
+  const Subscription used = there.subscribe<messages::msg::Command>(
+      messages::topics::kCommand, [&](const messages::msg::Command& command) { converted.put(command); });
+  Publisher<messages::msg::Command> publisher = here.publish(messages::topics::kCommand);
   ASSERT_TRUE(eventually([&] { return publisher.matched() == 2; }));
   const auto now_ns = [] {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -238,7 +245,7 @@ TEST(RawSubscription, DeliversThePayloadWithStampAndNumber) {
         .count();
   };
   const std::int64_t before_ns = now_ns();
-  std::vector<msg::Command> sent(3, example<msg::Command>());
+  std::vector<messages::msg::Command> sent(3, messages::fixtures::example<messages::msg::Command>());
   for (std::size_t i = 0; i < sent.size(); ++i) {
     sent[i].id(i + 1);
     ASSERT_TRUE(publisher.publish(sent[i]));
@@ -247,7 +254,7 @@ TEST(RawSubscription, DeliversThePayloadWithStampAndNumber) {
   const std::int64_t after_ns = now_ns();
   for (std::size_t i = 0; i < sent.size(); ++i) {
     const Kept kept = raw.items()[i];
-    EXPECT_EQ(kept.payload, swiftlet::tests::serialized<msg::CommandPubSubType>(sent[i]));
+    EXPECT_EQ(kept.payload, swiftlet::tests::serialized<messages::msg::CommandPubSubType>(sent[i]));
     EXPECT_EQ(kept.sequence_number, raw.items()[0].sequence_number + i);
     EXPECT_EQ(kept.writer, raw.items()[0].writer);
     EXPECT_GE(kept.source_stamp_ns, before_ns - 1000);  // the middleware keeps fractions of 2^-32 s
@@ -261,13 +268,13 @@ TEST(Requests, ArriveInOrder) {
   Node ground(settings(lock, "ground"));
   Node control(settings(lock, "control"));
   Inbox<std::uint64_t> ids;
-  const auto subscription =
-      control.subscribe<msg::Command>(topics::kCommand, [&](const msg::Command& c) { ids.put(c.id()); });
-  auto publisher = ground.publish(topics::kCommand);
+  const auto subscription = control.subscribe<messages::msg::Command>(
+      messages::topics::kCommand, [&](const messages::msg::Command& c) { ids.put(c.id()); });
+  auto publisher = ground.publish(messages::topics::kCommand);
   ASSERT_TRUE(eventually([&] { return publisher.matched() == 1 && subscription.matched() == 1; }));
 
-  constexpr std::uint64_t kCount = std::uint64_t{3} * kKeptRequests;
-  msg::Command command;
+  constexpr std::uint64_t kCount = std::uint64_t{3} * messages::kKeptRequests;
+  messages::msg::Command command;
   for (std::uint64_t id = 1; id <= kCount; ++id) {
     command.id(id);
     ASSERT_TRUE(publisher.publish(command)) << id;
@@ -284,21 +291,24 @@ TEST(LastSample, IsReceivedBeforeItsWriterEnds) {
   Node control(settings(lock, "control"));
   std::promise<void> release;
   Inbox<bool> busy;
-  Inbox<msg::MissionStatus> inbox;
-  const auto blocked = control.subscribe<msg::Battery>(topics::kBattery, [&](const msg::Battery&) {
-    busy.put(true);
-    release.get_future().wait();
-  });
-  const auto subscription = control.subscribe<msg::MissionStatus>(
-      topics::kMissionStatus, [&](const msg::MissionStatus& message) { inbox.put(message); });
-  auto battery = ground.publish(topics::kBattery);
-  auto state = std::make_unique<Publisher<msg::MissionStatus>>(ground.publish(topics::kMissionStatus));
+  Inbox<messages::msg::MissionStatus> inbox;
+  const auto blocked = control.subscribe<messages::msg::Battery>(messages::topics::kBattery,
+                                                                 [&](const messages::msg::Battery&) {
+                                                                   busy.put(true);
+                                                                   release.get_future().wait();
+                                                                 });
+  const auto subscription = control.subscribe<messages::msg::MissionStatus>(
+      messages::topics::kMissionStatus,
+      [&](const messages::msg::MissionStatus& message) { inbox.put(message); });
+  auto battery = ground.publish(messages::topics::kBattery);
+  auto state = std::make_unique<Publisher<messages::msg::MissionStatus>>(
+      ground.publish(messages::topics::kMissionStatus));
   ASSERT_TRUE(eventually([&] { return battery.matched() == 1 && state->matched() == 1; }));
   ASSERT_TRUE(eventually([&] { return blocked.matched() == 1 && subscription.matched() == 1; }));
 
-  battery.publish(example<msg::Battery>());
+  battery.publish(messages::fixtures::example<messages::msg::Battery>());
   ASSERT_TRUE(busy.wait_for_count(1));
-  state->publish(example<msg::MissionStatus>());
+  state->publish(messages::fixtures::example<messages::msg::MissionStatus>());
   EXPECT_FALSE(state->wait_until_received(50ms)) << "the only receive thread is busy";
   release.set_value();
   EXPECT_TRUE(state->wait_until_received(5s));
@@ -309,17 +319,18 @@ TEST(LastSample, IsReceivedBeforeItsWriterEnds) {
 TEST(LatchedTopic, ReachesLateJoiners) {
   const DomainLock lock;
   Node control(settings(lock, "control"));
-  auto publisher = control.publish(topics::kControlStatus);
-  msg::ControlStatus status = example<msg::ControlStatus>();
+  auto publisher = control.publish(messages::topics::kControlStatus);
+  messages::msg::ControlStatus status = messages::fixtures::example<messages::msg::ControlStatus>();
   status.sequence_number(1);
   ASSERT_TRUE(publisher.publish(status));
   status.sequence_number(2);
   ASSERT_TRUE(publisher.publish(status));
 
   Node ground(settings(lock, "ground"));
-  Inbox<msg::ControlStatus> inbox;
-  const auto subscription = ground.subscribe<msg::ControlStatus>(
-      topics::kControlStatus, [&](const msg::ControlStatus& message) { inbox.put(message); });
+  Inbox<messages::msg::ControlStatus> inbox;
+  const auto subscription = ground.subscribe<messages::msg::ControlStatus>(
+      messages::topics::kControlStatus,
+      [&](const messages::msg::ControlStatus& message) { inbox.put(message); });
 
   ASSERT_TRUE(inbox.wait_for_count(1));
   EXPECT_TRUE(inbox.items().front() == status);
@@ -328,17 +339,18 @@ TEST(LatchedTopic, ReachesLateJoiners) {
 TEST(Replies, ReachAReaderThatIsDiscoveredAfterThem) {
   const DomainLock lock;
   Node control(settings(lock, "control"));
-  auto publisher = control.publish(topics::kCommandAck);
-  msg::CommandAck ack;
-  for (std::uint64_t id = 1; id <= std::uint64_t{kKeptReplies} + 3; ++id) {
+  auto publisher = control.publish(messages::topics::kCommandAck);
+  messages::msg::CommandAck ack;
+  for (std::uint64_t id = 1; id <= std::uint64_t{messages::kKeptReplies} + 3; ++id) {
     ack.id(id);
     ASSERT_TRUE(publisher.publish(ack)) << id;
   }
   Node ground(settings(lock, "ground"));
   Inbox<std::uint64_t> ids;
-  const auto subscription = ground.subscribe<msg::CommandAck>(
-      topics::kCommandAck, [&](const msg::CommandAck& message) { ids.put(message.id()); });
-  ASSERT_TRUE(ids.wait_for_count(kKeptReplies));
+  const auto subscription = ground.subscribe<messages::msg::CommandAck>(
+      messages::topics::kCommandAck,
+      [&](const messages::msg::CommandAck& message) { ids.put(message.id()); });
+  ASSERT_TRUE(ids.wait_for_count(messages::kKeptReplies));
   std::uint64_t expected = 3;
   for (const std::uint64_t id : ids.items()) EXPECT_EQ(id, ++expected);
 }
@@ -348,13 +360,13 @@ TEST(Commands, OfAllControllersAreDelivered) {
   const DomainLock lock;
   Node plant(settings(lock, "plant"));
   Inbox<std::uint64_t> received;
-  const auto subscription = plant.subscribe<msg::ActuatorCommand>(
-      topics::kActuatorCommand,
-      [&](const msg::ActuatorCommand& command) { received.put(command.sequence_number()); });
+  const auto subscription = plant.subscribe<messages::msg::ActuatorCommand>(
+      messages::topics::kActuatorCommand,
+      [&](const messages::msg::ActuatorCommand& command) { received.put(command.sequence_number()); });
   Node first(settings(lock, "control"));
   Node second(settings(lock, "control"));
-  auto of_first = first.publish(topics::kActuatorCommand);
-  auto of_second = second.publish(topics::kActuatorCommand);
+  auto of_first = first.publish(messages::topics::kActuatorCommand);
+  auto of_second = second.publish(messages::topics::kActuatorCommand);
   const SteadySender first_sender(of_first, 1);
   const SteadySender second_sender(of_second, 2);
   EXPECT_TRUE(received.wait([](const std::vector<std::uint64_t>& numbers) {
@@ -369,16 +381,16 @@ TEST(Streams, AreHeardByOthersNotByThePublisher) {
   const DomainLock lock;
   Node control(settings(lock, "control"));
   std::atomic<int> own{0};
-  auto states = control.publish(topics::kControllerState);
-  const auto reads =
-      control.subscribe<msg::ControllerState>(topics::kControllerState, [&](const auto&) { ++own; });
+  auto states = control.publish(messages::topics::kControllerState);
+  const auto reads = control.subscribe<messages::msg::ControllerState>(messages::topics::kControllerState,
+                                                                       [&](const auto&) { ++own; });
   const auto is_heard = [&] {
     Node standby(settings(lock, "control"));
     std::atomic<int> heard{0};
-    const auto subscription =
-        standby.subscribe<msg::ControllerState>(topics::kControllerState, [&](const auto&) { ++heard; });
+    const auto subscription = standby.subscribe<messages::msg::ControllerState>(
+        messages::topics::kControllerState, [&](const auto&) { ++heard; });
     return eventually([&] {
-      states.publish(example<msg::ControllerState>());
+      states.publish(messages::fixtures::example<messages::msg::ControllerState>());
       return heard >= 3;
     });
   };
@@ -410,23 +422,23 @@ TEST(Delivery, OneThreadServesAKindOfSamplesOfAllVehicles) {
   };
   std::vector<std::unique_ptr<Node>> nodes;
   std::vector<Subscription> subscriptions;
-  std::vector<Publisher<msg::Imu>> imu;
-  std::vector<Publisher<msg::MocapPose>> poses;
-  std::vector<Publisher<msg::Battery>> batteries;
+  std::vector<Publisher<messages::msg::Imu>> imu;
+  std::vector<Publisher<messages::msg::MocapPose>> poses;
+  std::vector<Publisher<messages::msg::Battery>> batteries;
   int threads_before = 0;
   for (const std::string vehicle : {"kl1", "kl2"}) {
     threads_before = threads_of_this_process();
     Node& reading = *nodes.emplace_back(std::make_unique<Node>(control, vehicle));
     Node& writing = *nodes.emplace_back(std::make_unique<Node>(sensors, vehicle));
-    subscriptions.push_back(reading.subscribe<msg::Imu>(
-        topics::kImu, [&](const auto&) { note(Delivery::kSamples); }, Delivery::kSamples));
-    subscriptions.push_back(reading.subscribe<msg::MocapPose>(
-        topics::kMocapPose, [&](const auto&) { note(Delivery::kSensors); }, Delivery::kSensors));
-    subscriptions.push_back(
-        reading.subscribe<msg::Battery>(topics::kBattery, [&](const auto&) { note(Delivery::kShared); }));
-    imu.push_back(writing.publish(topics::kImu));
-    poses.push_back(writing.publish(topics::kMocapPose));
-    batteries.push_back(writing.publish(topics::kBattery));
+    subscriptions.push_back(reading.subscribe<messages::msg::Imu>(
+        messages::topics::kImu, [&](const auto&) { note(Delivery::kSamples); }, Delivery::kSamples));
+    subscriptions.push_back(reading.subscribe<messages::msg::MocapPose>(
+        messages::topics::kMocapPose, [&](const auto&) { note(Delivery::kSensors); }, Delivery::kSensors));
+    subscriptions.push_back(reading.subscribe<messages::msg::Battery>(
+        messages::topics::kBattery, [&](const auto&) { note(Delivery::kShared); }));
+    imu.push_back(writing.publish(messages::topics::kImu));
+    poses.push_back(writing.publish(messages::topics::kMocapPose));
+    batteries.push_back(writing.publish(messages::topics::kBattery));
   }
   EXPECT_EQ(threads_of_this_process(), threads_before) << "of the second vehicle";
   ASSERT_TRUE(eventually([&] {
@@ -434,9 +446,10 @@ TEST(Delivery, OneThreadServesAKindOfSamplesOfAllVehicles) {
                        [](const auto& one) { return one.matched() == 1; });
   }));
   EXPECT_TRUE(eventually([&] {
-    for (auto& publisher : imu) publisher.publish(example<msg::Imu>());
-    for (auto& publisher : poses) publisher.publish(example<msg::MocapPose>());
-    for (auto& publisher : batteries) publisher.publish(example<msg::Battery>());
+    for (auto& publisher : imu) publisher.publish(messages::fixtures::example<messages::msg::Imu>());
+    for (auto& publisher : poses) publisher.publish(messages::fixtures::example<messages::msg::MocapPose>());
+    for (auto& publisher : batteries)
+      publisher.publish(messages::fixtures::example<messages::msg::Battery>());
     const std::lock_guard<std::mutex> guard(mutex);
     return received[Delivery::kSamples] >= 4 && received[Delivery::kSensors] >= 4 &&
            received[Delivery::kShared] >= 4;
@@ -462,16 +475,17 @@ TEST(Vehicles, AreIsolatedFromEachOther) {
   Inbox<std::string> peers;
   control1.on_peer([&](const PeerEvent& event) { peers.put(event.name); });
   Inbox<std::uint64_t> received;
-  const auto subscription = control1.subscribe<msg::Imu>(
-      topics::kImu, [&](const msg::Imu& imu) { received.put(imu.sequence_number()); });
+  const auto subscription = control1.subscribe<messages::msg::Imu>(
+      messages::topics::kImu, [&](const messages::msg::Imu& imu) { received.put(imu.sequence_number()); });
   Node control2(second);
-  const auto other = control2.subscribe<msg::Imu>(topics::kImu, [](const msg::Imu&) {});
-  auto imu1 = plant1.publish(topics::kImu);
-  auto imu2 = plant2.publish(topics::kImu);
+  const auto other =
+      control2.subscribe<messages::msg::Imu>(messages::topics::kImu, [](const messages::msg::Imu&) {});
+  auto imu1 = plant1.publish(messages::topics::kImu);
+  auto imu2 = plant2.publish(messages::topics::kImu);
   ASSERT_TRUE(
       eventually([&] { return imu1.matched() == 1 && imu2.matched() == 1 && subscription.matched() == 1; }));
 
-  msg::Imu imu;
+  messages::msg::Imu imu;
   imu.sequence_number(2);
   imu2.publish(imu);
   imu.sequence_number(1);
@@ -496,27 +510,27 @@ TEST(Vehicles, CanShareAParticipant) {
 
   const Participant shared(settings(lock, "ground"));
   Node ground1(shared, "kl1");
-  auto imu1 = plant1.publish(topics::kImu);
-  auto imu2 = plant2.publish(topics::kImu);
+  auto imu1 = plant1.publish(messages::topics::kImu);
+  auto imu2 = plant2.publish(messages::topics::kImu);
   Inbox<std::uint64_t> received1;
-  const auto first = ground1.subscribe<msg::Imu>(
-      topics::kImu, [&](const msg::Imu& imu) { received1.put(imu.sequence_number()); });
+  const auto first = ground1.subscribe<messages::msg::Imu>(
+      messages::topics::kImu, [&](const messages::msg::Imu& imu) { received1.put(imu.sequence_number()); });
   ASSERT_TRUE(eventually([&] { return first.matched() == 1; }));
 
   Node ground2(shared, "kl2");
   Inbox<std::string> peers_of_ground2;
   ground2.on_peer([&](const PeerEvent& event) { peers_of_ground2.put(event.name); });
   Inbox<std::uint64_t> received2;
-  const auto second = ground2.subscribe<msg::Imu>(
-      topics::kImu, [&](const msg::Imu& imu) { received2.put(imu.sequence_number()); });
-  auto command1 = ground1.publish(topics::kCommand);
-  auto command2 = ground2.publish(topics::kCommand);
+  const auto second = ground2.subscribe<messages::msg::Imu>(
+      messages::topics::kImu, [&](const messages::msg::Imu& imu) { received2.put(imu.sequence_number()); });
+  auto command1 = ground1.publish(messages::topics::kCommand);
+  auto command2 = ground2.publish(messages::topics::kCommand);
   ASSERT_TRUE(
       eventually([&] { return second.matched() == 1 && imu1.matched() == 1 && imu2.matched() == 1; }));
   EXPECT_EQ(first.matched(), 1);
   EXPECT_EQ(command1.matched() + command2.matched(), 0);
 
-  msg::Imu imu;
+  messages::msg::Imu imu;
   imu.sequence_number(1);
   imu1.publish(imu);
   imu.sequence_number(2);
@@ -535,22 +549,23 @@ TEST(Subscription, DeliversNothingAfterItsDestruction) {
   const DomainLock lock;
   Node plant(settings(lock, "plant"));
   Node control(settings(lock, "control"));
-  auto publisher = plant.publish(topics::kImu);
+  auto publisher = plant.publish(messages::topics::kImu);
   for (int round = 0; round < 20; ++round) {
     std::atomic<bool> gone{false};
     std::atomic<int> received{0};
     std::atomic<int> received_when_gone{0};
-    auto subscription = control.subscribe<msg::Imu>(topics::kImu, [&](const msg::Imu&) {
-      if (gone) ++received_when_gone;
-      ++received;
-    });
+    auto subscription =
+        control.subscribe<messages::msg::Imu>(messages::topics::kImu, [&](const messages::msg::Imu&) {
+          if (gone) ++received_when_gone;
+          ++received;
+        });
     ASSERT_TRUE(eventually([&] {
-      publisher.publish(example<msg::Imu>());
+      publisher.publish(messages::fixtures::example<messages::msg::Imu>());
       return received > 0;
     }));
     subscription = {};
     gone = true;
-    publisher.publish(example<msg::Imu>());
+    publisher.publish(messages::fixtures::example<messages::msg::Imu>());
     EXPECT_EQ(received_when_gone, 0);
   }
 }
@@ -577,4 +592,4 @@ TEST(NodeSettings, RefusesInvalidValues) {
   }
 }
 
-}  // namespace swiftlet::comms::fixtures::node_test
+}  // namespace swiftlet::dds::fixtures::node_test

@@ -19,7 +19,7 @@
 #include "tests/support/eventually.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::comms::fixtures::participant_qos_test {
+namespace swiftlet::dds::fixtures::participant_qos_test {
 
 using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
@@ -81,11 +81,12 @@ TEST(SetNetwork, AnnouncesTheOwnPortAlsoAfterAChange) {
   Node plant(settings);
   EXPECT_EQ(plant.become_source(), std::nullopt);
   Inbox<std::uint64_t> received;
-  const auto subscription = plant.subscribe<msg::ActuatorCommand>(
-      topics::kActuatorCommand, [&](const auto& command) { received.put(command.imu_sequence_number()); });
-  auto commands = control.publish(topics::kActuatorCommand);
+  const auto subscription = plant.subscribe<messages::msg::ActuatorCommand>(
+      messages::topics::kActuatorCommand,
+      [&](const auto& command) { received.put(command.imu_sequence_number()); });
+  auto commands = control.publish(messages::topics::kActuatorCommand);
   ASSERT_TRUE(eventually([&] { return commands.matched() == 1 && subscription.matched() == 1; }));
-  auto command = example<msg::ActuatorCommand>();
+  auto command = messages::fixtures::example<messages::msg::ActuatorCommand>();
   command.imu_sequence_number(7);
   commands.publish(command);
 
@@ -100,7 +101,7 @@ TEST(SetNetwork, RefusesMalformedPeers) {
   NodeSettings settings;
   settings.name = "plant";
   settings.network.peers = {"lab2:0"};
-  EXPECT_THROW(Node{settings}, runtime::ConfigError);
+  EXPECT_THROW(Node{settings}, io::ConfigError);
 }
 
-}  // namespace swiftlet::comms::fixtures::participant_qos_test
+}  // namespace swiftlet::dds::fixtures::participant_qos_test

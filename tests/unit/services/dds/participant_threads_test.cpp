@@ -13,7 +13,7 @@
 #include "swiftlet/services/runtime/realtime.hpp"
 #include "tests/support/eventually.hpp"
 
-namespace swiftlet::comms::participant_threads_test {
+namespace swiftlet::dds::participant_threads_test {
 
 using swiftlet::tests::eventually;
 
@@ -38,21 +38,21 @@ TEST(Participant, AllThreadsOfTheMiddlewareHaveTheRealtimePriority) {
   settings.name = "ground";
   settings.domain = lock.domain();
   Node ground(settings);
-  Publisher<msg::Command> commands = ground.publish(topics::kCommand);
+  Publisher<messages::msg::Command> commands = ground.publish(messages::topics::kCommand);
   const std::map<pid_t, int> before = threads();
   settings.name = "control";
   settings.realtime_priority = 2;
   Node control(settings);
   std::atomic<pid_t> receiver{0};
-  const auto sensor = control.subscribe<msg::Imu>(
-      topics::kImu, [](const msg::Imu&) {}, Delivery::kSamples);
-  const auto requests =
-      control.subscribe<msg::Command>(topics::kCommand, [&](const msg::Command&) { receiver = ::gettid(); });
-  Publisher<msg::Estimate> estimates = control.publish(topics::kEstimate);
+  const auto sensor = control.subscribe<messages::msg::Imu>(
+      messages::topics::kImu, [](const messages::msg::Imu&) {}, Delivery::kSamples);
+  const auto requests = control.subscribe<messages::msg::Command>(
+      messages::topics::kCommand, [&](const messages::msg::Command&) { receiver = ::gettid(); });
+  Publisher<messages::msg::Estimate> estimates = control.publish(messages::topics::kEstimate);
   ASSERT_TRUE(eventually([&] { return commands.matched() > 0; }));
-  commands.publish(msg::Command());
+  commands.publish(messages::msg::Command());
   ASSERT_TRUE(eventually([&] { return receiver != 0; }));
-  estimates.publish(msg::Estimate());
+  estimates.publish(messages::msg::Estimate());
   EXPECT_FALSE(runtime::this_thread_is_realtime());
   int realtime = 0, ordinary = 0;
   for (const auto& [thread, policy] : threads()) {
@@ -67,4 +67,4 @@ TEST(Participant, AllThreadsOfTheMiddlewareHaveTheRealtimePriority) {
   EXPECT_EQ(::sched_getscheduler(receiver), permitted ? SCHED_FIFO : SCHED_OTHER);
 }
 
-}  // namespace swiftlet::comms::participant_threads_test
+}  // namespace swiftlet::dds::participant_threads_test

@@ -6,7 +6,7 @@
 
 #include "swiftlet/services/messages/all_topics.hpp"
 
-namespace swiftlet::comms::payload_test {
+namespace swiftlet::dds::payload_test {
 
 constexpr std::size_t kUdpInFrame = 1472;  // bytes of a datagram that one frame of Ethernet holds
 // Header of the message, INFO_DST, INFO_TS, header of DATA, and the seal or the statistics of Fast DDS.
@@ -15,8 +15,8 @@ constexpr std::size_t kOverhead = 20 + 16 + 12 + 24 + 60;
 // A lossy network loses a sample of two fragments more often than one of a single frame. What is reliable is sent again.
 TEST(Payload, OfEveryStreamFitsIntoOneFrame) {
   int streams = 0;
-  for_each_topic([&](const auto& topic) {
-    if (topic.qos != Qos::kStream && topic.qos != Qos::kTelemetry) return;
+  messages::for_each_topic([&](const auto& topic) {
+    if (topic.qos != messages::Qos::kStream && topic.qos != messages::Qos::kTelemetry) return;
     ++streams;
     EXPECT_LE(to_payload(typename std::decay_t<decltype(topic)>::Message()).size(), kUdpInFrame - kOverhead)
         << topic.name;
@@ -24,4 +24,4 @@ TEST(Payload, OfEveryStreamFitsIntoOneFrame) {
   EXPECT_GT(streams, 10);
 }
 
-}  // namespace swiftlet::comms::payload_test
+}  // namespace swiftlet::dds::payload_test

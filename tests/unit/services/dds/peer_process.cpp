@@ -18,7 +18,7 @@
 #include "tests/unit/services/dds/steady_sender.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::comms::fixtures {
+namespace swiftlet::dds::fixtures {
 namespace {
 
 constexpr int kNotPermitted = 77;
@@ -44,11 +44,11 @@ int check_isolated_nodes() {
   settings.name = "there";
   Node there(settings);
   std::atomic<bool> received{false};
-  const auto subscription =
-      there.subscribe<msg::Imu>(topics::kImu, [&](const msg::Imu&) { received = true; });
-  auto publisher = here.publish(topics::kImu);
+  const auto subscription = there.subscribe<messages::msg::Imu>(
+      messages::topics::kImu, [&](const messages::msg::Imu&) { received = true; });
+  auto publisher = here.publish(messages::topics::kImu);
   const bool done = swiftlet::tests::eventually([&] {
-    publisher.publish(example<msg::Imu>());
+    publisher.publish(messages::fixtures::example<messages::msg::Imu>());
     return received.load();
   });
   return done ? EXIT_SUCCESS : EXIT_FAILURE;
@@ -59,10 +59,11 @@ int run_peer(int domain) {
   settings.name = "peer";
   settings.domain = domain;
   Node node(settings);
-  const Subscription requests = node.subscribe<msg::Command>(topics::kCommand, [](const msg::Command&) {});
-  auto state = node.publish(topics::kControlStatus);
-  state.publish(example<msg::ControlStatus>());
-  auto commands = node.publish(topics::kActuatorCommand);
+  const Subscription requests = node.subscribe<messages::msg::Command>(messages::topics::kCommand,
+                                                                       [](const messages::msg::Command&) {});
+  auto state = node.publish(messages::topics::kControlStatus);
+  state.publish(messages::fixtures::example<messages::msg::ControlStatus>());
+  auto commands = node.publish(messages::topics::kActuatorCommand);
   const SteadySender sender(commands, kCommandNumber);
   char byte = 0;
   while (::read(STDIN_FILENO, &byte, 1) > 0) {
@@ -71,10 +72,10 @@ int run_peer(int domain) {
 }
 
 }  // namespace
-}  // namespace swiftlet::comms::fixtures
+}  // namespace swiftlet::dds::fixtures
 
 int main(int argc, char** argv) {
-  using namespace swiftlet::comms;
+  using namespace swiftlet::dds;
   if (argc < 2) return EXIT_FAILURE;
   const std::string domain = argv[1];
   if (domain == "isolated") return fixtures::check_isolated_nodes();

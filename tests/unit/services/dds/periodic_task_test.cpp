@@ -7,7 +7,7 @@
 
 #include "tests/support/eventually.hpp"
 
-namespace swiftlet::comms::periodic_task_test {
+namespace swiftlet::dds::periodic_task_test {
 
 using namespace std::chrono_literals;
 
@@ -32,4 +32,4 @@ TEST(PeriodicTask, DestructorDoesNotWaitForThePeriod) {
   EXPECT_LT(std::chrono::steady_clock::now() - began, 5min);
 }
 
-}  // namespace swiftlet::comms::periodic_task_test
+}  // namespace swiftlet::dds::periodic_task_test

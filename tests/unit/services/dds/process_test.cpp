@@ -22,9 +22,9 @@
 #include "tests/support/paths.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::comms::fixtures::process_test {
+namespace swiftlet::dds::fixtures::process_test {
 
-using swiftlet::comms::DomainLock;
+using swiftlet::dds::DomainLock;
 using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
 using namespace std::chrono_literals;
@@ -100,11 +100,12 @@ TEST_F(Peers, AreReportedWithTheirStatusUntilTheyLeave) {
   ASSERT_TRUE(events_.wait_for_count(1));
   EXPECT_TRUE(events_.items()[0].alive);
 
-  Inbox<msg::ControlStatus> states;
-  const auto subscription = node_.subscribe<msg::ControlStatus>(
-      topics::kControlStatus, [&](const msg::ControlStatus& message) { states.put(message); });
+  Inbox<messages::msg::ControlStatus> states;
+  const auto subscription = node_.subscribe<messages::msg::ControlStatus>(
+      messages::topics::kControlStatus,
+      [&](const messages::msg::ControlStatus& message) { states.put(message); });
   ASSERT_TRUE(states.wait_for_count(1)) << "to a late joiner";
-  EXPECT_TRUE(states.items()[0] == example<msg::ControlStatus>());
+  EXPECT_TRUE(states.items()[0] == messages::fixtures::example<messages::msg::ControlStatus>());
 
   EXPECT_EQ(peer.finish(), 0);
 
@@ -128,9 +129,9 @@ TEST_F(Peers, AreReportedToALateListener) {
 // that is reported within the lease.
 TEST_F(Peers, AreReceivedAgainAfterASuspensionAndReportedDeadWithinTheLease) {
   Inbox<std::uint64_t> received;
-  const auto subscription = node_.subscribe<msg::ActuatorCommand>(
-      topics::kActuatorCommand,
-      [&](const msg::ActuatorCommand& command) { received.put(command.sequence_number()); });
+  const auto subscription = node_.subscribe<messages::msg::ActuatorCommand>(
+      messages::topics::kActuatorCommand,
+      [&](const messages::msg::ActuatorCommand& command) { received.put(command.sequence_number()); });
   const auto of_peer = [](const std::vector<std::uint64_t>& numbers) {
     return std::count(numbers.begin(), numbers.end(), 9U);
   };
@@ -149,7 +150,7 @@ TEST_F(Peers, AreReceivedAgainAfterASuspensionAndReportedDeadWithinTheLease) {
   peer.crash();
   const auto crashed_at = std::chrono::steady_clock::now();
   ASSERT_TRUE(events_.wait_for_count(reported + 1));
-  EXPECT_LT(std::chrono::steady_clock::now() - crashed_at, kLivelinessLease + 1s);
+  EXPECT_LT(std::chrono::steady_clock::now() - crashed_at, messages::kLivelinessLease + 1s);
   EXPECT_FALSE(events_.items()[reported].alive);
   EXPECT_FALSE(events_.items()[reported].said_goodbye);
 }
@@ -162,10 +163,11 @@ TEST_F(Peers, PublishersOfUnacknowledgedRequestsEnd) {
   for (int round = 0; round < 5; ++round) {
     const PeerProcess peer = start();
     std::vector<std::unique_ptr<Node>> nodes;
-    std::vector<std::vector<Publisher<msg::Command>>> publishers(kNodes);
+    std::vector<std::vector<Publisher<messages::msg::Command>>> publishers(kNodes);
     for (auto& of_node : publishers) {
       nodes.push_back(std::make_unique<Node>(settings()));
-      for (int i = 0; i < kPublishers; ++i) of_node.push_back(nodes.back()->publish(topics::kCommand));
+      for (int i = 0; i < kPublishers; ++i)
+        of_node.push_back(nodes.back()->publish(messages::topics::kCommand));
     }
     for (const auto& of_node : publishers) {
       for (const auto& publisher : of_node) ASSERT_TRUE(eventually([&] { return publisher.matched() == 1; }));
@@ -175,7 +177,8 @@ TEST_F(Peers, PublishersOfUnacknowledgedRequestsEnd) {
     for (auto& of_node : publishers) {
       ended.push_back(std::async(std::launch::async, [&of_node] {
         for (auto& publisher : of_node) {
-          for (int i = 0; i < kKeptRequests; ++i) publisher.publish(example<msg::Command>());
+          for (int i = 0; i < messages::kKeptRequests; ++i)
+            publisher.publish(messages::fixtures::example<messages::msg::Command>());
         }
         of_node.clear();
       }));
@@ -191,24 +194,24 @@ TEST_F(Peers, PublishersOfUnacknowledgedRequestsEnd) {
 // GIVEN a reader that acknowledges nothing, because its process is stopped WHEN more requests are sent than are kept THEN all are
 // sent before the lease of that process ends, and the other reader receives each.
 TEST_F(Peers, AReaderThatAcknowledgesNothingHoldsUpNoRequest) {
-  constexpr std::uint64_t kRequests = kKeptRequests + 4;
+  constexpr std::uint64_t kRequests = messages::kKeptRequests + 4;
   Inbox<std::uint64_t> received;
-  const auto subscription = node_.subscribe<msg::Command>(
-      topics::kCommand, [&](const msg::Command& command) { received.put(command.id()); });
+  const auto subscription = node_.subscribe<messages::msg::Command>(
+      messages::topics::kCommand, [&](const messages::msg::Command& command) { received.put(command.id()); });
   NodeSettings client = settings();
   client.name = "client";
   Node ground(client);
-  Publisher<msg::Command> commands = ground.publish(topics::kCommand);
+  Publisher<messages::msg::Command> commands = ground.publish(messages::topics::kCommand);
   const PeerProcess peer = start();
   ASSERT_TRUE(eventually([&] { return commands.matched() == 2; }));
   peer.stop();
   const auto began = std::chrono::steady_clock::now();
   for (std::uint64_t id = 1; id <= kRequests; ++id) {
-    msg::Command command = example<msg::Command>();
+    messages::msg::Command command = messages::fixtures::example<messages::msg::Command>();
     command.id(id);
     EXPECT_TRUE(commands.publish(command)) << id;
   }
-  EXPECT_LT(std::chrono::steady_clock::now() - began, kLivelinessLease);
+  EXPECT_LT(std::chrono::steady_clock::now() - began, messages::kLivelinessLease);
   ASSERT_TRUE(received.wait_for_count(kRequests)) << received.size();
   for (std::uint64_t id = 1; id <= kRequests; ++id) EXPECT_EQ(received.items()[id - 1], id);
 }
@@ -234,4 +237,4 @@ TEST(Domain, Holds32Participants) {
   EXPECT_TRUE(events.wait_for_count(31));
 }
 
-}  // namespace swiftlet::comms::fixtures::process_test
+}  // namespace swiftlet::dds::fixtures::process_test

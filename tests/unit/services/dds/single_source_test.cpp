@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::comms::single_source_test {
+namespace swiftlet::dds::single_source_test {
 
 using namespace std::chrono_literals;
 
@@ -35,4 +35,4 @@ TEST_F(SingleSourceTest, KeepsASlowSourceThatIsAlone) {
   EXPECT_TRUE(accepts(1, 5000ms));
 }
 
-}  // namespace swiftlet::comms::single_source_test
+}  // namespace swiftlet::dds::single_source_test

@@ -18,7 +18,7 @@
 #include "tests/support/eventually.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::comms::fixtures::source_test {
+namespace swiftlet::dds::fixtures::source_test {
 
 using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
@@ -90,7 +90,7 @@ TEST_F(Sources, ExactlyOneOfTwoThatStartAtOnceIsRefused) {
 
 TEST_F(Sources, AProgramThatAnnouncesNothingExcludesASecondOne) {
   Node vehicle(settings("vehicle of another make", ""));
-  const auto imu = vehicle.publish(topics::kImu);
+  const auto imu = vehicle.publish(messages::topics::kImu);
   EXPECT_EQ(refusal_of(settings("plant", "imu")), lives("vehicle of another make"));
 }
 
@@ -154,10 +154,11 @@ TEST_F(Sources, StayTheSourceOfASubscriptionAfterARejoin) {
   Node plant(settings("plant", "imu"));
   Node control(settings("control", ""));
   Inbox<std::uint64_t> received;
-  const auto subscription = control.subscribe<msg::Imu>(
-      topics::kImu, [&](const msg::Imu& imu) { received.put(imu.sequence_number()); }, Delivery::kShared, 1h);
-  auto publisher = plant.publish(topics::kImu);
-  msg::Imu imu = example<msg::Imu>();
+  const auto subscription = control.subscribe<messages::msg::Imu>(
+      messages::topics::kImu, [&](const messages::msg::Imu& imu) { received.put(imu.sequence_number()); },
+      Delivery::kShared, 1h);
+  auto publisher = plant.publish(messages::topics::kImu);
+  messages::msg::Imu imu = messages::fixtures::example<messages::msg::Imu>();
   const auto receives = [&](std::uint64_t number) {
     imu.sequence_number(number);
     return eventually([&] {
@@ -173,8 +174,8 @@ TEST_F(Sources, StayTheSourceOfASubscriptionAfterARejoin) {
 }
 
 TEST(Interfaces, NameTheLoopbackInterface) {
-  EXPECT_EQ(runtime::interfaces_text(true), "lo (127.0.0.1)");
-  EXPECT_NE(runtime::interfaces_text(false).find("lo (127.0.0.1)"), std::string::npos);
+  EXPECT_EQ(io::interfaces_text(true), "lo (127.0.0.1)");
+  EXPECT_NE(io::interfaces_text(false).find("lo (127.0.0.1)"), std::string::npos);
 }
 
-}  // namespace swiftlet::comms::fixtures::source_test
+}  // namespace swiftlet::dds::fixtures::source_test

@@ -9,14 +9,15 @@
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::comms::fixtures {
+namespace swiftlet::dds::fixtures {
 
 class SteadySender {
  public:
   // All commands have this sequence number. The publisher must outlive the sender.
-  SteadySender(Publisher<msg::ActuatorCommand>& publisher, std::uint64_t sequence_number)
+  SteadySender(Publisher<messages::msg::ActuatorCommand>& publisher, std::uint64_t sequence_number)
       : thread_([this, &publisher, sequence_number] {
-          msg::ActuatorCommand command = example<msg::ActuatorCommand>();
+          messages::msg::ActuatorCommand command =
+              messages::fixtures::example<messages::msg::ActuatorCommand>();
           command.sequence_number(sequence_number);
           runtime::PeriodicTimer timer(2'000'000, 2'000'000);
           while (!stop_) {
@@ -36,4 +37,4 @@ class SteadySender {
   std::thread thread_;
 };
 
-}  // namespace swiftlet::comms::fixtures
+}  // namespace swiftlet::dds::fixtures

@@ -20,9 +20,9 @@
 #include "tests/support/serialization.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::comms::fixtures::broken_message_test {
+namespace swiftlet::messages::fixtures::broken_message_test {
 
-namespace dds = eprosima::fastdds::dds;
+namespace fastdds = eprosima::fastdds::dds;
 using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
 
@@ -42,33 +42,34 @@ Bytes cut(Bytes bytes, std::size_t size) {
 // A peer that publishes raw bytes on one topic.
 class RawPeer {
  public:
-  RawPeer(const DomainLock& lock, const std::string& topic, const std::string& type, Qos qos)
-      : session_(swiftlet::tests::settings_of("raw", lock), Announcement(), std::make_shared<DatagramGuard>(),
-                 nullptr) {
-    dds::Topic* const raw_topic = session_.topic("rt/kl1/" + topic, dds::TypeSupport(new RawType(type)));
-    writer_ = session_.publisher->create_datawriter(raw_topic, writer_qos(qos));
+  RawPeer(const dds::DomainLock& lock, const std::string& topic, const std::string& type, Qos qos)
+      : session_(swiftlet::tests::settings_of("raw", lock), rtps::Announcement(),
+                 std::make_shared<rtps::DatagramGuard>(), nullptr) {
+    fastdds::Topic* const raw_topic =
+        session_.topic("rt/kl1/" + topic, fastdds::TypeSupport(new RawType(type)));
+    writer_ = session_.publisher->create_datawriter(raw_topic, dds::writer_qos(qos));
   }
-  bool send(const Bytes& bytes) { return write(*writer_, &bytes); }
+  bool send(const Bytes& bytes) { return dds::write(*writer_, &bytes); }
   bool is_matched() const {
-    dds::PublicationMatchedStatus status;
+    fastdds::PublicationMatchedStatus status;
     writer_->get_publication_matched_status(status);
     return status.current_count == 1;
   }
 
  private:
-  ParticipantSession session_;
-  dds::DataWriter* writer_;
+  dds::ParticipantSession session_;
+  fastdds::DataWriter* writer_;
 };
 
 template <class Type>
 void expect_dropped(const Topic<typename Type::type>& topic, const typename Type::type& whole,
                     const std::vector<Bytes>& broken) {
-  const DomainLock lock;
-  Node node(swiftlet::tests::settings_of("node", lock));
+  const dds::DomainLock lock;
+  dds::Node node(swiftlet::tests::settings_of("node", lock));
   Inbox<typename Type::type> inbox;
   const auto subscription =
       node.subscribe<typename Type::type>(topic, [&](const auto& message) { inbox.put(message); });
-  RawPeer peer(lock, topic.name, type_name(Type()), topic.qos);
+  RawPeer peer(lock, topic.name, dds::type_name(Type()), topic.qos);
   ASSERT_TRUE(eventually([&] { return subscription.matched() == 1 && peer.is_matched(); }));
 
   std::size_t received = 0;
@@ -92,7 +93,7 @@ TEST(BrokenMessage, IsDroppedOnAStream) {
 }
 
 TEST(BrokenMessage, IsDroppedOnARequestTopic) {
-  const msg::Mission mission = to_message(fixtures::mission(3, 2));
+  const msg::Mission mission = to_message(messages::fixtures::mission(3, 2));
   const Bytes whole = serialized<msg::MissionPubSubType>(mission);
   Bytes endless = whole;
   for (std::size_t i = 0; i < 4; ++i) endless.at(kEncapsulation + 16 + i) = 0xff;  // the number of items
@@ -103,16 +104,16 @@ TEST(BrokenMessage, IsDroppedOnARequestTopic) {
 // GIVEN a peer whose vehicle_info has another wire version and another layout WHEN it comes THEN a reader gets that version alone, and
 // one of payloads nothing.
 TEST(WireVersion, IsAllThatIsTakenOfAMessageOfAnotherOne) {
-  const DomainLock lock;
-  Node node(swiftlet::tests::settings_of("node", lock));
+  const dds::DomainLock lock;
+  dds::Node node(swiftlet::tests::settings_of("node", lock));
   Inbox<msg::VehicleInfo> inbox;
   Inbox<std::size_t> payloads;
   const auto messages =
       node.subscribe<msg::VehicleInfo>(topics::kVehicleInfo, [&](const auto& info) { inbox.put(info); });
-  Node recorder(swiftlet::tests::settings_of("recorder", lock));
+  dds::Node recorder(swiftlet::tests::settings_of("recorder", lock));
   const auto raw = recorder.subscribe_raw<msg::VehicleInfo>(
-      topics::kVehicleInfo, [&](const RawSample& sample) { payloads.put(sample.size); });
-  RawPeer peer(lock, "vehicle_info", type_name(msg::VehicleInfoPubSubType()), Qos::kLatched);
+      topics::kVehicleInfo, [&](const dds::RawSample& sample) { payloads.put(sample.size); });
+  RawPeer peer(lock, "vehicle_info", dds::type_name(msg::VehicleInfoPubSubType()), Qos::kLatched);
   ASSERT_TRUE(eventually([&] { return messages.matched() == 1 && raw.matched() == 1; }));
   const Bytes whole = serialized<msg::VehicleInfoPubSubType>(example<msg::VehicleInfo>());
   ASSERT_TRUE(peer.send(cut(changed(whole, kEncapsulation, 3), kEncapsulation + 12)));
@@ -135,4 +136,4 @@ TEST(WireVersion, IsRefusedByName) {
             "control speaks another version of the messages than this program, 2");
 }
 
-}  // namespace swiftlet::comms::fixtures::broken_message_test
+}  // namespace swiftlet::messages::fixtures::broken_message_test

@@ -7,7 +7,7 @@
 
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::comms::fixtures::convert_test {
+namespace swiftlet::messages::fixtures::convert_test {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -312,4 +312,4 @@ TEST(Convert, IgnoresRotorsBeyondTheCount) {
   EXPECT_EQ(command.throttle[6], 0.0);
 }
 
-}  // namespace swiftlet::comms::fixtures::convert_test
+}  // namespace swiftlet::messages::fixtures::convert_test

@@ -8,7 +8,7 @@
 #include "swiftlet/services/messages/topics.hpp"
 #include "swiftlet/services/messages/wire_version.hpp"
 
-namespace swiftlet::comms::fixtures {
+namespace swiftlet::messages::fixtures {
 
 inline plant::PerRotor four_rotors(double first) { return {first, first + 0.1, first + 0.2, first + 0.3}; }
 
@@ -399,4 +399,4 @@ inline msg::VehicleInfo example() {
   return message;
 }
 
-}  // namespace swiftlet::comms::fixtures
+}  // namespace swiftlet::messages::fixtures

@@ -21,7 +21,7 @@
 #include "tests/support/serialization.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
-namespace swiftlet::comms::fixtures::schemas_test {
+namespace swiftlet::messages::fixtures::schemas_test {
 
 mcap::MessageDecoder decoder_of(const MessageSchema& schema) {
   return mcap::MessageDecoder({1, schema.name, "ros2msg", schema.definition});
@@ -114,4 +114,4 @@ TEST(Schemas, KnowWhereTheStampIs) {
   EXPECT_EQ(schema_of<msg::Command>().stamp_offset, -1);
 }
 
-}  // namespace swiftlet::comms::fixtures::schemas_test
+}  // namespace swiftlet::messages::fixtures::schemas_test

@@ -12,7 +12,7 @@
 #include "swiftlet/services/messages/topic_roles.hpp"
 #include "tests/support/paths.hpp"
 
-namespace swiftlet::comms::security_policy_test {
+namespace swiftlet::messages::security_policy_test {
 
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -55,4 +55,4 @@ TEST(Permissions, AllowARoleItsTopicsOfItsVehicles) {
   EXPECT_FALSE(holds(permissions_document("observer", "CN=observer,O=Swiftlet", {"kl1"}), "<publish>"));
 }
 
-}  // namespace swiftlet::comms::security_policy_test
+}  // namespace swiftlet::messages::security_policy_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::comms::vehicle_names_test {
+namespace swiftlet::messages::vehicle_names_test {
 
 using Names = std::vector<std::string>;
 
@@ -37,4 +37,4 @@ TEST(VehicleList, RefusesWithAClauseThatNamesTheFault) {
   EXPECT_THROW(vehicles_of_list("kl1,kl1"), std::invalid_argument);
 }
 
-}  // namespace swiftlet::comms::vehicle_names_test
+}  // namespace swiftlet::messages::vehicle_names_test

@@ -120,7 +120,7 @@ TEST(Replay, RefusesWhatItCannotPlay) {
     std::ofstream(file) << text;
     try {
       ReplaySource source(replay_of(file));
-    } catch (const runtime::ConfigError& error) {
+    } catch (const io::ConfigError& error) {
       return std::string(error.what());
     }
     return std::string("played");
@@ -138,7 +138,7 @@ TEST(SourceOptions, ReplaceWhatTheRoomSays) {
   SourceOptions options;
   options.room = file;
   EXPECT_EQ(room_of(options, {"kl1"}).server, "10.0.0.1");
-  EXPECT_THROW(room_of(options, {"kl1", "kl2"}), runtime::ConfigError);
+  EXPECT_THROW(room_of(options, {"kl1", "kl2"}), io::ConfigError);
   options.source = "vrpn";
   EXPECT_THROW(room_of(options, {"kl1"}), std::invalid_argument) << "the server is that of NatNet";
   options.server = "10.0.0.2";

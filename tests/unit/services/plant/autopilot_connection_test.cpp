@@ -33,7 +33,7 @@ class AutopilotConnectionTest : public testing::Test {
     });
   }
 
-  const plant::Vehicle vehicle_ = runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
+  const plant::Vehicle vehicle_ = io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
 };
 
 TEST_F(AutopilotConnectionTest, RefusesASecondAutopilotAndKeepsTheFirst) {

@@ -24,7 +24,7 @@
 
 namespace swiftlet::services::lockstep_loop_test {
 
-namespace msg = comms::msg;
+namespace msg = messages::msg;
 using namespace std::chrono_literals;
 using tests::eventually;
 using tests::Inbox;
@@ -38,8 +38,8 @@ class Lockstep : public testing::Test {
   ~Lockstep() override { stop(); }
 
  protected:
-  static comms::NodeSettings node_settings(const comms::DomainLock& lock, const char* name) {
-    comms::NodeSettings settings;
+  static dds::NodeSettings node_settings(const dds::DomainLock& lock, const char* name) {
+    dds::NodeSettings settings;
     settings.name = name;
     settings.domain = lock.domain();
     return settings;
@@ -47,9 +47,9 @@ class Lockstep : public testing::Test {
 
   Lockstep() {
     settings_.imu.rate_hz = 500.0;
-    truth_ = peer_node_.subscribe<msg::GroundTruth>(comms::topics::kGroundTruth,
+    truth_ = peer_node_.subscribe<msg::GroundTruth>(messages::topics::kGroundTruth,
                                                     [this](const auto& message) { on_truth(message); });
-    imu_ = peer_node_.subscribe<msg::Imu>(comms::topics::kImu, [this](const msg::Imu& message) {
+    imu_ = peer_node_.subscribe<msg::Imu>(messages::topics::kImu, [this](const msg::Imu& message) {
       samples_.put(message);
       if (answers_) answer(message);
     });
@@ -84,7 +84,7 @@ class Lockstep : public testing::Test {
     command.sequence = ++command_sequence_;
     command.imu_sequence = sample.sequence_number();
     command.rotor_count = 4;
-    commands_.publish(comms::to_message(command));
+    commands_.publish(messages::to_message(command));
   }
   void advance_to(std::int64_t stamp_ns) {
     msg::SimulationClock clock;
@@ -120,9 +120,9 @@ class Lockstep : public testing::Test {
   std::atomic<bool> answers_{false};  // answer each sample at once
   std::atomic<bool> mocap_answers_{true};
   std::int64_t began_ns_ = 0;
-  comms::DomainLock lock_;
-  comms::Node plant_node_{node_settings(lock_, "plant")};
-  comms::Node peer_node_{node_settings(lock_, "peer")};
+  dds::DomainLock lock_;
+  dds::Node plant_node_{node_settings(lock_, "plant")};
+  dds::Node peer_node_{node_settings(lock_, "peer")};
   std::optional<SimulatedVehicle> vehicle_;
   std::optional<LockstepLoop> loop_;
 
@@ -131,11 +131,11 @@ class Lockstep : public testing::Test {
   void on_truth(const msg::GroundTruth& message) {
     if (!mocap_answers_) return;
     plant::TruthSample truth;
-    if (comms::from_message(message, truth)) return;
+    if (messages::from_message(message, truth)) return;
     if (truth.sequence > truth_sequence_) {
       truth_sequence_ = truth.sequence;
       const auto pose = mocap_.update(truth);
-      last_pose_ = pose ? comms::to_message(*pose) : msg::MocapPose();
+      last_pose_ = pose ? messages::to_message(*pose) : msg::MocapPose();
       if (!pose) last_pose_.stamp_ns(truth.stamp_ns);
     }
     poses_.publish(last_pose_);
@@ -149,11 +149,11 @@ class Lockstep : public testing::Test {
   std::atomic<bool> stop_{false};
   std::thread thread_;
   Inbox<std::string> failure_;
-  comms::Publisher<msg::SimulationClock> clock_ = peer_node_.publish(comms::topics::kSimulationClock);
-  comms::Publisher<msg::ActuatorCommand> commands_ = peer_node_.publish(comms::topics::kActuatorCommand);
-  comms::Publisher<msg::MocapPose> poses_ = peer_node_.publish(comms::topics::kMocapPose);
-  comms::Subscription truth_;  // last: the callbacks use the members above
-  comms::Subscription imu_;
+  dds::Publisher<msg::SimulationClock> clock_ = peer_node_.publish(messages::topics::kSimulationClock);
+  dds::Publisher<msg::ActuatorCommand> commands_ = peer_node_.publish(messages::topics::kActuatorCommand);
+  dds::Publisher<msg::MocapPose> poses_ = peer_node_.publish(messages::topics::kMocapPose);
+  dds::Subscription truth_;  // last: the callbacks use the members above
+  dds::Subscription imu_;
 };
 
 LockstepSettings with_long_patience() {

@@ -15,7 +15,7 @@ namespace swiftlet::services::rotor_mapping_test {
 using mavlink::HilActuatorControls;
 
 plant::Vehicle vehicle(const std::string& name) {
-  return runtime::load_vehicle(tests::in_source("config/vehicles/") + name + ".yaml");
+  return io::load_vehicle(tests::in_source("config/vehicles/") + name + ".yaml");
 }
 
 HilActuatorControls armed(float first, float second, float third, float fourth) {

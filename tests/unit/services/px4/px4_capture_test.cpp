@@ -59,7 +59,7 @@ TEST_F(Px4Capture, EveryLayoutIsThatOnTheWire) {
   ASSERT_GT(sensors.size(), 20U);
   for (const msg::SensorCombined& message : sensors) {
     plant::ImuSample sample;
-    const comms::Fault fault = px4::from_px4(message, sample);
+    const messages::Fault fault = px4::from_px4(message, sample);
     ASSERT_FALSE(fault) << fault.text;
     EXPECT_NEAR(sample.specific_force_frd.norm(), plant::kGravity, 8.0);
   }

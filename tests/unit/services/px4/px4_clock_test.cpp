@@ -15,7 +15,7 @@ constexpr std::int64_t kStart = 1'000'000'000'000;
 // GIVEN samples that arrive 2 to 8 ms late WHEN PX4's stamps are 150 ms behind THEN the stamps have PX4's intervals.
 TEST(Px4Clock, RemovesTheJitterOfTheWay) {
   Px4Clock clock;
-  plant::RandomStream random(1, 1);
+  math::RandomStream random(1, 1);
   double worst_ns = 0.0;
   std::int64_t last_ns = 0;
   for (int i = 0; i < 1000; ++i) {

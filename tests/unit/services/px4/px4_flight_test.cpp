@@ -34,7 +34,7 @@ constexpr std::int64_t kStampsLagUs = 40'000;
 constexpr std::int64_t kInfoPeriodTicks = 2;  // a change is told within 20 ms
 
 control::ControlSettings control_settings() {
-  return runtime::load_control_settings(in_source("config/control/motor_lag.yaml"));
+  return io::load_control_settings(in_source("config/control/motor_lag.yaml"));
 }
 
 class Px4Flight : public testing::Test {
@@ -77,7 +77,7 @@ class Px4Flight : public testing::Test {
   }
   void deliver(const Px4Messages& messages) {
     if (!bridge_lives_) return;
-    comms::Fault faults[3];
+    messages::Fault faults[3];
     if (messages.has_status) {
       vehicle_->on_flags(messages.flags);
       vehicle_->on_land_detected(messages.land_detected);
@@ -86,7 +86,7 @@ class Px4Flight : public testing::Test {
     if (messages.battery) {
       if (const auto battery = vehicle_->on_battery(*messages.battery, now_ns_, faults[0])) {
         plant::BatterySample sample;
-        EXPECT_FALSE(comms::from_message(*battery, sample));
+        EXPECT_FALSE(messages::from_message(*battery, sample));
         control_->on_battery(sample);
         has_battery_ = true;
       }
@@ -99,14 +99,14 @@ class Px4Flight : public testing::Test {
       if (const auto imu = vehicle_->on_sensors(*messages.sensors, now_ns_, faults[2]))
         answer<plant::ImuSample>(*imu);
     }
-    for (const comms::Fault& fault : faults) EXPECT_FALSE(fault) << fault.text;
+    for (const messages::Fault& fault : faults) EXPECT_FALSE(fault) << fault.text;
   }
   template <class Sample, class Message>
   void answer(const Message& message) {
     if (!control_lives_) return;
     Sample sample;
-    ASSERT_FALSE(comms::from_message(message, sample));
-    control_->set_obeyed(comms::from_message(message.obeyed()));
+    ASSERT_FALSE(messages::from_message(message, sample));
+    control_->set_obeyed(messages::from_message(message.obeyed()));
     const plant::VehicleCommand* command = nullptr;
     if constexpr (std::is_same_v<Sample, plant::ImuSample>) {
       command = &control_->on_imu(sample);

@@ -12,7 +12,7 @@ constexpr std::int64_t kPeriodNs = 10'000'000;
 
 class Px4ThrustScale : public testing::Test {
  protected:
-  const plant::Vehicle vehicle_ = runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
+  const plant::Vehicle vehicle_ = io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
   const double weight_n_ = vehicle_.mass_kg * plant::kGravity;
 
   double thrust_of(double throttle, double voltage_v) const {

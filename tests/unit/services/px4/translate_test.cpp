@@ -14,8 +14,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 const plant::Vehicle& kaylion() {
-  static const plant::Vehicle vehicle =
-      runtime::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
+  static const plant::Vehicle vehicle = io::load_vehicle(tests::in_source("config/vehicles/kaylion.yaml"));
   return vehicle;
 }
 

@@ -43,7 +43,7 @@ TEST(RunProcess, ExitCodeDependsOnTheException) {
   bool ran = false;
   EXPECT_EQ(run({}, [&] { ran = true; }), 0);
   EXPECT_TRUE(ran);
-  EXPECT_EQ(run({}, [] { throw ConfigError("a.yaml", 3, "mass", "is 0, must be above 0"); }), 2);
+  EXPECT_EQ(run({}, [] { throw io::ConfigError("a.yaml", 3, "mass", "is 0, must be above 0"); }), 2);
   EXPECT_EQ(run({}, [] { throw std::invalid_argument("bad"); }), 2);
   EXPECT_EQ(run({}, [] { throw std::runtime_error("broken"); }), 1);
 }
@@ -60,7 +60,7 @@ TEST(RunProcess, WrongUsageDoesNotRunTheBody) {
 
 TEST(RunProcess, PrintsAFaultAsOneLine) {
   testing::internal::CaptureStderr();
-  run({}, [] { throw ConfigError("a.yaml", 3, "mass", "is 0, must be above 0"); });
+  run({}, [] { throw io::ConfigError("a.yaml", 3, "mass", "is 0, must be above 0"); });
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "prog: a.yaml:3: mass: is 0, must be above 0\n");
 }
 

@@ -13,15 +13,15 @@ TEST(Wire, AnImuSampleKeepsItsStampsAndReportsTheObeyedCommand) {
   in.stamp_us = 1'234'567'890'123;
   in.specific_force_frd = {1.0F, 2.0F, -9.75F};
   in.body_rates_frd = {0.5F, -0.25F, 0.125F};
-  EXPECT_EQ(to_message(in).obeyed().state(), comms::msg::ObeyedCommand_Constants::NONE);
+  EXPECT_EQ(to_message(in).obeyed().state(), messages::msg::ObeyedCommand_Constants::NONE);
   in.has_command = 1;
   in.command_term = 70'000;
   in.command_stamp_us = 1'234'567'888'123;
-  const comms::msg::Imu out = to_message(in);
+  const messages::msg::Imu out = to_message(in);
   EXPECT_EQ(out.stamp_ns(), 1'234'567'890'123'000);
   EXPECT_EQ(out.specific_force_frd()[2], -9.75);
   EXPECT_EQ(out.body_rates_frd()[1], -0.25);
-  EXPECT_EQ(out.obeyed().state(), comms::msg::ObeyedCommand_Constants::OBEYED);
+  EXPECT_EQ(out.obeyed().state(), messages::msg::ObeyedCommand_Constants::OBEYED);
   EXPECT_EQ(out.obeyed().term(), 70'000U);
   EXPECT_EQ(out.obeyed().stamp_ns(), 1'234'567'888'123'000);
   EXPECT_EQ(out.lockstep().mocap_pose(), 0U) << "always so in real time";
@@ -60,7 +60,7 @@ TEST(Wire, RotorSpeedsAndBatteryKeepTheirValues) {
   EXPECT_EQ(to_message(speeds).stamp_ns(), 5000);
   EXPECT_EQ(to_message(speeds).rotor_count(), 4);
   EXPECT_EQ(to_message(speeds).speeds(), (std::array<double, 8>{1, 2, 3, 4}));
-  const comms::msg::Battery battery = to_message(protocol::Battery{6, 3.75F, 2.5F, 0.5F});
+  const messages::msg::Battery battery = to_message(protocol::Battery{6, 3.75F, 2.5F, 0.5F});
   EXPECT_EQ(battery.stamp_ns(), 6000);
   EXPECT_EQ(battery.voltage_v(), 3.75);
   EXPECT_EQ(battery.current_a(), 2.5);

@@ -186,7 +186,7 @@ TEST_F(FlightPage, NamesASignalOfAnotherType) {
     }
     try {
       flights();
-    } catch (const runtime::ConfigError& error) {
+    } catch (const io::ConfigError& error) {
       return error.what();
     }
     return "";
@@ -230,7 +230,7 @@ TEST_F(FlightPage, SaysWhatIsMissing) {
   try {
     flights();
     FAIL() << "a file without a flight was accepted";
-  } catch (const runtime::ConfigError& error) {
+  } catch (const io::ConfigError& error) {
     EXPECT_NE(std::string(error.what()).find("holds no flight"), std::string::npos) << error.what();
   }
 }

@@ -22,10 +22,10 @@ class LevelGainsOf : public testing::Test {
   // Hovers over a radio, and returns the largest tilt, rad, or vertical speed, m/s, meanwhile.
   double unrest_in_hover(ControlLevel level, double one_way_s) {
     plant::SimulationSettings world =
-        runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
+        io::load_simulation_settings(io::find_config("simulation/default.yaml"));
     world.control_levels = level;
     world.radio = {one_way_s, 0.0, 0.0};
-    ClosedLoop loop(vehicle_, world, settings_, 1);
+    simulation::ClosedLoop loop(vehicle_, world, settings_, 1);
     control::Request request;
     request.kind = control::RequestKind::kArm;
     EXPECT_TRUE(loop.step_until(
@@ -47,9 +47,8 @@ class LevelGainsOf : public testing::Test {
     return most;
   }
 
-  plant::Vehicle vehicle_ = runtime::load_vehicle(runtime::find_config("vehicles/crazyflie2.yaml"));
-  control::ControlSettings settings_ =
-      runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml"));
+  plant::Vehicle vehicle_ = io::load_vehicle(io::find_config("vehicles/crazyflie2.yaml"));
+  control::ControlSettings settings_ = io::load_control_settings(io::find_config("control/motor_lag.yaml"));
 };
 
 // GIVEN the delay that the loops tolerate WHEN a vehicle flies with less THEN it hovers calmly, with more it does not.
@@ -68,11 +67,13 @@ TEST_F(LevelGainsOf, ToleratedDelayIsThatOfAFlight) {
 
 TEST_F(LevelGainsOf, AreDesignedForADelayWithReserve) {
   for (const ControlLevel level : {ControlLevel::kRates, ControlLevel::kAttitude}) {
-    const DelayDesign tuned = design_for_delay(vehicle_, settings_, 0.1, {level, vehicle_loops(vehicle_)});
+    const analysis::DelayDesign tuned =
+        analysis::design_for_delay(vehicle_, settings_, 0.1, {level, vehicle_loops(vehicle_)});
     const LevelGains gains = level_gains(vehicle_, tuned.settings, level, 0.1);
     EXPECT_LT(tuned.factor, 1.0) << plant::to_string(level);
     for (std::size_t i = 0; i < gains.margins.size(); ++i) {
-      EXPECT_GE(gains.tolerated_delay_s[i], kDelayReserve * 0.1) << plant::to_string(level) << ' ' << i;
+      EXPECT_GE(gains.tolerated_delay_s[i], analysis::kDelayReserve * 0.1)
+          << plant::to_string(level) << ' ' << i;
       EXPECT_GT(gains.margins[i].phase_deg, 15.0) << plant::to_string(level) << ' ' << i;
     }
   }

@@ -35,7 +35,7 @@ class Cameras {
 
   mocap::NedPose see(const Vector3d& centre, const Quaterniond& vehicle) {
     mocap::NedPose pose;
-    pose.q_ned_from_frd = vehicle * plant::rotation(kTurn).conjugate() * plant::rotation(0.1 * noise());
+    pose.q_ned_from_frd = vehicle * math::rotation(kTurn).conjugate() * math::rotation(0.1 * noise());
     pose.position_ned = centre - vehicle * kArm + noise();
     return pose;
   }
@@ -51,7 +51,7 @@ class Cameras {
       const double t = 6.283 * i / count;
       const Vector3d vector(std::sin(3 * t), axes > 1 ? std::sin(5 * t + 1) : 0.0,
                             axes > 2 ? std::sin(7 * t + 2) : 0.0);
-      poses.push_back(see({1, 2, -0.5}, plant::rotation(angle * vector)));
+      poses.push_back(see({1, 2, -0.5}, math::rotation(angle * vector)));
     }
     return poses;
   }
@@ -90,7 +90,7 @@ TEST(Calibration, IsWhatTheRoomFrameUses) {
   mocap::VehicleBody vehicle;
   vehicle.misalignment = misalignment_of(cameras.at_rest(100), 3.0).vector;
   vehicle.lever_arm_frd = lever_arm_of(cameras.turned(2000, 0.6, 3), {kTurn, {}}, kSeconds).frd;
-  const Quaterniond attitude = plant::rotation({0.3, 0.2, 0.1});
+  const Quaterniond attitude = math::rotation({0.3, 0.2, 0.1});
   const mocap::NedPose body = cameras.see({1, 2, 3}, attitude);
   // Back into the axes of the motion capture, with z up.
   const auto turned = [](const Vector3d& v) { return Vector3d(v.x(), -v.y(), -v.z()); };

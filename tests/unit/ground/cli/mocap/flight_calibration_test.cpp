@@ -33,18 +33,18 @@ struct Askew {
   double delay_s = 0.0;
 
   explicit Askew(std::uint64_t seed) {
-    plant::RandomStream random(seed, 20261125);
+    math::RandomStream random(seed, 20261125);
     misalignment = 0.05 * random.normal3();
     lever_arm = 0.03 * random.normal3();
     tilt = 0.003 * Vector3d(random.normal(), random.normal(), 0.0);
     delay_s = 0.004 * random.normal();
   }
   void apply(FlightLog& log) const {
-    const Eigen::Quaterniond tilted = plant::rotation(tilt);
+    const Eigen::Quaterniond tilted = math::rotation(tilt);
     for (identification::FlightPose& pose : log.poses) {
       pose.time_s += delay_s;
       pose.position_ned = tilted * (pose.position_ned - pose.q_ned_from_frd * lever_arm);
-      pose.q_ned_from_frd = tilted * pose.q_ned_from_frd * plant::rotation(misalignment).conjugate();
+      pose.q_ned_from_frd = tilted * pose.q_ned_from_frd * math::rotation(misalignment).conjugate();
     }
   }
 };
@@ -54,7 +54,7 @@ std::string mission(const std::string& items) {
 }
 
 LaunchConfiguration flight_of(const std::string& mission) {
-  LaunchConfiguration plan = plan_of(mission);
+  LaunchConfiguration plan = analysis::plan_of(mission);
   plan.simulation.mocap.misalignment_rad = 0.0;
   return plan;
 }
@@ -85,7 +85,7 @@ Tallies calibrate(const char* flight, const LaunchConfiguration& plan, int seeds
   Tallies out;
   for (int seed = 1; seed <= seeds; ++seed) {
     const Askew askew(static_cast<std::uint64_t>(seed));
-    FlightLog log = flown(plan, plan.vehicle, static_cast<std::uint64_t>(seed));
+    FlightLog log = analysis::flown(plan, plan.vehicle, static_cast<std::uint64_t>(seed));
     askew.apply(log);
     const BodyAlignment found = align_body(log, {});
     const FlightCalibration calibration = calibrated({}, found);
@@ -155,7 +155,7 @@ TEST(FlightCalibration, TellsAllFromTheMissionCalibration) {
 
 // On the ground, for 6 s; body and vehicle have the same axes.
 FlightLog standing(std::uint64_t seed) {
-  plant::RandomStream random(seed, 20261126);
+  math::RandomStream random(seed, 20261126);
   FlightLog log;
   for (int i = 0; i < 3000; ++i) {
     log.time_s.push_back(0.002 * i);
@@ -163,7 +163,7 @@ FlightLog standing(std::uint64_t seed) {
     log.body_rates_frd.push_back(0.005 * random.normal3());
     if (i % 5 == 0)
       log.poses.push_back(
-          {log.time_s.back(), 5e-5 * random.normal3(), plant::rotation(5e-4 * random.normal3())});
+          {log.time_s.back(), 5e-5 * random.normal3(), math::rotation(5e-4 * random.normal3())});
   }
   return log;
 }
@@ -180,7 +180,7 @@ TEST(FlightCalibration, RefusesNoPoseOfAVehicleThatStands) {
 
 TEST(FlightCalibration, RefusesPosesOfAnotherMotion) {
   const LaunchConfiguration plan = flight_of("calibration");
-  FlightLog log = flown(plan, plan.vehicle, 1);
+  FlightLog log = analysis::flown(plan, plan.vehicle, 1);
   for (identification::FlightPose& pose : log.poses)
     pose.position_ned = {pose.position_ned.y(), -pose.position_ned.x(), pose.position_ned.z()};
   EXPECT_TRUE(tests::contains({tests::refused<std::runtime_error>([&] { align_body(log, {}); })},
@@ -201,11 +201,11 @@ TEST(FlightCalibration, AddsToWhatTheRoomFileHas) {
   found.misalignment = estimate({0.01, 0.02, -0.03}, Vector3d::Constant(1e-3));
   found.lever_arm = estimate({0.004, -0.003, 0.002}, Vector3d::Constant(1e-3));
   const FlightCalibration after = calibrated(before, found);
-  const Eigen::Quaterniond body = plant::rotation({0.4, -0.3, 1.0});
-  const Eigen::Quaterniond reported = body * plant::rotation(before.misalignment);
-  const Eigen::Quaterniond attitude = reported * plant::rotation(found.misalignment.value);
+  const Eigen::Quaterniond body = math::rotation({0.4, -0.3, 1.0});
+  const Eigen::Quaterniond reported = body * math::rotation(before.misalignment);
+  const Eigen::Quaterniond attitude = reported * math::rotation(found.misalignment.value);
   const Vector3d centre = reported * before.lever_arm_frd + attitude * found.lever_arm.value;
-  const Eigen::Quaterniond now = body * plant::rotation(after.misalignment.vector);
+  const Eigen::Quaterniond now = body * math::rotation(after.misalignment.vector);
   EXPECT_LT(now.angularDistance(attitude), 1e-9);
   EXPECT_LT((now * after.lever_arm.frd - centre).norm(), 1e-12);
   EXPECT_TRUE(after.advice.empty());

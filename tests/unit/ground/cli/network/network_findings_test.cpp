@@ -8,8 +8,8 @@
 
 namespace swiftlet::ground::network_findings_test {
 
-comms::ProbedHost good_host() {
-  comms::ProbedHost host;
+ground::ProbedHost good_host() {
+  ground::ProbedHost host;
   host.name = "lab2";
   host.address = "10.0.0.2";
   host.multicast_heard = host.multicast_answered = true;

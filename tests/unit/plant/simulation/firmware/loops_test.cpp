@@ -49,9 +49,9 @@ TEST(RateLoop, TheIntegralStaysWithinItsLimit) {
 TEST(AttitudeLoop, TurnsTheShortWay) {
   const plant::AttitudeGains gains = plant::firmware_gains(kaylion()).attitude;
   const plant::AttitudeLoop loop(gains);
-  const Quaterniond now = plant::rotation(Vector3d(0.3, -0.2, 2.0));
+  const Quaterniond now = math::rotation(Vector3d(0.3, -0.2, 2.0));
   const Vector3d turn(0.01, -0.02, 0.03);
-  const Quaterniond wanted = now * plant::rotation(turn);
+  const Quaterniond wanted = now * math::rotation(turn);
   const Vector3d expected = gains.p.cwiseProduct(turn);
   EXPECT_TRUE(loop.step(wanted, Vector3d::Zero(), now).isApprox(expected, 1e-3));
   EXPECT_TRUE(loop.step(Quaterniond(-wanted.coeffs()), Vector3d::Zero(), now).isApprox(expected, 1e-3));
@@ -62,7 +62,7 @@ TEST(AttitudeLoop, FeedsRatesForwardInTheAxesOfTheWantedAttitude) {
   const Quaterniond level = Quaterniond::Identity();
   const Vector3d ahead(0.4, -0.5, 0.6);
   EXPECT_TRUE(loop.step(level, ahead, level).isApprox(ahead, 1e-12));
-  const Quaterniond turned = plant::rotation(Vector3d(0.0, 0.0, 0.2));
+  const Quaterniond turned = math::rotation(Vector3d(0.0, 0.0, 0.2));
   const Vector3d difference = loop.step(turned, ahead, level) - loop.step(turned, Vector3d::Zero(), level);
   EXPECT_TRUE(difference.isApprox(turned * ahead, 1e-12));
 }

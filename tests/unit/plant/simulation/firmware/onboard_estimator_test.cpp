@@ -28,7 +28,7 @@ class Circle : public testing::Test {
   static Vector3d velocity(double t) {
     return {-kRadius_m * kRate * std::sin(kRate * t), kRadius_m * kRate * std::cos(kRate * t), 0.0};
   }
-  static Quaterniond attitude(double t) { return plant::rotation(Vector3d(0.0, 0.0, kRate * t)); }
+  static Quaterniond attitude(double t) { return math::rotation(Vector3d(0.0, 0.0, kRate * t)); }
 
   void step() {
     ++steps_;

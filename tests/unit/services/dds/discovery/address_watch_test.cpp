@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::comms::address_watch_test {
+namespace swiftlet::dds::address_watch_test {
 
-const runtime::Interface kEth0{"eth0", "10.0.0.1"};
-const runtime::Interface kEth0Later{"eth0", "10.0.0.2"};
-const runtime::Interface kWlan0{"wlan0", "10.0.1.1"};
-const runtime::Interface kLo{"lo", "127.0.0.1", true};
+const io::Interface kEth0{"eth0", "10.0.0.1"};
+const io::Interface kEth0Later{"eth0", "10.0.0.2"};
+const io::Interface kWlan0{"wlan0", "10.0.1.1"};
+const io::Interface kLo{"lo", "127.0.0.1", true};
 
 TEST(AddressWatch, SaysWhatHasChangedOnce) {
   AddressWatch watch;
@@ -43,4 +43,4 @@ TEST(AddressWatch, SaysWhoMustBeRestarted) {
   }
 }
 
-}  // namespace swiftlet::comms::address_watch_test
+}  // namespace swiftlet::dds::address_watch_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::comms::announcement_budget_test {
+namespace swiftlet::dds::announcement_budget_test {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::size_t kFew = 12;  // so many are few
@@ -104,4 +104,4 @@ TEST(EndpointCopies, AreFewerInALargeDomain) {
   EXPECT_EQ(endpoint_copies(100), 1);
 }
 
-}  // namespace swiftlet::comms::announcement_budget_test
+}  // namespace swiftlet::dds::announcement_budget_test

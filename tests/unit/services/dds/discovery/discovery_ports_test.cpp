@@ -18,7 +18,7 @@
 #include "swiftlet/services/dds/participant_session.hpp"
 #include "tests/support/eventually.hpp"
 
-namespace swiftlet::comms::discovery_ports_test {
+namespace swiftlet::dds::discovery_ports_test {
 
 using swiftlet::tests::Inbox;
 
@@ -119,7 +119,7 @@ TEST(DiscoveryPorts, AreTakenInTheirOrder) {
   const DomainLock lock;
   const TakenPorts three(lock.domain(), 3);
   EXPECT_EQ(free_discovery_port(lock.domain(), "127.0.0.1"), 3U);
-  const auto guard = std::make_shared<DatagramGuard>();
+  const auto guard = std::make_shared<rtps::DatagramGuard>();
   const ParticipantSession session(settings(lock, "fourth"), {}, guard, nullptr);
   EXPECT_EQ(discovery_ports(lock.domain()).index_of(guard->discovery_port()), 3U);
   EXPECT_EQ(free_discovery_port(lock.domain(), "127.0.0.1"), 4U);
@@ -155,4 +155,4 @@ TEST(DiscoveryPorts, LastDomainCanBeJoined) {
   EXPECT_NO_THROW(Node node(settings));
 }
 
-}  // namespace swiftlet::comms::discovery_ports_test
+}  // namespace swiftlet::dds::discovery_ports_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace swiftlet::comms::rediscovery_test {
+namespace swiftlet::dds::rediscovery_test {
 
 using namespace std::chrono_literals;
 
@@ -49,4 +49,4 @@ TEST(RejoinPatience, DiffersBetweenProcessesAfterTheFirst) {
   EXPECT_EQ(patience.at(kStart), 3000ms);
 }
 
-}  // namespace swiftlet::comms::rediscovery_test
+}  // namespace swiftlet::dds::rediscovery_test

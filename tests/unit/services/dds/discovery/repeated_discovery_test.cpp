@@ -4,7 +4,7 @@
 
 #include "tests/support/rtps_message.hpp"
 
-namespace swiftlet::comms::repeated_discovery_test {
+namespace swiftlet::dds::repeated_discovery_test {
 
 using tests::ByteWriter;
 using tests::RtpsMessage;
@@ -13,7 +13,7 @@ bool is_announcement_of(const RtpsMessage& message) {
   return announcement_digest(message.bytes().data(), message.bytes().size()).has_value();
 }
 
-ByteWriter sample_of(const EntityId& reader, const EntityId& writer) {
+ByteWriter sample_of(const rtps::EntityId& reader, const rtps::EntityId& writer) {
   return tests::data_fields(reader, writer, 1);
 }
 
@@ -34,10 +34,10 @@ TEST(RepeatedDiscovery, KnowsAnnouncements) {
   RtpsMessage announcement = tests::announcement(tests::kAlice, tests::participant_parameters(tests::kAlice));
   EXPECT_TRUE(is_announcement_of(announcement));
   EXPECT_TRUE(is_announcement_of(announcement.add(0x80, 0, ByteWriter().zeros(56)))) << "with statistics";
-  const EntityId liveliness_writer{0x00, 0x02, 0x00, 0xc2};
+  const rtps::EntityId liveliness_writer{0x00, 0x02, 0x00, 0xc2};
   EXPECT_TRUE(is_announcement_of(RtpsMessage()
                                      .add(0x0e, 0, ByteWriter().bytes(tests::kBob))
-                                     .add(0x15, 4, sample_of(kUnknownEntity, liveliness_writer))));
+                                     .add(0x15, 4, sample_of(rtps::kUnknownEntity, liveliness_writer))));
 }
 
 TEST(RepeatedDiscovery, KnowsWhatTellsOfEndpoints) {
@@ -52,7 +52,7 @@ TEST(RepeatedDiscovery, KnowsWhatTellsOfEndpoints) {
 }
 
 TEST(RepeatedDiscovery, TellsWhatIsAnnouncedFromWhen) {
-  const auto digest_of = [](std::uint8_t time, const GuidPrefix& participant) {
+  const auto digest_of = [](std::uint8_t time, const rtps::GuidPrefix& participant) {
     RtpsMessage message;
     message.add(0x09, 0, ByteWriter().bytes(std::vector<std::uint8_t>(8, time)))
         .add(0x15, 4, sample_of(tests::kSpdpReader, tests::kSpdpWriter).bytes(participant));
@@ -63,4 +63,4 @@ TEST(RepeatedDiscovery, TellsWhatIsAnnouncedFromWhen) {
   EXPECT_NE(digest_of(1, tests::kAlice), digest_of(1, tests::kBob));
 }
 
-}  // namespace swiftlet::comms::repeated_discovery_test
+}  // namespace swiftlet::dds::repeated_discovery_test

@@ -16,30 +16,30 @@
 #include "swiftlet/services/dds/node.hpp"
 #include "tests/support/eventually.hpp"
 
-namespace swiftlet::comms::qos_conflicts_test {
+namespace swiftlet::dds::qos_conflicts_test {
 
-namespace dds = eprosima::fastdds::dds;
+namespace fastdds = eprosima::fastdds::dds;
 using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
 using namespace std::chrono_literals;
 
-EndpointQos offer() { return endpoint_qos(dds::DataWriterQos()); }
-EndpointQos demand() { return endpoint_qos(dds::DataReaderQos()); }
+EndpointQos offer() { return endpoint_qos(fastdds::DataWriterQos()); }
+EndpointQos demand() { return endpoint_qos(fastdds::DataReaderQos()); }
 
 TEST(QosConflicts, DefaultsMatch) { EXPECT_EQ(conflicts(offer(), demand()), ""); }
 
 TEST(QosConflicts, ListEachPolicyWithBothValues) {
   EndpointQos offered = offer();
-  offered.reliability = dds::BEST_EFFORT_RELIABILITY_QOS;
+  offered.reliability = fastdds::BEST_EFFORT_RELIABILITY_QOS;
   EndpointQos requested = demand();
-  requested.reliability = dds::RELIABLE_RELIABILITY_QOS;
+  requested.reliability = fastdds::RELIABLE_RELIABILITY_QOS;
   EXPECT_EQ(conflicts(offered, requested), "reliability (offered best effort, requested reliable)");
 
-  offered.durability = dds::VOLATILE_DURABILITY_QOS;
-  requested.durability = dds::TRANSIENT_LOCAL_DURABILITY_QOS;
-  requested.ownership = dds::EXCLUSIVE_OWNERSHIP_QOS;
+  offered.durability = fastdds::VOLATILE_DURABILITY_QOS;
+  requested.durability = fastdds::TRANSIENT_LOCAL_DURABILITY_QOS;
+  requested.ownership = fastdds::EXCLUSIVE_OWNERSHIP_QOS;
   requested.deadline = {0, 50'000'000U};
-  requested.liveliness = dds::MANUAL_BY_TOPIC_LIVELINESS_QOS;
+  requested.liveliness = fastdds::MANUAL_BY_TOPIC_LIVELINESS_QOS;
   requested.lease = {2, 0U};
   requested.without_positive_acks = true;
   EXPECT_EQ(conflicts(offered, requested),
@@ -54,12 +54,12 @@ TEST(QosConflicts, ListEachPolicyWithBothValues) {
 
 TEST(QosConflicts, MatchWhenMoreIsOfferedThanRequested) {
   EndpointQos offered = offer();
-  offered.reliability = dds::RELIABLE_RELIABILITY_QOS;
-  offered.durability = dds::TRANSIENT_LOCAL_DURABILITY_QOS;
+  offered.reliability = fastdds::RELIABLE_RELIABILITY_QOS;
+  offered.durability = fastdds::TRANSIENT_LOCAL_DURABILITY_QOS;
   offered.deadline = {0, 10'000'000U};
   EndpointQos requested = demand();
-  requested.reliability = dds::BEST_EFFORT_RELIABILITY_QOS;
-  requested.durability = dds::VOLATILE_DURABILITY_QOS;
+  requested.reliability = fastdds::BEST_EFFORT_RELIABILITY_QOS;
+  requested.durability = fastdds::VOLATILE_DURABILITY_QOS;
   requested.deadline = {0, 50'000'000U};
   EXPECT_EQ(conflicts(offered, requested), "");
 }
@@ -123,11 +123,12 @@ class QosConflictLog : public testing::Test {
   Node listener_{settings("listener")};
 };
 
-constexpr Topic<msg::Imu> kReliableImu{"imu", Qos::kRequest};
+constexpr messages::Topic<messages::msg::Imu> kReliableImu{"imu", messages::Qos::kRequest};
 
 TEST_F(QosConflictLog, NamesTopicPolicyAndPeerOnBothSides) {
-  const auto publisher = talker_.publish(topics::kImu);
-  const auto subscription = listener_.subscribe<msg::Imu>(kReliableImu, [](const msg::Imu&) {});
+  const auto publisher = talker_.publish(messages::topics::kImu);
+  const auto subscription =
+      listener_.subscribe<messages::msg::Imu>(kReliableImu, [](const messages::msg::Imu&) {});
 
   EXPECT_TRUE(is_logged({"rt/kl1/imu: 'talker' (",
                          ") is not received, their QoS is incompatible: "
@@ -142,10 +143,11 @@ TEST_F(QosConflictLog, NamesTopicPolicyAndPeerOnBothSides) {
 }
 
 TEST_F(QosConflictLog, IncludesALateSubscriber) {
-  const auto publisher = talker_.publish(topics::kActuatorCommand);
+  const auto publisher = talker_.publish(messages::topics::kActuatorCommand);
   ASSERT_TRUE(eventually([&] { return !listener_.topics_seen().empty(); }));
-  const auto subscription = listener_.subscribe<msg::ActuatorCommand>(
-      {topics::kActuatorCommand.name, Qos::kRequest}, [](const msg::ActuatorCommand&) {});
+  const auto subscription = listener_.subscribe<messages::msg::ActuatorCommand>(
+      {messages::topics::kActuatorCommand.name, messages::Qos::kRequest},
+      [](const messages::msg::ActuatorCommand&) {});
 
   const std::string policies = "reliability (offered best effort, requested reliable)";
   EXPECT_TRUE(is_logged({"rt/kl1/actuator_command: 'talker' (", "is not received", policies})) << all_lines();
@@ -154,15 +156,16 @@ TEST_F(QosConflictLog, IncludesALateSubscriber) {
 }
 
 TEST_F(QosConflictLog, OmitsEndpointsThatMatch) {
-  const auto matching_writer = talker_.publish(topics::kImu);
-  const auto conflicting_writer = talker_.publish(topics::kMocapPose);
-  const auto matching_reader = listener_.subscribe<msg::Imu>(topics::kImu, [](const msg::Imu&) {});
-  const auto conflicting_reader =
-      listener_.subscribe<msg::MocapPose>({"mocap_pose", Qos::kRequest}, [](const msg::MocapPose&) {});
+  const auto matching_writer = talker_.publish(messages::topics::kImu);
+  const auto conflicting_writer = talker_.publish(messages::topics::kMocapPose);
+  const auto matching_reader =
+      listener_.subscribe<messages::msg::Imu>(messages::topics::kImu, [](const messages::msg::Imu&) {});
+  const auto conflicting_reader = listener_.subscribe<messages::msg::MocapPose>(
+      {"mocap_pose", messages::Qos::kRequest}, [](const messages::msg::MocapPose&) {});
 
   ASSERT_TRUE(eventually([&] { return matching_writer.matched() == 1 && matching_reader.matched() == 1; }));
   ASSERT_TRUE(is_logged({"rt/kl1/mocap_pose", "is not received"})) << all_lines();
   EXPECT_EQ(count(lines_.items(), {"rt/kl1/imu"}), 0) << all_lines();
 }
 
-}  // namespace swiftlet::comms::qos_conflicts_test
+}  // namespace swiftlet::dds::qos_conflicts_test

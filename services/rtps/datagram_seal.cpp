@@ -1,0 +1,135 @@
+#include "swiftlet/services/rtps/datagram_seal.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <sodium.h>
+#include <string_view>
+
+namespace swiftlet::rtps {
+namespace {
+
+using io::NetworkKey;
+
+// The trailer, little endian: submessage header, key id, time of sending, count, tag over all bytes before it, zeros.
+constexpr std::uint8_t kSealKind = 0x81;
+constexpr std::size_t kTimeAt = 8;
+constexpr std::size_t kCountAt = 16;
+constexpr std::size_t kTagAt = 24;
+constexpr std::size_t kTagBytes = 16;
+constexpr std::size_t kPrefixAt = 8;                      // in the datagram
+constexpr std::int64_t kCopiesArrive_ns = 1'000'000'000;  // within
+
+void put(std::uint8_t* to, std::uint64_t value, std::size_t bytes) {
+  for (std::size_t i = 0; i < bytes; ++i) to[i] = static_cast<std::uint8_t>(value >> (8 * i));
+}
+std::uint64_t get(const std::uint8_t* from, std::size_t bytes) {
+  std::uint64_t value = 0;
+  for (std::size_t i = bytes; i-- > 0;) value = value << 8U | from[i];
+  return value;
+}
+
+// Names a key without telling it.
+std::uint32_t id_of(const NetworkKey& key) {
+  std::array<std::uint8_t, crypto_generichash_BYTES_MIN> digest{};
+  static constexpr char kContext[] = "swiftlet network key id";
+  crypto_generichash(digest.data(), digest.size(), reinterpret_cast<const std::uint8_t*>(kContext),
+                     sizeof kContext, key.data(), key.size());
+  return static_cast<std::uint32_t>(get(digest.data(), 4));
+}
+
+// Keyed BLAKE2b.
+void tag_of(const NetworkKey& key, const std::uint8_t* data, std::size_t size, std::uint8_t* tag) {
+  crypto_generichash(tag, kTagBytes, data, size, key.data(), key.size());
+}
+
+std::int64_t since_1970_ns() {
+  return std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+}
+
+}  // namespace
+
+// The count begins with the time, so that it also grows when a participant joins again with the same prefix.
+DatagramSealer::DatagramSealer(const io::NetworkKeys& keys)
+    : key_(keys.front()), key_id_(id_of(key_)), count_(static_cast<std::uint64_t>(since_1970_ns())) {}
+
+void DatagramSealer::seal(std::vector<std::uint8_t>& datagram, std::int64_t now_ns) {
+  const std::size_t at = datagram.size();
+  datagram.resize(at + kSealBytes);
+  std::uint8_t* const trailer = datagram.data() + at;
+  std::fill_n(trailer, kSealBytes, std::uint8_t{0});
+  trailer[0] = kSealKind;
+  trailer[1] = 1;  // little endian
+  put(trailer + 2, kSealBytes - 4, 2);
+  put(trailer + 4, key_id_, 4);
+  put(trailer + kTimeAt, static_cast<std::uint64_t>(now_ns), 8);
+  put(trailer + kCountAt, ++count_, 8);
+  tag_of(key_, datagram.data(), at + kTagAt, trailer + kTagAt);
+}
+
+DatagramOpener::DatagramOpener(const io::NetworkKeys& keys) : senders_(kSenders) {
+  for (const NetworkKey& key : keys) keys_.push_back({key, id_of(key)});
+}
+
+const char* DatagramOpener::verify(const std::uint8_t* data, std::size_t size, std::int64_t now_ns) const {
+  if (size < kPrefixAt + GuidPrefix().size() + kSealBytes) return "not sealed with a network key";
+  const std::uint8_t* const trailer = data + size - kSealBytes;
+  if (trailer[0] != kSealKind || get(trailer + 2, 2) != kSealBytes - 4)
+    return "not sealed with a network key";
+  const auto id = static_cast<std::uint32_t>(get(trailer + 4, 4));
+  const auto key = std::find_if(keys_.begin(), keys_.end(), [&](const Key& known) { return known.id == id; });
+  if (key == keys_.end()) return "sealed with another network key";
+  std::array<std::uint8_t, kTagBytes> tag{};
+  tag_of(key->secret, data, size - kSealBytes + kTagAt, tag.data());
+  if (sodium_memcmp(tag.data(), trailer + kTagAt, kTagBytes) != 0) return "changed after it was sealed";
+  const auto sent_ns = static_cast<std::int64_t>(get(trailer + kTimeAt, 8));
+  if (sent_ns < now_ns - kSealTolerance_ns || sent_ns > now_ns + kSealTolerance_ns)
+    return "sealed more than 30 s ago or ahead: a recording, or the clocks of the hosts differ";
+  return nullptr;
+}
+
+const char* DatagramOpener::take(const std::uint8_t* data, std::size_t size, std::uint32_t port,
+                                 std::int64_t steady_ns) {
+  const std::uint8_t* const trailer = data + size - kSealBytes;
+  Sender& from = sender(data + kPrefixAt, port);
+  from.heard_ns = steady_ns;
+  return from.take(get(trailer + kCountAt, 8), static_cast<std::int64_t>(get(trailer + kTimeAt, 8)));
+}
+
+DatagramOpener::Sender& DatagramOpener::sender(const std::uint8_t* participant, std::uint32_t port) {
+  GuidPrefix prefix{};
+  std::copy_n(participant, prefix.size(), prefix.begin());
+  const std::size_t first =
+      std::hash<std::string_view>()({reinterpret_cast<const char*>(participant), prefix.size()}) + port;
+  Sender* longest_silent = nullptr;
+  for (std::size_t i = 0; i < kPlaces; ++i) {
+    Sender& known = senders_[(first + i) & (kSenders - 1)];
+    if (known.port == port && known.participant == prefix) return known;
+    if (longest_silent == nullptr || known.heard_ns < longest_silent->heard_ns) longest_silent = &known;
+  }
+  *longest_silent = {};
+  longest_silent->participant = prefix;
+  longest_silent->port = port;
+  return *longest_silent;
+}
+
+const char* DatagramOpener::Sender::take(std::uint64_t count, std::int64_t sealed_ns) {
+  const auto bit = [](std::uint64_t of) { return std::uint64_t{1} << of % 64; };
+  const auto word = [this](std::uint64_t of) -> std::uint64_t& {
+    return received[of / 64 % received.size()];
+  };
+  if (count + kSealWindow <= newest) return "older than 2048 others of its sender";
+  if (count > newest) {
+    // Counts between the newest and this one were not received.
+    const std::uint64_t skipped = std::min(count - newest, kSealWindow);
+    for (std::uint64_t i = 0; i < skipped; ++i) word(count - i) &= ~bit(count - i);
+    newest = count;
+    sent_ns = sealed_ns;
+  } else if ((word(count) & bit(count)) != 0) {
+    return sealed_ns > sent_ns - kCopiesArrive_ns ? kSentTwice : "received before";
+  }
+  word(count) |= bit(count);
+  return nullptr;
+}
+
+}  // namespace swiftlet::rtps
