@@ -19,12 +19,9 @@ struct TakeoffOptions : RequestOptions {
 };
 
 struct GotoOptions : RequestOptions {
-  double north_m = 0.0;
-  double east_m = 0.0;
+  Vehicle::Target target;  // without its z
   std::optional<double> z_ned_m;
   std::optional<double> height_m;  // instead of z
-  std::optional<double> yaw_rad;
-  double speed = 0.5;
 };
 
 struct LandOptions : RequestOptions {
@@ -53,11 +50,12 @@ void confirm(const StopOptions& options) {
 Vehicle::Target target_of(const GotoOptions& options) {
   if (options.z_ned_m.has_value() == options.height_m.has_value())
     throw io::InputError("goto: needs either z (down: negative is up) or --height (up, above the ground)");
-  const double z_ned_m = options.z_ned_m ? *options.z_ned_m : -*options.height_m;
-  control::Outcome outcome = control::check_above_ground("goto", z_ned_m);
-  if (outcome.accepted && options.yaw_rad) outcome = control::check_yaw("goto", *options.yaw_rad);
+  Vehicle::Target target = options.target;
+  target.position_ned_m.z() = options.z_ned_m ? *options.z_ned_m : -*options.height_m;
+  control::Outcome outcome = control::check_above_ground("goto", target.position_ned_m.z());
+  if (outcome.accepted && target.yaw_rad) outcome = control::check_yaw("goto", *target.yaw_rad);
   if (!outcome.accepted) throw io::InputError(outcome.reason);
-  return {{options.north_m, options.east_m, z_ned_m}, options.yaw_rad, options.speed};
+  return target;
 }
 
 }  // namespace
@@ -97,20 +95,21 @@ io::Command add_goto_command(runtime::CommandLine root) {
       "swiftlet goto -1 0 --height 1.5 --yaw 1.57    (1 m south, 1.5 m up, nose east)\n"
       "         swiftlet goto -1 0 -1.5 --yaw 1.57            (the same, with z down)",
       options, Vehicles::kOne);  // two vehicles cannot hold at one position
-  app.add_option("x", options->north_m, "north, m").required().finite();
-  app.add_option("y", options->east_m, "east, m").required().finite();
+  Vehicle::Target& target = options->target;
+  app.add_option("x", target.position_ned_m.x(), "north, m").required().finite();
+  app.add_option("y", target.position_ned_m.y(), "east, m").required().finite();
   runtime::Option z = app.add_option("z", options->z_ned_m, "down, m: negative is up").finite();
   app.add_option("--height", options->height_m, "height above the ground, m, instead of z")
       .positive()
       .excludes(z);
-  app.add_option("--yaw", options->yaw_rad,
+  app.add_option("--yaw", target.yaw_rad,
                  "yaw at the position, rad from north to east; default: the yaw does not change")
       .finite();
-  app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
+  app.add_option("--speed", target.speed_m_s, "peak speed, m/s").positive().show_default();
   return {app, [options] {
-            const Vehicle::Target target = target_of(*options);
+            const Vehicle::Target complete = target_of(*options);
             return run_request(*options, {"goto", [&](Vehicle& vehicle) {
-                                            return vehicle.go_to(target, options->timeout());
+                                            return vehicle.go_to(complete, options->timeout());
                                           }});
           }};
 }

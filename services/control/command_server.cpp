@@ -8,6 +8,7 @@
 #include "swiftlet/control/planning/feasibility.hpp"
 #include "swiftlet/services/control/arrivals.hpp"
 #include "swiftlet/services/messages/convert.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
@@ -72,6 +73,28 @@ control::Outcome stopped_without_imu(double imu_age_s) {
       "confirm the stop",
       imu_age_s);
   return outcome;
+}
+
+// key: client and id of the request. stamp_ns: if accepted, as in CommandAck.
+messages::msg::CommandAck answer_to(const std::pair<std::uint64_t, std::uint64_t>& key,
+                                    const control::Outcome& outcome, std::int64_t stamp_ns) {
+  messages::msg::CommandAck answer;
+  answer.client(key.first);
+  answer.id(key.second);
+  answer.accepted(outcome.accepted);
+  answer.reason() = outcome.reason;
+  answer.stamp_ns(stamp_ns);
+  return answer;
+}
+
+void log_answer(const char* kind, std::uint64_t id, const control::Outcome& outcome) {
+  if (!outcome.accepted) {
+    runtime::log_warning("{} {} refused: {}", kind, id, outcome.reason);
+  } else if (outcome.reason[0] != '\0') {
+    runtime::log_warning("{} {} accepted: {}", kind, id, outcome.reason);
+  } else {
+    runtime::log_info("{} {} accepted", kind, id);
+  }
 }
 
 control::Outcome refusal(const messages::Fault& fault) { return control::refuse("%s", fault.text); }
@@ -214,7 +237,7 @@ void CommandServer::follow(FailoverState failover_state) {
   for (const control::RequestStatus& request : state.requests) {
     const Key key{request.key.client, request.key.id};
     if (request.key.id != 0 && answers_.count(key) == 0)
-      keep_answer(key, {key.first, key.second, "request", control::accept(), false, state.now_ns});
+      keep_answer(key, answer_to(key, control::accept(), state.now_ns));
   }
   loop_.failover_state.put(failover_state);
   missions_.tidy(loop_.adopted_state());
@@ -237,8 +260,8 @@ bool CommandServer::claim(const Key& key) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto given = answers_.find(key);
   if (given == answers_.end()) return pending_.count(key) == 0 && checked_.insert(key).second;
+  runtime::log_debug("request {} is repeated: answered again", key.second);
   outbox_.push_back(given->second);
-  outbox_.back().repeated = true;
   wake_.post();
   return false;
 }
@@ -296,21 +319,21 @@ void CommandServer::refuse(const Key& key, control::RequestKind kind, const cont
 // Call with mutex_ held.
 void CommandServer::settle(const Key& key, control::RequestKind kind, const control::Outcome& outcome,
                            std::int64_t stamp_ns) {
-  const RequestResult answer{key.first, key.second, name_of(kind), outcome, false, stamp_ns};
-  keep_answer(key, answer);
-  outbox_.push_back(answer);
+  log_answer(name_of(kind), key.second, outcome);
+  outbox_.push_back(answer_to(key, outcome, stamp_ns));
+  keep_answer(key, outbox_.back());
   wake_.post();
 }
 
 // Call with mutex_ held.
-void CommandServer::keep_answer(const Key& key, const RequestResult& answer) {
+void CommandServer::keep_answer(const Key& key, const messages::msg::CommandAck& answer) {
   if (answers_.insert_or_assign(key, answer).second) oldest_.push_back(key);
   if (oldest_.size() <= kRememberedAnswers) return;
   answers_.erase(oldest_.front());
   oldest_.pop_front();
 }
 
-std::vector<RequestResult> CommandServer::collect() {
+std::vector<messages::msg::CommandAck> CommandServer::collect() {
   const std::lock_guard<std::mutex> lock(mutex_);
   PendingRequest* evaluated = nullptr;
   while (loop_.evaluated.pop(evaluated)) {

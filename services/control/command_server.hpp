@@ -24,16 +24,6 @@
 
 namespace swiftlet::services {
 
-// The answer to a request, for its client.
-struct RequestResult {
-  std::uint64_t client = 0;
-  std::uint64_t id = 0;
-  const char* kind = "";  // "mission", "arm"
-  control::Outcome outcome;
-  bool repeated = false;      // the answer was published before
-  std::int64_t stamp_ns = 0;  // if accepted: as in CommandAck
-};
-
 // Identifies requests by client and id, of all kinds. A request that was answered gets the same answer again and is not
 // applied twice. One that is repeated while it is being checked or pending is ignored.
 class CommandServer {
@@ -56,10 +46,10 @@ class CommandServer {
   // of the last sample.
   std::optional<control::RequestKey> accept_overdue_stop(double imu_age_s, std::int64_t stamp_ns);
 
-  // Returns the answers to publish. Refuses requests that the inner loop has not evaluated in time, because
+  // Returns the answers to publish, which are logged. Refuses requests that the inner loop has not evaluated in time, because
   // no IMU sample arrived; never a stop. Erases missions and trajectories that are no longer in use. Call from
   // one thread.
-  std::vector<RequestResult> collect();
+  std::vector<messages::msg::CommandAck> collect();
 
   // The gains that the inner loop flies with: changes begin there.
   void set_gains_in_force(const control::ControlGains& gains);
@@ -93,7 +83,7 @@ class CommandServer {
   void settle(const Key& key, control::RequestKind kind, const control::Outcome& outcome,
               std::int64_t stamp_ns = 0);
 
-  void keep_answer(const Key& key, const RequestResult& answer);
+  void keep_answer(const Key& key, const messages::msg::CommandAck& answer);
 
   InnerLoop& loop_;
   std::atomic<bool> active_{true};
@@ -106,9 +96,9 @@ class CommandServer {
   std::mutex mutex_;                                        // guards all members below; held briefly
   std::set<Key> checked_;                                   // between claim() and submit() or refuse()
   std::map<Key, std::unique_ptr<PendingRequest>> pending_;  // the inner loop points to them
-  std::map<Key, RequestResult> answers_;
+  std::map<Key, messages::msg::CommandAck> answers_;
   std::deque<Key> oldest_;  // keys of answers_, oldest first
-  std::vector<RequestResult> outbox_;
+  std::vector<messages::msg::CommandAck> outbox_;
   PlanStore<control::Mission> missions_;
   PlanStore<control::Trajectory> trajectories_;
   control::ControlGains gains_in_force_;

@@ -76,9 +76,9 @@ void Telemetry::set_unconfirmed_stop(const std::optional<control::RequestKey>& s
 void Telemetry::publish_due() {
   const bool any = loop_.snapshots.consume_all([this](const Snapshot& snapshot) { take(snapshot); }) > 0;
   if (any) command_server_.set_gains_in_force(last_.gains);
-  const std::vector<RequestResult> answers = command_server_.collect();
+  const std::vector<messages::msg::CommandAck> answers = command_server_.collect();
   if (last_.role == Role::kActive) publish_plan();  // before its acceptance is published
-  answer_requests(answers);
+  for (const messages::msg::CommandAck& answer : answers) acks_.publish(answer);
   const std::int64_t now_ns = runtime::monotonic_ns();
   if (watches_imu_) log_imu_silence();
   if (!command_server_.active()) return;
@@ -238,27 +238,6 @@ void Telemetry::publish_mission() {
   message.reason() = mission_end_;
   missions_.publish(message);
   mission_due_ns_ = runtime::monotonic_ns() + kMissionPeriodNs;
-}
-
-void Telemetry::answer_requests(const std::vector<RequestResult>& answers) {
-  for (const RequestResult& answer : answers) {
-    messages::msg::CommandAck ack;
-    ack.client(answer.client);
-    ack.id(answer.id);
-    ack.accepted(answer.outcome.accepted);
-    ack.reason() = answer.outcome.reason;
-    ack.stamp_ns(answer.stamp_ns);
-    acks_.publish(ack);
-    if (answer.repeated) {
-      runtime::log_debug("{} {} is a repeated request: answered again", answer.kind, answer.id);
-    } else if (answer.outcome.accepted && answer.outcome.reason[0] != '\0') {
-      runtime::log_warning("{} {} accepted: {}", answer.kind, answer.id, answer.outcome.reason);
-    } else if (answer.outcome.accepted) {
-      runtime::log_info("{} {} accepted", answer.kind, answer.id);
-    } else {
-      runtime::log_warning("{} {} refused: {}", answer.kind, answer.id, answer.outcome.reason);
-    }
-  }
 }
 
 }  // namespace swiftlet::services

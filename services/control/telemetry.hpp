@@ -45,7 +45,6 @@ class Telemetry {
   void take(const Snapshot& snapshot);
   void change_role();
   void publish_plan();
-  void answer_requests(const std::vector<RequestResult>& answers);
   std::string reason_text(control::Reason reason) const;
   void log_imu_silence();
   const DelayMonitor::Report& update_delay();

@@ -26,13 +26,11 @@ TEST_F(CommandServerTest, AnswersARequestInTheNextStep) {
 
   EXPECT_EQ(step().rotor_state, plant::RotorState::kRunning);
 
-  const std::vector<RequestResult> answers = command_server_.collect();
+  const std::vector<messages::msg::CommandAck> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 1U);
-  EXPECT_EQ(answers[0].client, kClient);
-  EXPECT_EQ(answers[0].id, 1U);
-  EXPECT_STREQ(answers[0].kind, "arm");
-  EXPECT_TRUE(answers[0].outcome.accepted) << answers[0].outcome.reason;
-  EXPECT_FALSE(answers[0].repeated);
+  EXPECT_EQ(answers[0].client(), kClient);
+  EXPECT_EQ(answers[0].id(), 1U);
+  EXPECT_TRUE(answers[0].accepted()) << answers[0].reason();
   EXPECT_EQ(mode(), control::Mode::kArmed);
 }
 
@@ -45,11 +43,11 @@ TEST_F(CommandServerTest, StatusesAfterAnAcceptanceIncludeTheRequest) {
   command_server_.on_command(command(Command_Constants::TAKEOFF, 2));
   step();
   const std::int64_t accepted_ns = last_imu_.stamp_ns;
-  for (const RequestResult& answer : command_server_.collect()) EXPECT_GT(answer.stamp_ns, 0) << answer.kind;
+  for (const messages::msg::CommandAck& answer : command_server_.collect()) EXPECT_GT(answer.stamp_ns(), 0) << answer.id();
   command_server_.on_command(command(Command_Constants::TAKEOFF, 2));
-  const std::vector<RequestResult> again = command_server_.collect();
+  const std::vector<messages::msg::CommandAck> again = command_server_.collect();
   ASSERT_EQ(again.size(), 1U);
-  EXPECT_EQ(again[0].stamp_ns, accepted_ns);
+  EXPECT_EQ(again[0].stamp_ns(), accepted_ns);
   for (int i = 0; i < 20; ++i) step();
   int reported = 0;
   Snapshot snapshot;
@@ -67,10 +65,9 @@ TEST_F(CommandServerTest, ChangesTheGains) {
   EXPECT_DOUBLE_EQ(last_.gains.position_p.x(), 5.6);
   command_server_.on_control_settings(settings_message(1, 1.0));
   step();
-  std::vector<RequestResult> answers = command_server_.collect();
+  std::vector<messages::msg::CommandAck> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 1U);
-  EXPECT_STREQ(answers[0].kind, "set control");
-  EXPECT_TRUE(answers[0].outcome.accepted) << answers[0].outcome.reason;
+  EXPECT_TRUE(answers[0].accepted()) << answers[0].reason();
   mode();
   EXPECT_DOUBLE_EQ(last_.gains.position_p.x(), 1.8);
   EXPECT_STREQ(last_.status.settings.data(), "soft");
@@ -78,30 +75,30 @@ TEST_F(CommandServerTest, ChangesTheGains) {
   // The next change begins at these gains.
   command_server_.on_control_settings(settings_message(2, 2.0));
   step();
-  EXPECT_STREQ(command_server_.collect().at(0).outcome.reason,
+  EXPECT_EQ(command_server_.collect().at(0).reason(),
                "another request changed the gains meanwhile; send this one again");
   command_server_.set_gains_in_force(last_.gains);
   command_server_.on_control_settings(settings_message(3, 2.0));
   step();
   answers = command_server_.collect();
-  EXPECT_TRUE(answers.at(0).outcome.accepted) << answers[0].outcome.reason;
+  EXPECT_TRUE(answers.at(0).accepted()) << answers[0].reason();
 }
 
 TEST_F(CommandServerTest, RefusesUnstableGainsBeforeTheInnerLoop) {
   command_server_.on_control_settings(settings_message(1, 6.0, 0.2));
-  const std::vector<RequestResult> answers = command_server_.collect();
+  const std::vector<messages::msg::CommandAck> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 1U) << "without a step";
-  EXPECT_STREQ(answers[0].outcome.reason, "position.x: with the rotor lag the loop is unstable");
+  EXPECT_EQ(answers[0].reason(), "position.x: with the rotor lag the loop is unstable");
 }
 
 TEST_F(CommandServerTest, AnswersARefusalWithItsReason) {
   settle();
   command_server_.on_command(command(Command_Constants::LAND, 1));
   step();
-  const std::vector<RequestResult> answers = command_server_.collect();
+  const std::vector<messages::msg::CommandAck> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 1U);
-  EXPECT_FALSE(answers[0].outcome.accepted);
-  EXPECT_GT(std::string(answers[0].outcome.reason).size(), 0U);
+  EXPECT_FALSE(answers[0].accepted());
+  EXPECT_GT(answers[0].reason().to_string().size(), 0U);
 }
 
 TEST_F(CommandServerTest, AnswersARepeatedRequestWithoutApplyingItAgain) {
@@ -117,11 +114,10 @@ TEST_F(CommandServerTest, AnswersARepeatedRequestWithoutApplyingItAgain) {
   command_server_.on_command(command(Command_Constants::ARM, 1));  // repeated by the network
 
   EXPECT_EQ(step().rotor_state, plant::RotorState::kOff);
-  const std::vector<RequestResult> answers = command_server_.collect();
+  const std::vector<messages::msg::CommandAck> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 1U);
-  EXPECT_EQ(answers[0].id, 1U);
-  EXPECT_TRUE(answers[0].outcome.accepted);
-  EXPECT_TRUE(answers[0].repeated);
+  EXPECT_EQ(answers[0].id(), 1U);
+  EXPECT_TRUE(answers[0].accepted());
   EXPECT_EQ(mode(), control::Mode::kDisarmed);
 }
 
@@ -156,9 +152,9 @@ TEST_F(CommandServerTest, ARequestClaimsItsKeyBeforeItIsChecked) {
     upload.join();
     EXPECT_EQ(loop_.requests.read_available(), 1U);
     step();
-    const std::vector<RequestResult> answers = command_server_.collect();
+    const std::vector<messages::msg::CommandAck> answers = command_server_.collect();
     EXPECT_EQ(answers.size(), 1U);
-    for (const RequestResult& answer : answers) EXPECT_EQ(answer.id, id);
+    for (const messages::msg::CommandAck& answer : answers) EXPECT_EQ(answer.id(), id);
   }
 }
 
@@ -187,13 +183,13 @@ TEST_F(CommandServerTest, RefusesInvalidRequestsBeforeTheInnerLoop) {
   empty.id(4);
   command_server_.on_trajectory(empty);
 
-  const std::vector<RequestResult> answers = command_server_.collect();
+  const std::vector<messages::msg::CommandAck> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 4U);
-  for (const RequestResult& answer : answers) EXPECT_FALSE(answer.outcome.accepted);
-  EXPECT_STREQ(answers[0].outcome.reason, "position_ned[1] is nan, must be finite");
-  EXPECT_NE(std::string(answers[1].outcome.reason).find("item 2: x is 99.000 m"), std::string::npos);
-  EXPECT_STREQ(answers[2].outcome.reason, "item 2: speed is nan, must be finite");
-  EXPECT_STREQ(answers[3].outcome.reason, "the trajectory has no segments");
+  for (const messages::msg::CommandAck& answer : answers) EXPECT_FALSE(answer.accepted());
+  EXPECT_EQ(answers[0].reason(), "position_ned[1] is nan, must be finite");
+  EXPECT_NE(answers[1].reason().to_string().find("item 2: x is 99.000 m"), std::string::npos);
+  EXPECT_EQ(answers[2].reason(), "item 2: speed is nan, must be finite");
+  EXPECT_EQ(answers[3].reason(), "the trajectory has no segments");
   EXPECT_EQ(loop_.requests.read_available(), 0U);
 }
 
@@ -215,15 +211,15 @@ TEST_F(CommandServerTest, RefusesPathsBeyondItsRotors) {
   msg::Mission mission = messages::to_message(around);
   mission.client(kClient);
   command_server_.on_mission(mission);
-  const std::vector<RequestResult> answers = command_server_.collect();
+  const std::vector<messages::msg::CommandAck> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 2U);
-  for (const RequestResult& answer : answers) EXPECT_FALSE(answer.outcome.accepted);
-  EXPECT_EQ(std::string(answers[0].outcome.reason).rfind("the trajectory: least thrust of a rotor is ", 0),
+  for (const messages::msg::CommandAck& answer : answers) EXPECT_FALSE(answer.accepted());
+  EXPECT_EQ(answers[0].reason().to_string().rfind("the trajectory: least thrust of a rotor is ", 0),
             0U)
-      << answers[0].outcome.reason;
-  EXPECT_EQ(std::string(answers[1].outcome.reason).rfind("the mission: least thrust of a rotor is ", 0), 0U)
-      << answers[1].outcome.reason;
-  EXPECT_NE(std::string(answers[1].outcome.reason).find(" s, segment 1, (0.00, 0.00, -1.00) m NED"),
+      << answers[0].reason();
+  EXPECT_EQ(answers[1].reason().to_string().rfind("the mission: least thrust of a rotor is ", 0), 0U)
+      << answers[1].reason();
+  EXPECT_NE(answers[1].reason().to_string().find(" s, segment 1, (0.00, 0.00, -1.00) m NED"),
             std::string::npos);
 }
 
@@ -237,10 +233,10 @@ TEST_F(CommandServerTest, KeepsItsOwnCopyOfAMission) {
   }
   command_server_.on_command(command(Command_Constants::MISSION_START, 3));
   step();
-  const std::vector<RequestResult> answers = command_server_.collect();
+  const std::vector<messages::msg::CommandAck> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 3U);
-  ASSERT_TRUE(answers[1].outcome.accepted) << answers[1].outcome.reason;
-  ASSERT_TRUE(answers[2].outcome.accepted) << answers[2].outcome.reason;
+  ASSERT_TRUE(answers[1].accepted()) << answers[1].reason();
+  ASSERT_TRUE(answers[2].accepted()) << answers[2].reason();
   for (int i = 0; i < 100; ++i) step();
   EXPECT_EQ(mode(), control::Mode::kMission);
   EXPECT_EQ(last_.status.mission.id, 2U);
@@ -250,13 +246,13 @@ TEST_F(CommandServerTest, KeepsItsOwnCopyOfAMission) {
 TEST_F(CommandServerTest, RefusesRequestsWithoutImuSamples) {
   settle();
   command_server_.on_command(command(Command_Constants::ARM, 1));
-  std::vector<RequestResult> answers;
+  std::vector<messages::msg::CommandAck> answers;
   ASSERT_TRUE(tests::eventually([&] {
     answers = command_server_.collect();
     return !answers.empty();
   }));
-  EXPECT_FALSE(answers[0].outcome.accepted);
-  EXPECT_STREQ(answers[0].outcome.reason, "no IMU samples arrive: is the vehicle running?");
+  EXPECT_FALSE(answers[0].accepted());
+  EXPECT_EQ(answers[0].reason(), "no IMU samples arrive: is the vehicle running?");
 
   EXPECT_EQ(step().rotor_state, plant::RotorState::kOff);
   EXPECT_TRUE(command_server_.collect().empty());
@@ -266,10 +262,10 @@ TEST_F(CommandServerTest, RefusesRequestsWithoutImuSamples) {
 TEST_F(CommandServerTest, RefusesRequestsBeyondItsCapacity) {
   for (std::uint64_t id = 1; id <= kMaxPendingRequests; ++id)
     command_server_.on_command(command(Command_Constants::HOLD, id));
-  const std::vector<RequestResult> answers = command_server_.collect();
+  const std::vector<messages::msg::CommandAck> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 1U);
-  EXPECT_EQ(answers[0].id, static_cast<std::uint64_t>(kMaxPendingRequests));
-  EXPECT_STREQ(answers[0].outcome.reason, "31 requests are pending, the limit");
+  EXPECT_EQ(answers[0].id(), static_cast<std::uint64_t>(kMaxPendingRequests));
+  EXPECT_EQ(answers[0].reason(), "31 requests are pending, the limit");
   step();
   EXPECT_EQ(command_server_.collect().size(), static_cast<std::size_t>(kMaxPendingRequests) - 1);
 }
@@ -283,12 +279,12 @@ TEST_F(CommandServerTest, AcceptsAStopWithoutImuSamples) {
 
   command_server_.on_command(command(Command_Constants::STOP, 2));
   EXPECT_TRUE(command_server_.accept_overdue_stop(3.2, 7)) << "rotors off must be commanded";
-  const std::vector<RequestResult> answers = command_server_.collect();
+  const std::vector<messages::msg::CommandAck> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 1U);
-  EXPECT_TRUE(answers[0].outcome.accepted);
-  EXPECT_EQ(answers[0].stamp_ns, 7);
+  EXPECT_TRUE(answers[0].accepted());
+  EXPECT_EQ(answers[0].stamp_ns(), 7);
   EXPECT_STREQ(
-      answers[0].outcome.reason,
+      answers[0].reason(),
       "rotors off is commanded, but the vehicle has been silent for 3.2 s (no IMU sample): it cannot confirm "
       "the stop");
   EXPECT_EQ(command_server_.accept_overdue_stop(3.3, 7)->id, 2U) << "until a sample comes";
@@ -307,9 +303,9 @@ TEST_F(CommandServerTest, AcceptsAStopBesideAnyNumberOfRequests) {
   for (const std::uint64_t id : {1001U, 1002U, 1003U})
     command_server_.on_command(command(Command_Constants::STOP, id));
   EXPECT_TRUE(command_server_.accept_overdue_stop(-1.0, 0));
-  const std::vector<RequestResult> answers = command_server_.collect();
+  const std::vector<messages::msg::CommandAck> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 3U);
-  for (const RequestResult& answer : answers) EXPECT_TRUE(answer.outcome.accepted) << answer.id;
+  for (const messages::msg::CommandAck& answer : answers) EXPECT_TRUE(answer.accepted()) << answer.id();
 }
 
 TEST_F(CommandServerTest, LetsTheInnerLoopAnswerAStopWhileSamplesArrive) {
@@ -317,10 +313,10 @@ TEST_F(CommandServerTest, LetsTheInnerLoopAnswerAStopWhileSamplesArrive) {
   command_server_.on_command(command(Command_Constants::STOP, 1));
   EXPECT_FALSE(command_server_.accept_overdue_stop(0.002, 7));
   step();
-  const std::vector<RequestResult> answers = command_server_.collect();
+  const std::vector<messages::msg::CommandAck> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 1U);
-  EXPECT_TRUE(answers[0].outcome.accepted);
-  EXPECT_STREQ(answers[0].outcome.reason, "");
+  EXPECT_TRUE(answers[0].accepted());
+  EXPECT_EQ(answers[0].reason(), "");
 }
 
 TEST_F(CommandServerTest, SamplesTelemetryAt100HzOfImuTime) {
@@ -363,11 +359,11 @@ TEST_F(CommandServerTest, RefusesADifferentMissionOfAPendingId) {
   other.client(kClient + 1);
   command_server_.on_mission(other);
   step();
-  const std::vector<RequestResult> answers = command_server_.collect();
+  const std::vector<messages::msg::CommandAck> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 2U);
-  EXPECT_EQ(answers[0].client, kClient + 1);
-  EXPECT_STREQ(answers[0].outcome.reason, "mission id 2 belongs to another mission: upload with a new id");
-  EXPECT_TRUE(answers[1].outcome.accepted) << answers[1].outcome.reason;
+  EXPECT_EQ(answers[0].client(), kClient + 1);
+  EXPECT_EQ(answers[0].reason(), "mission id 2 belongs to another mission: upload with a new id");
+  EXPECT_TRUE(answers[1].accepted()) << answers[1].reason();
   EXPECT_EQ(command_server_.mission(2).items().at(1).position_ned()[0], 1.0);
 }
 
@@ -375,7 +371,7 @@ TEST_F(CommandServerTest, RefusesADifferentMissionOfAKnownId) {
   settle();
   command_server_.on_mission(mission(2, 1.0));
   step();
-  ASSERT_TRUE(command_server_.collect().at(0).outcome.accepted);
+  ASSERT_TRUE(command_server_.collect().at(0).accepted());
   msg::Mission other = mission(2, 1.5);
   other.client(kClient + 1);
   command_server_.on_mission(other);
@@ -383,11 +379,11 @@ TEST_F(CommandServerTest, RefusesADifferentMissionOfAKnownId) {
   same.client(kClient + 2);
   command_server_.on_mission(same);
   step();
-  const std::vector<RequestResult> answers = command_server_.collect();
+  const std::vector<messages::msg::CommandAck> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 2U);
-  EXPECT_EQ(answers[0].client, kClient + 1);
-  EXPECT_STREQ(answers[0].outcome.reason, "mission id 2 belongs to another mission: upload with a new id");
-  EXPECT_TRUE(answers[1].outcome.accepted) << answers[1].outcome.reason;
+  EXPECT_EQ(answers[0].client(), kClient + 1);
+  EXPECT_EQ(answers[0].reason(), "mission id 2 belongs to another mission: upload with a new id");
+  EXPECT_TRUE(answers[1].accepted()) << answers[1].reason();
 }
 
 }  // namespace swiftlet::services::command_server_test

@@ -193,9 +193,9 @@ TEST_F(StandbyCommandServerTest, StartsAMissionUploadedBeforeTheFailover) {
     standby_server_.on_command(command(Command_Constants::MISSION_START, id + 1));
     step();
     step_standby(Role::kActive);
-    const std::vector<RequestResult> answers = standby_server_.collect();
+    const std::vector<messages::msg::CommandAck> answers = standby_server_.collect();
     ASSERT_EQ(answers.size(), 1U);
-    EXPECT_TRUE(answers[0].outcome.accepted) << answers[0].outcome.reason;
+    EXPECT_TRUE(answers[0].accepted()) << answers[0].reason();
     state = standby_state();
     EXPECT_EQ(state.mode, control::Mode::kMission);
     EXPECT_EQ(state.guidance.mission.state, control::MissionState::kRunning);
@@ -230,12 +230,11 @@ TEST_F(StandbyCommandServerTest, AnswersARequestAcceptedBeforeTheFailover) {
   step();
   step_standby(Role::kActive);
 
-  const std::vector<RequestResult> answers = standby_server_.collect();
+  const std::vector<messages::msg::CommandAck> answers = standby_server_.collect();
   ASSERT_EQ(answers.size(), 2U);
-  EXPECT_EQ(answers[0].id, 1U);
-  EXPECT_TRUE(answers[0].outcome.accepted);
-  EXPECT_TRUE(answers[0].repeated);
-  EXPECT_EQ(answers[1].id, 2U);
+  EXPECT_EQ(answers[0].id(), 1U);
+  EXPECT_TRUE(answers[0].accepted());
+  EXPECT_EQ(answers[1].id(), 2U);
   EXPECT_EQ(standby_state().mode, control::Mode::kDisarmed);
 }
 
