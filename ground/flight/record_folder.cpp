@@ -15,6 +15,7 @@
 #include <fmt/core.h>
 
 #include "swiftlet/io/command_line/command.hpp"
+#include "swiftlet/io/descriptor.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -93,17 +94,12 @@ class OldClaim {
  public:
   explicit OldClaim(const fs::path& folder)
       : descriptor_(open((folder / kClaim).c_str(), O_RDONLY | O_CLOEXEC)),
-        free_(descriptor_ < 0 || flock(descriptor_, LOCK_EX | LOCK_NB) == 0) {}
-  ~OldClaim() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-  OldClaim(const OldClaim&) = delete;
-  OldClaim& operator=(const OldClaim&) = delete;
+        free_(!descriptor_.is_open() || flock(descriptor_.get(), LOCK_EX | LOCK_NB) == 0) {}
 
   bool is_free() const { return free_; }
 
  private:
-  int descriptor_;
+  io::Descriptor descriptor_;
   bool free_;
 };
 

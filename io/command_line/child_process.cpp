@@ -14,29 +14,13 @@
 #include <unistd.h>
 #include <utility>
 
+#include "swiftlet/io/descriptor.hpp"
+
 namespace swiftlet::io {
 namespace {
 
 constexpr std::chrono::milliseconds kPollPeriod{5};
 constexpr std::chrono::milliseconds kReapPeriod{100};
-
-class FileDescriptor {
- public:
-  explicit FileDescriptor(int fd) : fd_(fd) {}
-  ~FileDescriptor() { close(); }
-  FileDescriptor(const FileDescriptor&) = delete;
-  FileDescriptor& operator=(const FileDescriptor&) = delete;
-
-  int get() const { return fd_; }
-  bool valid() const { return fd_ >= 0; }
-  void close() {
-    if (fd_ >= 0) ::close(fd_);
-    fd_ = -1;
-  }
-
- private:
-  int fd_;
-};
 
 [[noreturn]] void fail(const ProcessSettings& settings, const std::string& what, int error) {
   throw std::runtime_error(settings.name + ": " + what + ": " + std::strerror(error));
@@ -85,15 +69,16 @@ ChildProcess::ChildProcess(ProcessSettings settings) : settings_(std::move(setti
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
 
-  const FileDescriptor log(
+  const Descriptor log(
       open(settings_.log_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0644));
-  if (!log.valid()) fail(settings_, "log file " + settings_.log_file.string() + " cannot be written", errno);
-  const FileDescriptor input(open("/dev/null", O_RDONLY | O_CLOEXEC));
-  if (!input.valid()) fail(settings_, "/dev/null cannot be opened", errno);
+  if (!log.is_open())
+    fail(settings_, "log file " + settings_.log_file.string() + " cannot be written", errno);
+  const Descriptor input(open("/dev/null", O_RDONLY | O_CLOEXEC));
+  if (!input.is_open()) fail(settings_, "/dev/null cannot be opened", errno);
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) fail(settings_, "cannot create a pipe", errno);
-  const FileDescriptor failure(ends[0]);
-  FileDescriptor failure_writer(ends[1]);
+  const Descriptor failure(ends[0]);
+  Descriptor failure_writer(ends[1]);
 
   const pid_t launcher = getpid();
   pid_ = fork();

@@ -9,18 +9,17 @@
 #include <stdexcept>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
-#include <unistd.h>
+
+#include "swiftlet/io/descriptor.hpp"
 
 namespace swiftlet::io {
 namespace {
 
 int mtu_of(const char* interface) {
-  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   ifreq request{};
   std::strncpy(request.ifr_name, interface, IFNAMSIZ - 1);
-  const bool known = ::ioctl(socket, SIOCGIFMTU, &request) == 0;
-  ::close(socket);
-  return known ? request.ifr_mtu : 0;
+  return ::ioctl(socket.get(), SIOCGIFMTU, &request) == 0 ? request.ifr_mtu : 0;
 }
 
 }  // namespace

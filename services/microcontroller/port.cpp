@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "swiftlet/io/network/host_address.hpp"
+#include "swiftlet/io/network/sockets.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
@@ -25,18 +26,6 @@ namespace fs = std::filesystem;
 [[noreturn]] void fail(const std::string& what) {
   throw std::runtime_error(what + ": " + std::generic_category().message(errno));
 }
-
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() { ::close(number_); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int number() const { return number_; }
-
- private:
-  int number_;
-};
 
 int open_or_fail(int number, const std::string& what) {
   if (number < 0) fail(what);
@@ -50,9 +39,9 @@ class PseudoTerminal final : public Port {
         host_(open_or_fail(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC), "pseudo-terminal")),
         device_(open_or_fail(open_device(), "pseudo-terminal")) {
     termios raw{};
-    if (::tcgetattr(device_.number(), &raw) != 0) fail("pseudo-terminal");
+    if (::tcgetattr(device_.get(), &raw) != 0) fail("pseudo-terminal");
     ::cfmakeraw(&raw);
-    if (::tcsetattr(device_.number(), TCSANOW, &raw) != 0) fail("pseudo-terminal");
+    if (::tcsetattr(device_.get(), TCSANOW, &raw) != 0) fail("pseudo-terminal");
     const fs::path beside = link_.string() + ".new";  // renamed, so that the link is there at every moment
     std::error_code error;
     fs::remove(beside, error);
@@ -66,21 +55,20 @@ class PseudoTerminal final : public Port {
   }
 
   std::size_t read(std::uint8_t* bytes, std::size_t room) override {
-    const ssize_t count = ::read(host_.number(), bytes, room);
+    const ssize_t count = ::read(host_.get(), bytes, room);
     return count > 0 ? static_cast<std::size_t>(count) : 0;
   }
   void write(const std::uint8_t* bytes, std::size_t size) override {
-    [[maybe_unused]] const ssize_t written = ::write(host_.number(), bytes, size);
+    [[maybe_unused]] const ssize_t written = ::write(host_.get(), bytes, size);
   }
 
  private:
-  int descriptor() const override { return host_.number(); }
+  int descriptor() const override { return host_.get(); }
 
   // It stays open, so that bytes of a host that comes later are neither lost nor an error.
   int open_device() {
-    const char* const name = ::grantpt(host_.number()) == 0 && ::unlockpt(host_.number()) == 0
-                                 ? ::ptsname(host_.number())
-                                 : nullptr;
+    const char* const name =
+        ::grantpt(host_.get()) == 0 && ::unlockpt(host_.get()) == 0 ? ::ptsname(host_.get()) : nullptr;
     if (name == nullptr) return -1;
     name_ = name;
     return ::open(name, O_RDWR | O_NOCTTY | O_CLOEXEC);
@@ -88,8 +76,8 @@ class PseudoTerminal final : public Port {
 
   fs::path link_;
   std::string name_;
-  Descriptor host_;
-  Descriptor device_;
+  io::Descriptor host_;
+  io::Descriptor device_;
 };
 
 class UdpPort final : public Port {
@@ -97,7 +85,7 @@ class UdpPort final : public Port {
   UdpPort(const std::string& address, const sockaddr_in& own)
       : socket_(open_or_fail(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0),
                              "--udp " + address)) {
-    if (::bind(socket_.number(), reinterpret_cast<const sockaddr*>(&own), sizeof own) != 0)
+    if (::bind(socket_.get(), reinterpret_cast<const sockaddr*>(&own), sizeof own) != 0)
       fail("--udp " + address);
   }
 
@@ -105,20 +93,20 @@ class UdpPort final : public Port {
     sockaddr_in sender{};
     socklen_t length = sizeof sender;
     const ssize_t count =
-        ::recvfrom(socket_.number(), bytes, room, 0, reinterpret_cast<sockaddr*>(&sender), &length);
+        ::recvfrom(socket_.get(), bytes, room, 0, reinterpret_cast<sockaddr*>(&sender), &length);
     if (count <= 0) return 0;
     host_before_ = std::exchange(host_, sender);
     return static_cast<std::size_t>(count);
   }
   void write(const std::uint8_t* bytes, std::size_t size) override {
-    ::sendto(socket_.number(), bytes, size, 0, reinterpret_cast<const sockaddr*>(&host_), sizeof host_);
+    ::sendto(socket_.get(), bytes, size, 0, reinterpret_cast<const sockaddr*>(&host_), sizeof host_);
   }
   void refuse_sender() override { host_ = host_before_; }
 
  private:
-  int descriptor() const override { return socket_.number(); }
+  int descriptor() const override { return socket_.get(); }
 
-  Descriptor socket_;
+  io::Descriptor socket_;
   sockaddr_in host_{};
   sockaddr_in host_before_{};  // the last datagram
 };
@@ -144,10 +132,7 @@ std::unique_ptr<Port> open_udp_port(const std::string& address) {
   if (!fault.empty()) throw std::invalid_argument("--udp: " + fault);
   const io::HostAddress parsed = io::parse_host_address(address);
   if (parsed.port == 0) throw std::invalid_argument("--udp: " + address + " has no port, must be HOST:PORT");
-  sockaddr_in own{};
-  own.sin_family = AF_INET;
-  own.sin_port = htons(parsed.port);
-  ::inet_pton(AF_INET, io::ipv4_addresses_of(parsed.host).front().c_str(), &own.sin_addr);
+  const sockaddr_in own = io::socket_address(io::ipv4_addresses_of(parsed.host).front(), parsed.port);
   return std::make_unique<UdpPort>(address, own);
 }
 

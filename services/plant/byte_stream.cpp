@@ -11,8 +11,6 @@ bool is_temporary(int error) { return error == EAGAIN || error == EWOULDBLOCK ||
 
 }  // namespace
 
-ByteStream::~ByteStream() { ::close(descriptor_); }
-
 bool ByteStream::send(const std::uint8_t* bytes, std::size_t size) {
   if (!rest_.empty()) {
     const std::size_t written = write(rest_.data(), rest_.size());
@@ -27,8 +25,8 @@ bool ByteStream::send(const std::uint8_t* bytes, std::size_t size) {
 
 std::size_t ByteStream::write(const std::uint8_t* bytes, std::size_t size) {
   if (closed_) return 0;
-  ssize_t written = ::send(descriptor_, bytes, size, MSG_NOSIGNAL);
-  if (written < 0 && errno == ENOTSOCK) written = ::write(descriptor_, bytes, size);
+  ssize_t written = ::send(descriptor(), bytes, size, MSG_NOSIGNAL);
+  if (written < 0 && errno == ENOTSOCK) written = ::write(descriptor(), bytes, size);
   if (written >= 0) return static_cast<std::size_t>(written);
   closed_ = !is_temporary(errno);
   return 0;
@@ -36,7 +34,7 @@ std::size_t ByteStream::write(const std::uint8_t* bytes, std::size_t size) {
 
 std::size_t ByteStream::receive(std::uint8_t* bytes, std::size_t size) {
   if (closed_) return 0;
-  const ssize_t received = ::read(descriptor_, bytes, size);
+  const ssize_t received = ::read(descriptor(), bytes, size);
   if (received > 0) return static_cast<std::size_t>(received);
   closed_ = received == 0 || !is_temporary(errno);
   return 0;

@@ -12,25 +12,24 @@
 
 #include <fmt/core.h>
 
+#include "swiftlet/io/network/sockets.hpp"
+
 namespace swiftlet::services {
 
 TcpListener::TcpListener(const std::string& address, int port) {
-  sockaddr_in where{};
-  where.sin_family = AF_INET;
-  where.sin_port = htons(static_cast<std::uint16_t>(port));
-  if (inet_pton(AF_INET, address.c_str(), &where.sin_addr) != 1)
+  if (in_addr digits{}; inet_pton(AF_INET, address.c_str(), &digits) != 1)
     throw std::invalid_argument(fmt::format(
         "--autopilot-address: is {}, must be an IPv4 address in digits, such as 127.0.0.1", address));
-  descriptor_ = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (descriptor_ < 0)
+  const sockaddr_in where = io::socket_address(address, port);
+  descriptor_ = io::Descriptor(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (!descriptor_.is_open())
     throw std::runtime_error(fmt::format("cannot open a socket: {}", std::strerror(errno)));
   const int on = 1;
-  ::setsockopt(descriptor_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  if (::bind(descriptor_, reinterpret_cast<const sockaddr*>(&where), sizeof where) == 0 &&
-      ::listen(descriptor_, 1) == 0)
+  ::setsockopt(descriptor(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  if (::bind(descriptor(), reinterpret_cast<const sockaddr*>(&where), sizeof where) == 0 &&
+      ::listen(descriptor(), 1) == 0)
     return;
   const int error = errno;
-  ::close(descriptor_);
   throw std::runtime_error(
       error == EADDRINUSE
           ? fmt::format(
@@ -39,10 +38,8 @@ TcpListener::TcpListener(const std::string& address, int port) {
           : fmt::format("cannot listen to port {} of {}: {}", port, address, std::strerror(error)));
 }
 
-TcpListener::~TcpListener() { ::close(descriptor_); }
-
 std::unique_ptr<ByteStream> TcpListener::accept() {
-  const int accepted = ::accept4(descriptor_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+  const int accepted = ::accept4(descriptor(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
   if (accepted < 0) return nullptr;
   const int on = 1;
   ::setsockopt(accepted, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);

@@ -13,16 +13,13 @@ class TcpListener {
   // address: IPv4, in digits. Throws std::runtime_error if the port cannot be listened to, std::invalid_argument
   // if the address is none.
   TcpListener(const std::string& address, int port);
-  ~TcpListener();
-  TcpListener(const TcpListener&) = delete;
-  TcpListener& operator=(const TcpListener&) = delete;
 
   // The next waiting connection, which sends without delay; null if there is none.
   std::unique_ptr<ByteStream> accept();
-  int descriptor() const { return descriptor_; }
+  int descriptor() const { return descriptor_.get(); }
 
  private:
-  int descriptor_;
+  io::Descriptor descriptor_;
 };
 
 }  // namespace swiftlet::services

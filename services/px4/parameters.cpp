@@ -1,20 +1,18 @@
 #include "swiftlet/services/px4/parameters.hpp"
 
 #include <algorithm>
-#include <arpa/inet.h>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <netinet/in.h>
 #include <poll.h>
 #include <stdexcept>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <fmt/core.h>
 
 #include "swiftlet/io/mavlink/messages.hpp"
 #include "swiftlet/io/mavlink/payload.hpp"
+#include "swiftlet/io/network/sockets.hpp"
 #include "swiftlet/services/px4/words.hpp"
 
 namespace swiftlet::px4 {
@@ -54,15 +52,6 @@ float bytes_of(const ParameterValue& value) {
   return bytes;
 }
 
-sockaddr_in address_of(const std::string& host, int port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  if (::inet_pton(AF_INET, host.c_str(), &address.sin_addr) != 1)
-    throw std::runtime_error("'" + host + "' is no IPv4 address");
-  return address;
-}
-
 // Reals are stored as 32 bits.
 bool same(const ParameterValue& a, const ParameterValue& b) {
   return a.is_whole == b.is_whole && static_cast<float>(a.value) == static_cast<float>(b.value);
@@ -100,18 +89,15 @@ std::vector<RequiredParameter> required_parameters(bool has_remote_control) {
 
 ParameterClient::ParameterClient(const std::string& host, int port, int own_port, std::uint8_t system)
     : system_(system) {
-  const sockaddr_in own = address_of("0.0.0.0", own_port);
-  const sockaddr_in px4 = address_of(host, port);
-  socket_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  const bool bound =
-      socket_ >= 0 && ::bind(socket_, reinterpret_cast<const sockaddr*>(&own), sizeof own) == 0;
-  if (bound && ::connect(socket_, reinterpret_cast<const sockaddr*>(&px4), sizeof px4) == 0) return;
+  const sockaddr_in own = io::socket_address("", own_port);
+  const sockaddr_in px4 = io::socket_address(host, port);
+  socket_ = io::Descriptor(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const int fd = socket_.get();
+  const bool bound = fd >= 0 && ::bind(fd, reinterpret_cast<const sockaddr*>(&own), sizeof own) == 0;
+  if (bound && ::connect(fd, reinterpret_cast<const sockaddr*>(&px4), sizeof px4) == 0) return;
   const std::string fault = std::strerror(errno);
-  if (socket_ >= 0) ::close(socket_);
   throw std::runtime_error(fmt::format("cannot use UDP port {} for MAVLink: {}", own_port, fault));
 }
-
-ParameterClient::~ParameterClient() { ::close(socket_); }
 
 std::optional<ParameterValue> ParameterClient::read(const std::string& name) {
   mavlink::ParamRequestRead request;
@@ -136,7 +122,8 @@ std::optional<ParameterValue> ParameterClient::ask(const Message& message, const
   for (int i = 0; i < kTries; ++i) {
     const mavlink::FrameBytes frame =
         mavlink::encode(mavlink::to_frame(message, kOwnAddress, sequence_++), Message::kCrcExtra);
-    ::send(socket_, frame.data.data(), frame.size, MSG_NOSIGNAL);  // a refused datagram is asked for again
+    ::send(socket_.get(), frame.data.data(), frame.size,
+           MSG_NOSIGNAL);  // a refused datagram is asked for again
     if (const auto value = receive(name, Clock::now() + kAnswerTime)) return value;
   }
   return std::nullopt;
@@ -148,9 +135,9 @@ std::optional<ParameterValue> ParameterClient::receive(const std::string& name, 
   while (!value) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now());
     if (left.count() <= 0) break;
-    pollfd wait{socket_, POLLIN, 0};
+    pollfd wait{socket_.get(), POLLIN, 0};
     if (::poll(&wait, 1, static_cast<int>(left.count())) <= 0) continue;
-    const ssize_t size = ::recv(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT);
+    const ssize_t size = ::recv(socket_.get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
     if (size <= 0) {
       if (errno == ECONNREFUSED) ::poll(nullptr, 0, 20);  // nobody listens there yet
       continue;

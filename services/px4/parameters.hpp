@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "swiftlet/io/descriptor.hpp"
 #include "swiftlet/io/mavlink/frame.hpp"
 #include "swiftlet/io/mavlink/frame_parser.hpp"
 
@@ -37,9 +38,6 @@ class ParameterClient {
   // host: PX4's IPv4 address. port: of PX4, 14580 and the instance. own_port: to which PX4 sends, 14540 and the instance; 0: any. Throws
   // std::runtime_error with a sentence if the port is in use.
   ParameterClient(const std::string& host, int port, int own_port, std::uint8_t system);
-  ~ParameterClient();
-  ParameterClient(const ParameterClient&) = delete;
-  ParameterClient& operator=(const ParameterClient&) = delete;
 
   // nullopt: PX4 does not answer, or has no such parameter.
   std::optional<ParameterValue> read(const std::string& name);
@@ -51,7 +49,7 @@ class ParameterClient {
   std::optional<ParameterValue> ask(const Message& message, const std::string& name);
   std::optional<ParameterValue> receive(const std::string& name, std::chrono::steady_clock::time_point until);
 
-  int socket_ = -1;
+  io::Descriptor socket_;
   const std::uint8_t system_;
   std::uint8_t sequence_ = 0;
   mavlink::FrameParser parser_;

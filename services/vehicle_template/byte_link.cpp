@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "swiftlet/io/network/host_address.hpp"
+#include "swiftlet/io/network/sockets.hpp"
 #include "swiftlet/services/runtime/serial_device.hpp"
 
 namespace swiftlet::services {
@@ -25,9 +26,7 @@ ByteLink::ByteLink(ByteLinkSettings settings) : settings_(std::move(settings)) {
   const io::HostAddress address = io::parse_host_address(settings_.udp);
   if (address.port == 0)
     throw std::invalid_argument("--udp: is '" + settings_.udp + "', must be HOST:PORT, with a port");
-  far_end_.sin_family = AF_INET;
-  far_end_.sin_port = htons(address.port);
-  ::inet_pton(AF_INET, io::ipv4_addresses_of(address.host).front().c_str(), &far_end_.sin_addr);
+  far_end_ = io::socket_address(io::ipv4_addresses_of(address.host).front(), address.port);
 }
 
 int ByteLink::open() noexcept {
@@ -38,26 +37,22 @@ int ByteLink::open() noexcept {
 }
 
 int ByteLink::open_device() noexcept {
-  descriptor_ = runtime::open_serial_device(settings_.device.c_str(), settings_.baud);
-  return descriptor_ < 0 ? -descriptor_ : 0;
+  const int opened = runtime::open_serial_device(settings_.device.c_str(), settings_.baud);
+  descriptor_ = io::Descriptor(opened);
+  return opened < 0 ? -opened : 0;
 }
 
 int ByteLink::open_socket() noexcept {
-  descriptor_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (descriptor_ < 0) return errno;
+  descriptor_ = io::Descriptor(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (!is_open()) return errno;
   // Connected: only datagrams of the microcontroller are received.
   const auto* const address = reinterpret_cast<const sockaddr*>(&far_end_);
-  return ::connect(descriptor_, address, sizeof far_end_) == 0 ? 0 : errno;
-}
-
-void ByteLink::close() noexcept {
-  if (descriptor_ >= 0) ::close(descriptor_);
-  descriptor_ = -1;
+  return ::connect(descriptor(), address, sizeof far_end_) == 0 ? 0 : errno;
 }
 
 std::size_t ByteLink::read(std::uint8_t* bytes, std::size_t room) noexcept {
   if (!is_open()) return 0;
-  const ssize_t count = ::read(descriptor_, bytes, room);
+  const ssize_t count = ::read(descriptor(), bytes, room);
   if (count > 0) return static_cast<std::size_t>(count);
   const bool is_only_empty = count < 0 && (errno == EAGAIN || errno == EINTR);
   if (settings_.device.empty() || is_only_empty) return 0;  // of UDP: the far end is not there yet
@@ -66,7 +61,7 @@ std::size_t ByteLink::read(std::uint8_t* bytes, std::size_t room) noexcept {
 }
 
 bool ByteLink::write(const std::uint8_t* bytes, std::size_t size) noexcept {
-  return is_open() && ::write(descriptor_, bytes, size) == static_cast<ssize_t>(size);
+  return is_open() && ::write(descriptor(), bytes, size) == static_cast<ssize_t>(size);
 }
 
 }  // namespace swiftlet::services

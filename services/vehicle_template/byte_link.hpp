@@ -6,6 +6,8 @@
 #include <netinet/in.h>
 #include <string>
 
+#include "swiftlet/io/descriptor.hpp"
+
 namespace swiftlet::services {
 
 struct ByteLinkSettings {
@@ -21,16 +23,13 @@ class ByteLink {
  public:
   // Throws std::invalid_argument for settings that cannot be, std::runtime_error for an unknown host.
   explicit ByteLink(ByteLinkSettings settings);
-  ~ByteLink() { close(); }
-  ByteLink(const ByteLink&) = delete;
-  ByteLink& operator=(const ByteLink&) = delete;
 
   // Opens it, without the bytes that were received before. Returns 0, or the errno of the fault: EBUSY if another vehicle
   // process has the device.
   int open() noexcept;
-  void close() noexcept;
-  bool is_open() const noexcept { return descriptor_ >= 0; }
-  int descriptor() const noexcept { return descriptor_; }  // for poll(); -1 while it is closed
+  void close() noexcept { descriptor_.close(); }
+  bool is_open() const noexcept { return descriptor_.is_open(); }
+  int descriptor() const noexcept { return descriptor_.get(); }  // for poll(); -1 while it is closed
 
   // Returns the number of bytes read, 0 if there are none. Closes a link that has vanished.
   std::size_t read(std::uint8_t* bytes, std::size_t room) noexcept;
@@ -43,7 +42,7 @@ class ByteLink {
 
   const ByteLinkSettings settings_;
   sockaddr_in far_end_{};
-  int descriptor_ = -1;
+  io::Descriptor descriptor_;
 };
 
 }  // namespace swiftlet::services

@@ -1,20 +1,16 @@
 #include "swiftlet/ground/cli/network/network_probe.hpp"
 
 #include <algorithm>
-#include <arpa/inet.h>
-#include <cerrno>
 #include <climits>
-#include <cstring>
 #include <map>
 #include <netinet/in.h>
-#include <poll.h>
 #include <random>
 #include <set>
 #include <sstream>
-#include <stdexcept>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "swiftlet/io/network/sockets.hpp"
 #include "swiftlet/services/clocks/clock_filter.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
@@ -28,7 +24,6 @@ constexpr const char* kGroup = "239.255.0.1";
 constexpr const char* kProbeMagic = "swiftlet-probe-2";
 constexpr auto kPeriod = 50ms;
 constexpr auto kLastAnswers = 300ms;
-constexpr std::size_t kMaxDatagram = 512;
 constexpr std::size_t kMaxPartners = 256;
 
 enum class Kind : char { kMulticast = 'm', kUnicast = 'u', kAnswer = 'a', kGoodbye = 'g' };
@@ -83,63 +78,26 @@ bool from_text(const std::string& datagram, Message& message) {
 
 std::int64_t ns(Clock::time_point time) { return std::chrono::nanoseconds(time.time_since_epoch()).count(); }
 
-sockaddr_in socket_address(const std::string& ipv4, int port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  ::inet_pton(AF_INET, ipv4.c_str(), &address.sin_addr);
-  return address;
+// A datagram of another program is a message without a host.
+Message message_of(const std::vector<std::uint8_t>& datagram) {
+  Message message;
+  if (!from_text({datagram.begin(), datagram.end()}, message)) message.host.clear();
+  return message;
 }
 
-std::string text_of(const sockaddr_in& address) {
-  char text[INET_ADDRSTRLEN] = {};
-  ::inet_ntop(AF_INET, &address.sin_addr, text, sizeof text);
-  return text;
+void send(const io::UdpSocket& socket, const Message& message, const io::Endpoint& to) {
+  const std::string text = to_text(message);
+  socket.send({text.begin(), text.end()}, to);
 }
 
-class Socket {
- public:
-  Socket(int port, bool shared)
-      : descriptor_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)) {
-    const int yes = 1;
-    if (shared) ::setsockopt(descriptor_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    const sockaddr_in any = socket_address("0.0.0.0", port);
-    if (descriptor_ >= 0 && ::bind(descriptor_, reinterpret_cast<const sockaddr*>(&any), sizeof any) == 0)
-      return;
-    const int error = errno;
-    ::close(descriptor_);
-    throw std::runtime_error("cannot listen on UDP port " + std::to_string(port) + ": " +
-                             std::strerror(error));
-  }
-  ~Socket() { ::close(descriptor_); }
-  Socket(const Socket&) = delete;
-  Socket& operator=(const Socket&) = delete;
-
-  int descriptor() const { return descriptor_; }
-  void send(const Message& message, const sockaddr_in& to) const {
-    const std::string text = to_text(message);
-    ::sendto(descriptor_, text.data(), text.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
-  }
-  // False if nothing more has arrived. Datagrams of others leave `message` without a host.
-  bool receive(Message& message, sockaddr_in& from) const {
-    char buffer[kMaxDatagram];
-    socklen_t length = sizeof from;
-    const ssize_t size =
-        ::recvfrom(descriptor_, buffer, sizeof buffer, 0, reinterpret_cast<sockaddr*>(&from), &length);
-    if (size < 0) return false;
-    message = {};
-    if (!from_text(std::string(buffer, static_cast<std::size_t>(size)), message)) message.host.clear();
-    return true;
-  }
-
- private:
-  int descriptor_;
-};
+io::Endpoint endpoint_of(const std::string& ipv4, int port) {
+  return {ntohl(io::socket_address(ipv4, 0).sin_addr.s_addr), static_cast<std::uint16_t>(port)};
+}
 
 // What is known of another host during the run.
 struct Partner {
   ProbedHost host;
-  sockaddr_in address{};
+  io::Endpoint address{};
   std::map<int, Clock::time_point> asked;
   std::vector<double> round_trips_ms{};
   clocks::ClockFilter clock{};
@@ -153,16 +111,16 @@ struct NetworkProbe::Impl {
       : domain(of_domain),
         addresses(own),
         peers(asked.begin(), asked.end()),
-        direct(probe_port(of_domain), false),
-        multicast(probe_multicast_port(of_domain), true) {
+        direct("", static_cast<std::uint16_t>(probe_port(of_domain))),
+        multicast("", static_cast<std::uint16_t>(probe_multicast_port(of_domain)), true) {
     std::random_device random;
     own_id = (static_cast<std::uint64_t>(random()) << 32U) | random();
     char name[HOST_NAME_MAX + 1] = {};
     ::gethostname(name, HOST_NAME_MAX);
     host = name[0] == '\0' ? "unknown" : name;
     for (const std::string& address : addresses) {
-      const ip_mreq group{socket_address(kGroup, 0).sin_addr, socket_address(address, 0).sin_addr};
-      ::setsockopt(multicast.descriptor(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group);
+      const ip_mreq group{io::socket_address(kGroup, 0).sin_addr, io::socket_address(address, 0).sin_addr};
+      ::setsockopt(multicast.fd(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group);
     }
   }
 
@@ -178,19 +136,19 @@ struct NetworkProbe::Impl {
   void send_probes() {
     ++number;
     for (const std::string& address : addresses) {
-      const in_addr out = socket_address(address, 0).sin_addr;
-      ::setsockopt(direct.descriptor(), IPPROTO_IP, IP_MULTICAST_IF, &out, sizeof out);
+      const in_addr out = io::socket_address(address, 0).sin_addr;
+      ::setsockopt(direct.fd(), IPPROTO_IP, IP_MULTICAST_IF, &out, sizeof out);
       Message message = own(Kind::kMulticast, number);
       message.via = address;
-      direct.send(message, socket_address(kGroup, probe_multicast_port(domain)));
+      send(direct, message, endpoint_of(kGroup, probe_multicast_port(domain)));
     }
     for (const std::string& peer : peers)
-      direct.send(own(Kind::kUnicast, 0), socket_address(peer, probe_port(domain)));
+      send(direct, own(Kind::kUnicast, 0), endpoint_of(peer, probe_port(domain)));
     for (auto& [id, partner] : partners) {
       if (partner.gone) continue;
       partner.asked[number] = Clock::now();
       ++partner.host.sent;
-      direct.send(own(Kind::kUnicast, number), partner.address);
+      send(direct, own(Kind::kUnicast, number), partner.address);
     }
   }
 
@@ -198,17 +156,15 @@ struct NetworkProbe::Impl {
     const auto end = Clock::now() + time;
     for (auto left = time; left.count() > 0;
          left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now())) {
-      pollfd sockets[] = {{direct.descriptor(), POLLIN, 0}, {multicast.descriptor(), POLLIN, 0}};
-      if (::poll(sockets, 2, static_cast<int>(left.count())) <= 0) continue;
-      Message message;
-      sockaddr_in from{};
-      for (const Socket* const socket : {&direct, &multicast}) {
-        while (socket->receive(message, from)) take(message, from);
+      io::wait_for_input({direct.fd(), multicast.fd()}, left);
+      std::vector<std::uint8_t> datagram;
+      for (const io::UdpSocket* const socket : {&direct, &multicast}) {
+        while (const auto from = socket->receive(datagram)) take(message_of(datagram), *from);
       }
     }
   }
 
-  void take(const Message& message, const sockaddr_in& from) {
+  void take(const Message& message, const io::Endpoint& from) {
     const Clock::time_point arrived = Clock::now();
     const std::int64_t received_ns = runtime::system_ns();
     if (message.host.empty()) return;
@@ -219,7 +175,7 @@ struct NetworkProbe::Impl {
     if (partners.size() >= kMaxPartners && partners.count(message.sender) == 0) return;
     Partner& partner = partners[message.sender];
     partner.host.name = message.host;
-    partner.host.address = text_of(from);
+    partner.host.address = from.address_text();
     partner.address = from;
     if (message.kind == Kind::kAnswer) return take_answer(message, arrived, partner);
     if (message.kind == Kind::kGoodbye) return take_goodbye(partner);
@@ -229,7 +185,7 @@ struct NetworkProbe::Impl {
     answer.of = message.kind;
     answer.received_ns = received_ns;
     answer.answered_ns = runtime::system_ns();
-    direct.send(answer, from);
+    send(direct, answer, from);
   }
 
   void take_answer(const Message& message, Clock::time_point arrived, Partner& partner) {
@@ -253,7 +209,7 @@ struct NetworkProbe::Impl {
   // Several times, as one may be lost.
   void say_goodbye() const {
     for (int i = 0; i < 3; ++i) {
-      for (const auto& [id, partner] : partners) direct.send(own(Kind::kGoodbye, 0), partner.address);
+      for (const auto& [id, partner] : partners) send(direct, own(Kind::kGoodbye, 0), partner.address);
     }
   }
 
@@ -295,8 +251,8 @@ struct NetworkProbe::Impl {
   const int domain;
   const std::vector<std::string> addresses;
   const std::set<std::string> peers;
-  const Socket direct;
-  const Socket multicast;
+  const io::UdpSocket direct;
+  const io::UdpSocket multicast;
   std::uint64_t own_id = 0;
   std::string host;
   int number = 0;

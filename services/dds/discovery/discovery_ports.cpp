@@ -1,14 +1,13 @@
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 
 #include <algorithm>
-#include <arpa/inet.h>
 #include <cerrno>
 #include <limits>
-#include <netinet/in.h>
 #include <string>
 #include <sys/socket.h>
-#include <unistd.h>
 
+#include "swiftlet/io/descriptor.hpp"
+#include "swiftlet/io/network/sockets.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 
 namespace swiftlet::dds {
@@ -47,16 +46,11 @@ std::runtime_error domain_is_full(int domain) {
 }
 
 int error_of_binding(std::uint32_t port, const std::string& own_address) {
-  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (socket < 0) return 0;  // unknown; Fast DDS will report the error
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  if (!own_address.empty()) ::inet_pton(AF_INET, own_address.c_str(), &address.sin_addr);
-  const bool bound = ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-  const int error = bound ? 0 : errno;
-  ::close(socket);
-  return error;
+  const io::Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (!socket.is_open()) return 0;  // unknown; Fast DDS will report the error
+  const sockaddr_in address = io::socket_address(own_address, static_cast<int>(port));
+  const bool bound = ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  return bound ? 0 : errno;
 }
 
 std::uint32_t free_discovery_port(int domain, const std::string& address) {

@@ -37,10 +37,10 @@ bool is_due(Clock::time_point now, Clock::time_point& due, Clock::duration perio
   return true;
 }
 
-Endpoint server_of(const Room& room) {
-  if (!room.server.empty()) return resolve(room.server, natnet::kCommandPort);
-  const Endpoint everyone{0xffffffff, natnet::kCommandPort};
-  return only_server(find_natnet_servers({everyone}, interface_address(room.interface), kSearchTime)).at;
+io::Endpoint server_of(const Room& room) {
+  if (!room.server.empty()) return io::resolve(room.server, natnet::kCommandPort);
+  const io::Endpoint everyone{0xffffffff, natnet::kCommandPort};
+  return only_server(find_natnet_servers({everyone}, io::interface_address(room.interface), kSearchTime)).at;
 }
 
 std::string name_of(const FoundServer& server) {
@@ -49,18 +49,18 @@ std::string name_of(const FoundServer& server) {
 
 }  // namespace
 
-std::vector<FoundServer> find_natnet_servers(const std::vector<Endpoint>& addresses,
+std::vector<FoundServer> find_natnet_servers(const std::vector<io::Endpoint>& addresses,
                                              const std::string& interface, std::chrono::milliseconds time) {
-  const UdpSocket socket(interface, 0);
+  const io::UdpSocket socket(interface, 0);
   std::vector<FoundServer> found;
   std::vector<std::uint8_t> datagram;
   const auto end = Clock::now() + time;
   Clock::time_point due;
   for (auto now = Clock::now(); now < end; now = Clock::now()) {
     if (is_due(now, due, kSearchTime / 2)) {
-      for (const Endpoint& address : addresses) socket.send(natnet::discovery_request(kWanted), address);
+      for (const io::Endpoint& address : addresses) socket.send(natnet::discovery_request(kWanted), address);
     }
-    wait_for_input({socket.fd()}, std::chrono::ceil<std::chrono::milliseconds>(std::min(due, end) - now));
+    io::wait_for_input({socket.fd()}, std::chrono::ceil<std::chrono::milliseconds>(std::min(due, end) - now));
     while (const auto from = socket.receive(datagram)) {
       NatNetSession session;
       if (session.take(datagram.data(), datagram.size(), 0) != NatNetSession::Event::kServer) continue;
@@ -85,7 +85,7 @@ FoundServer only_server(const std::vector<FoundServer>& servers) {
 }
 
 NatNetSource::NatNetSource(const Room& room)
-    : interface_(interface_address(room.interface)),
+    : interface_(io::interface_address(room.interface)),
       latency_ns_(static_cast<std::int64_t>(1e9 * room.latency_s)),
       server_(server_of(room)),
       commands_(interface_, 0),
@@ -106,7 +106,7 @@ bool NatNetSource::receive(SourceFrame& frame, std::chrono::milliseconds timeout
     if (read(commands_, frame)) return true;
     const auto next = std::min({end, connect_due_, echo_due_});
     const auto wait = std::chrono::ceil<std::chrono::milliseconds>(next - Clock::now());
-    wait_for_input({commands_.fd(), data_ ? data_->fd() : -1}, std::max(wait, 1ms));
+    io::wait_for_input({commands_.fd(), data_ ? data_->fd() : -1}, std::max(wait, 1ms));
   } while (Clock::now() < end);
   return false;
 }
@@ -136,7 +136,7 @@ void NatNetSource::ask(Time now) {
   }
 }
 
-bool NatNetSource::read(const UdpSocket& socket, SourceFrame& frame) {
+bool NatNetSource::read(const io::UdpSocket& socket, SourceFrame& frame) {
   while (const auto from = socket.receive(datagram_)) {
     const std::int64_t arrived_ns = runtime::monotonic_ns();
     if (from->address != server_.address) {

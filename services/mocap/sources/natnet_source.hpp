@@ -6,19 +6,19 @@
 #include <string>
 #include <vector>
 
+#include "swiftlet/io/network/sockets.hpp"
 #include "swiftlet/services/mocap/sources/natnet_session.hpp"
-#include "swiftlet/services/mocap/sources/sockets.hpp"
 #include "swiftlet/services/mocap/sources/source.hpp"
 
 namespace swiftlet::mocap {
 
 struct FoundServer {
-  Endpoint at;
+  io::Endpoint at;
   natnet::ServerInfo info;
 };
 
 // Asks these addresses, which may be a broadcast address, which NatNet servers there are.
-std::vector<FoundServer> find_natnet_servers(const std::vector<Endpoint>& addresses,
+std::vector<FoundServer> find_natnet_servers(const std::vector<io::Endpoint>& addresses,
                                              const std::string& interface, std::chrono::milliseconds time);
 // The only one of them. Throws std::runtime_error that names all if they are several, or if there is none.
 FoundServer only_server(const std::vector<FoundServer>& servers);
@@ -37,16 +37,16 @@ class NatNetSource final : public Source {
 
   void ask(Time now);
   // Reads what waits in a socket; true: a frame.
-  bool read(const UdpSocket& socket, SourceFrame& frame);
+  bool read(const io::UdpSocket& socket, SourceFrame& frame);
   bool take(std::int64_t arrived_ns, SourceFrame& frame);
   void meet_server();
   void fill(SourceFrame& frame, std::int64_t arrived_ns);
 
   const std::string interface_;
   const std::int64_t latency_ns_;
-  Endpoint server_;
-  UdpSocket commands_;             // also receives the frames of unicast
-  std::optional<UdpSocket> data_;  // of multicast
+  io::Endpoint server_;
+  io::UdpSocket commands_;             // also receives the frames of unicast
+  std::optional<io::UdpSocket> data_;  // of multicast
   NatNetSession session_;
   std::vector<std::uint8_t> datagram_;
   bool has_new_server_ = false;

@@ -8,8 +8,8 @@
 
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/network/sockets.hpp"
 #include "swiftlet/io/text_file.hpp"
-#include "swiftlet/services/mocap/sources/sockets.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::mocap {
@@ -38,10 +38,10 @@ std::uint32_t only_server(const std::set<std::uint32_t>& servers, const std::str
   if (wanted.empty() && servers.size() == 1) return *servers.begin();
   std::string list;
   for (const std::uint32_t server : servers)
-    list += (list.empty() ? "" : ", ") + Endpoint{server, 0}.address_text();
+    list += (list.empty() ? "" : ", ") + io::Endpoint{server, 0}.address_text();
   if (wanted.empty())
     throw ConfigError(file, 0, "", "has several NatNet servers, choose one with --server: " + list);
-  const std::uint32_t address = resolve(wanted, natnet::kCommandPort).address;
+  const std::uint32_t address = io::resolve(wanted, natnet::kCommandPort).address;
   if (servers.count(address) == 0)
     throw ConfigError(file, 0, "", "has no description of the server " + wanted + ", only of " + list);
   return address;

@@ -15,9 +15,9 @@ constexpr auto kViconSilence = 1s;
 // A frame whose number is lower by at most this much was overtaken; one that is lower by more begins a new count.
 constexpr std::int64_t kMostLateFrames = 100;
 
-std::optional<Endpoint> chosen_server(const Room& room) {
+std::optional<io::Endpoint> chosen_server(const Room& room) {
   if (room.server.empty()) return std::nullopt;
-  return resolve(room.server, vicon::kPort);
+  return io::resolve(room.server, vicon::kPort);
 }
 
 }  // namespace
@@ -25,7 +25,7 @@ std::optional<Endpoint> chosen_server(const Room& room) {
 ViconSource::ViconSource(const Room& room)
     : latency_ns_(static_cast<std::int64_t>(1e9 * room.latency_s)),
       chosen_(chosen_server(room)),
-      socket_(interface_address(room.interface), chosen_ ? chosen_->port : vicon::kPort) {}
+      socket_(io::interface_address(room.interface), chosen_ ? chosen_->port : vicon::kPort) {}
 
 std::string ViconSource::description() const {
   const std::string port = " on port " + std::to_string(socket_.port());
@@ -40,13 +40,13 @@ bool ViconSource::receive(SourceFrame& frame, std::chrono::milliseconds timeout)
       const std::int64_t arrived_ns = runtime::monotonic_ns();
       if (is_from_server(*from, Clock::now()) && take(arrived_ns, frame)) return true;
     }
-    wait_for_input({socket_.fd()},
-                   std::max(std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()), 1ms));
+    io::wait_for_input({socket_.fd()},
+                       std::max(std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()), 1ms));
   } while (Clock::now() < end);
   return false;
 }
 
-bool ViconSource::is_from_server(const Endpoint& from, Time now) {
+bool ViconSource::is_from_server(const io::Endpoint& from, Time now) {
   const bool is_silent = now - heard_ > kViconSilence;
   const bool is_server = chosen_   ? chosen_->address == from.address
                          : server_ ? server_->address == from.address || is_silent

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "swiftlet/io/mocap/vicon.hpp"
-#include "swiftlet/services/mocap/sources/sockets.hpp"
+#include "swiftlet/io/network/sockets.hpp"
 #include "swiftlet/services/mocap/sources/source.hpp"
 
 namespace swiftlet::mocap {
@@ -25,14 +25,14 @@ class ViconSource final : public Source {
  private:
   using Time = std::chrono::steady_clock::time_point;
 
-  bool is_from_server(const Endpoint& from, Time now);
+  bool is_from_server(const io::Endpoint& from, Time now);
   bool follows(std::uint32_t number);
   bool take(std::int64_t arrived_ns, SourceFrame& frame);
 
   const std::int64_t latency_ns_;
-  const std::optional<Endpoint> chosen_;
-  UdpSocket socket_;
-  std::optional<Endpoint> server_;
+  const std::optional<io::Endpoint> chosen_;
+  io::UdpSocket socket_;
+  std::optional<io::Endpoint> server_;
   Time heard_;
   std::optional<std::uint32_t> last_number_;
   vicon::Frame frame_;

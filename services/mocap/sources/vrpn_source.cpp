@@ -36,8 +36,8 @@ void describe(vrpn::Bytes& out, std::int32_t kind, std::int32_t number, const ch
 
 VrpnSource::VrpnSource(const Room& room)
     : latency_ns_(static_cast<std::int64_t>(1e9 * room.latency_s)),
-      server_(resolve(room.server, vrpn::kPort)),
-      udp_(interface_address(room.interface), 0) {}
+      server_(io::resolve(room.server, vrpn::kPort)),
+      udp_(io::interface_address(room.interface), 0) {}
 
 std::string VrpnSource::description() const {
   const std::string name = "VRPN at " + server_.to_string();
@@ -55,7 +55,7 @@ bool VrpnSource::receive(SourceFrame& frame, std::chrono::milliseconds timeout) 
       ping_if_due(now);
       if (read_tcp(frame) || read_udp(frame)) return true;
     }
-    wait_for_input(
+    io::wait_for_input(
         {udp_.fd(), tcp_.fd()},
         std::max(std::chrono::ceil<std::chrono::milliseconds>(std::min(end, due()) - Clock::now()), 1ms));
   } while (Clock::now() < end);
@@ -87,9 +87,9 @@ void VrpnSource::connect_if_due(Time now) {
 
 void VrpnSource::advance(Time now) {
   if (stage_ == Stage::kConnecting) {
-    const TcpSocket::State state = tcp_.state();
-    if (state == TcpSocket::State::kClosed) return lose("refuses the connection");
-    if (state == TcpSocket::State::kOpen) {
+    const io::TcpSocket::State state = tcp_.state();
+    if (state == io::TcpSocket::State::kClosed) return lose("refuses the connection");
+    if (state == io::TcpSocket::State::kOpen) {
       stage_ = Stage::kCookie;
       if (!tcp_.send(vrpn::cookie())) return lose("closed the connection");
     }

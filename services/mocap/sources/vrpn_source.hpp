@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "swiftlet/io/mocap/vrpn.hpp"
+#include "swiftlet/io/network/sockets.hpp"
 #include "swiftlet/services/mocap/sources/server_clock.hpp"
-#include "swiftlet/services/mocap/sources/sockets.hpp"
 #include "swiftlet/services/mocap/sources/source.hpp"
 
 namespace swiftlet::mocap {
@@ -49,9 +49,9 @@ class VrpnSource final : public Source {
   void count_lost(std::uint32_t sequence);
 
   const std::int64_t latency_ns_;
-  const Endpoint server_;
-  UdpSocket udp_;
-  TcpSocket tcp_;
+  const io::Endpoint server_;
+  io::UdpSocket udp_;
+  io::TcpSocket tcp_;
   Stage stage_ = Stage::kClosed;
   bool was_connected_ = false;
   std::string fault_;  // why there is no connection

@@ -54,7 +54,7 @@ bool NatNetServer::send(natnet::Frame frame, std::int64_t latency_ns) {
   const std::int64_t now_ns = runtime::monotonic_ns();
   frame.exposed_ticks = ticks(now_ns - latency_ns);
   frame.received_ticks = frame.sent_ticks = ticks(now_ns);
-  const mocap::Endpoint group{kGroup, settings_.server.data_port};
+  const io::Endpoint group{kGroup, settings_.server.data_port};
   return commands_.send(natnet::frame(settings_.server.version, frame),
                         settings_.server.multicast ? group : *client_);
 }
@@ -62,12 +62,12 @@ bool NatNetServer::send(natnet::Frame frame, std::int64_t latency_ns) {
 void NatNetServer::run() {
   std::vector<std::uint8_t> datagram;
   while (!stop_) {
-    mocap::wait_for_input({commands_.fd()}, std::chrono::milliseconds(10));
+    io::wait_for_input({commands_.fd()}, std::chrono::milliseconds(10));
     while (const auto from = commands_.receive(datagram)) answer(datagram, *from);
   }
 }
 
-void NatNetServer::answer(const std::vector<std::uint8_t>& datagram, const mocap::Endpoint& from) {
+void NatNetServer::answer(const std::vector<std::uint8_t>& datagram, const io::Endpoint& from) {
   const auto message = mocap::natnet::parse_message(datagram.data(), datagram.size());
   if (!message) return;
   const std::lock_guard<std::mutex> lock(mutex_);

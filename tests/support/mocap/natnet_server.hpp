@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "swiftlet/services/mocap/sources/sockets.hpp"
+#include "swiftlet/io/network/sockets.hpp"
 #include "tests/support/mocap/natnet_packets.hpp"
 
 namespace swiftlet::tests {
@@ -49,14 +49,14 @@ class NatNetServer {
 
  private:
   void run();
-  void answer(const std::vector<std::uint8_t>& datagram, const mocap::Endpoint& from);
+  void answer(const std::vector<std::uint8_t>& datagram, const io::Endpoint& from);
 
   const Settings settings_;
   std::atomic<std::int64_t> clock_offset_ns_;
-  mocap::UdpSocket commands_;
+  io::UdpSocket commands_;
   mutable std::mutex mutex_;  // guards the two below
   std::vector<natnet::Body> models_;
-  std::optional<mocap::Endpoint> client_;
+  std::optional<io::Endpoint> client_;
   std::atomic<std::uint64_t> echoes_{0};
   std::atomic<std::uint64_t> keep_alives_{0};
   std::atomic<bool> stop_{false};

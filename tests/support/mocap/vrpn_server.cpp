@@ -52,7 +52,7 @@ VrpnServer::~VrpnServer() {
 
 void VrpnServer::run() {
   while (!stop_) {
-    mocap::wait_for_input({listener_.get(), connection_.get()}, std::chrono::milliseconds(5));
+    io::wait_for_input({listener_.get(), connection_.get()}, std::chrono::milliseconds(5));
     const std::lock_guard<std::mutex> lock(mutex_);
     if (drop_.exchange(false)) {
       connection_.close();
@@ -66,7 +66,7 @@ void VrpnServer::run() {
 void VrpnServer::accept() {
   const int fd = ::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
   if (fd < 0) return;
-  connection_ = mocap::Descriptor(fd);
+  connection_ = io::Descriptor(fd);
   received_.clear();
   types_.clear();
   udp_client_.reset();
@@ -106,7 +106,7 @@ void VrpnServer::answer(const vrpn::Message& message) {
   if (message.type == vrpn::kTypeDescription)
     types_[message.sender] = vrpn::parse_description(message.payload).value_or("");
   if (message.type == vrpn::kUdpDescription)
-    udp_client_ = mocap::Endpoint{INADDR_LOOPBACK, static_cast<std::uint16_t>(message.sender)};
+    udp_client_ = io::Endpoint{INADDR_LOOPBACK, static_cast<std::uint16_t>(message.sender)};
   const auto type = types_.find(message.type);
   if (type == types_.end() || type->second != vrpn::kPingType) return;
   ++pings_;

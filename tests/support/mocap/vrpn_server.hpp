@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "swiftlet/io/mocap/vrpn.hpp"
-#include "swiftlet/services/mocap/sources/sockets.hpp"
+#include "swiftlet/io/network/sockets.hpp"
 
 namespace swiftlet::tests {
 
@@ -49,13 +49,13 @@ class VrpnServer {
   void write(const mocap::vrpn::Bytes& bytes) const;
 
   const Settings settings_;
-  mocap::Descriptor listener_, connection_;
+  io::Descriptor listener_, connection_;
   std::uint16_t port_ = 0;
-  std::optional<mocap::UdpSocket> udp_;
+  std::optional<io::UdpSocket> udp_;
   std::mutex mutex_;  // guards what both threads use
   std::vector<std::uint8_t> received_;
   std::map<std::int32_t, std::string> types_;  // of the client
-  std::optional<mocap::Endpoint> udp_client_;
+  std::optional<io::Endpoint> udp_client_;
   std::uint32_t sequence_ = 0;
   std::atomic<std::uint64_t> pings_{0};
   std::atomic<bool> is_connected_{false}, drop_{false}, stop_{false};

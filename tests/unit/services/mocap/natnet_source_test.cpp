@@ -240,9 +240,9 @@ TEST_F(NatNet, FramesOfAnotherServerAreLeftOut) {
   start(settings_of({4, 1}));
   ASSERT_NO_FATAL_FAILURE(connect());
   EXPECT_TRUE(pass(frame_of(1)));
-  const UdpSocket stranger("127.0.0.2", 0);
+  const io::UdpSocket stranger("127.0.0.2", 0);
   const auto bytes = packets::frame({4, 1}, frame_of(2));
-  ASSERT_TRUE(stranger.send(bytes, resolve("127.0.0.1:" + std::to_string(source_->command_port()), 1)));
+  ASSERT_TRUE(stranger.send(bytes, io::resolve("127.0.0.1:" + std::to_string(source_->command_port()), 1)));
   EXPECT_FALSE(source_->receive(frame_, 100ms));
   EXPECT_EQ(source_->statistics().strangers, 1U);
 }
@@ -250,9 +250,9 @@ TEST_F(NatNet, FramesOfAnotherServerAreLeftOut) {
 TEST_F(NatNet, DatagramsThatCannotBeReadAreCounted) {
   start(settings_of({4, 1}));
   ASSERT_NO_FATAL_FAILURE(connect());
-  const UdpSocket socket("127.0.0.1", 0);
+  const io::UdpSocket socket("127.0.0.1", 0);
   ASSERT_TRUE(
-      socket.send({7, 0, 99, 0, 1}, resolve("127.0.0.1:" + std::to_string(source_->command_port()), 1)));
+      socket.send({7, 0, 99, 0, 1}, io::resolve("127.0.0.1:" + std::to_string(source_->command_port()), 1)));
   EXPECT_FALSE(source_->receive(frame_, 100ms));
   EXPECT_EQ(source_->statistics().refused, 1U);
   EXPECT_EQ(source_->statistics().last_refusal, "a datagram is none of NatNet, or cut");
@@ -286,7 +286,7 @@ TEST(NatNetDiscovery, NamesSeveralServersAndTakesTheOnlyOne) {
   const NatNetServer one(settings);
   settings.address = "127.0.0.2";
   const NatNetServer two(settings);
-  const std::vector<Endpoint> both = {resolve(one.name(), 1), resolve(two.name(), 1)};
+  const std::vector<io::Endpoint> both = {io::resolve(one.name(), 1), io::resolve(two.name(), 1)};
   std::vector<FoundServer> found;
   ASSERT_TRUE(eventually([&] {
     found = find_natnet_servers(both, "", 100ms);

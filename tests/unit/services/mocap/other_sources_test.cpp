@@ -24,7 +24,7 @@ using tests::vicon_frame;
 
 const std::string kData = tests::in_source("tests/data/");
 
-std::uint16_t free_port() { return UdpSocket("127.0.0.1", 0).port(); }
+std::uint16_t free_port() { return io::UdpSocket("127.0.0.1", 0).port(); }
 
 class Vicon : public testing::Test {
  protected:
@@ -36,14 +36,14 @@ class Vicon : public testing::Test {
     room.latency_s = 0.004;
     source_ = std::make_unique<ViconSource>(room);
   }
-  bool pass(std::uint32_t number, const std::vector<tests::ViconObject>& objects, const UdpSocket& from) {
-    const Endpoint to = resolve("127.0.0.1:" + std::to_string(source_->port()), 1);
+  bool pass(std::uint32_t number, const std::vector<tests::ViconObject>& objects, const io::UdpSocket& from) {
+    const io::Endpoint to = io::resolve("127.0.0.1:" + std::to_string(source_->port()), 1);
     EXPECT_TRUE(from.send(vicon_frame(number, objects, 256), to));
     return source_->receive(frame_, 100ms);
   }
 
   const tests::ViconObject one_{"kl1", {1000, 0, 0, 0, 0, 0.5}};
-  const UdpSocket sender_{"127.0.0.1", 0};
+  const io::UdpSocket sender_{"127.0.0.1", 0};
   std::unique_ptr<ViconSource> source_;
   SourceFrame frame_;
 };
@@ -69,7 +69,7 @@ TEST_F(Vicon, FramesThatAreLostOrOvertakenAreCounted) {
 
 TEST_F(Vicon, FramesOfAnotherServerAreLeftOut) {
   open("127.0.0.1:" + std::to_string(free_port()));
-  const UdpSocket stranger("127.0.0.2", 0);
+  const io::UdpSocket stranger("127.0.0.2", 0);
   EXPECT_TRUE(pass(1, {one_}, sender_));
   EXPECT_FALSE(pass(2, {one_}, stranger));
   EXPECT_EQ(source_->statistics().strangers, 1U);

@@ -5,11 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <netinet/in.h>
 #include <optional>
 #include <string>
 #include <vector>
 
-namespace swiftlet::mocap {
+#include "swiftlet/io/descriptor.hpp"
+
+namespace swiftlet::io {
 
 struct Endpoint {
   std::uint32_t address = 0;  // as a number
@@ -25,21 +28,8 @@ Endpoint resolve(const std::string& text, std::uint16_t default_port);
 // The address of an interface of this host, by name or address; "": any. Throws std::invalid_argument.
 std::string interface_address(const std::string& name_or_address);
 
-// Owns a file descriptor.
-class Descriptor {
- public:
-  explicit Descriptor(int fd = -1) : fd_(fd) {}
-  ~Descriptor();
-  Descriptor(Descriptor&& other) noexcept;
-  Descriptor& operator=(Descriptor&& other) noexcept;
-
-  int get() const { return fd_; }
-  bool is_open() const { return fd_ >= 0; }
-  void close();
-
- private:
-  int fd_;
-};
+// For the system's calls. ipv4: in digits; empty: any. Throws std::runtime_error with a sentence.
+sockaddr_in socket_address(const std::string& ipv4, int port);
 
 class UdpSocket {
  public:
@@ -83,4 +73,4 @@ class TcpSocket {
 // Waits until one of the sockets has something to read, or the timeout. Descriptors below 0 are left out.
 void wait_for_input(std::initializer_list<int> descriptors, std::chrono::milliseconds timeout);
 
-}  // namespace swiftlet::mocap
+}  // namespace swiftlet::io

@@ -1,4 +1,4 @@
-#include "swiftlet/services/mocap/sources/sockets.hpp"
+#include "swiftlet/io/network/sockets.hpp"
 
 #include <arpa/inet.h>
 #include <cerrno>
@@ -8,13 +8,11 @@
 #include <poll.h>
 #include <stdexcept>
 #include <sys/socket.h>
-#include <unistd.h>
-#include <utility>
 
 #include "swiftlet/io/network/host_address.hpp"
 #include "swiftlet/io/network/interfaces.hpp"
 
-namespace swiftlet::mocap {
+namespace swiftlet::io {
 namespace {
 
 constexpr std::size_t kLargestDatagram = 65'536;
@@ -46,6 +44,12 @@ sockaddr_in local_address_of(int fd) {
 
 }  // namespace
 
+sockaddr_in socket_address(const std::string& ipv4, int port) {
+  if (in_addr digits{}; !ipv4.empty() && ::inet_pton(AF_INET, ipv4.c_str(), &digits) != 1)
+    throw std::runtime_error("'" + ipv4 + "' is no IPv4 address");
+  return address_of(ipv4.empty() ? INADDR_ANY : number_of(ipv4), static_cast<std::uint16_t>(port));
+}
+
 std::string Endpoint::address_text() const {
   in_addr raw{};
   raw.s_addr = htonl(address);
@@ -57,11 +61,11 @@ std::string Endpoint::address_text() const {
 std::string Endpoint::to_string() const { return address_text() + ":" + std::to_string(port); }
 
 Endpoint resolve(const std::string& text, std::uint16_t default_port) {
-  const std::string fault = io::fault_of_host_address(text);
+  const std::string fault = fault_of_host_address(text);
   if (!fault.empty()) throw std::invalid_argument("server: " + fault);
-  const io::HostAddress host = io::parse_host_address(text);
+  const HostAddress host = parse_host_address(text);
   try {
-    return {number_of(io::ipv4_addresses_of(host.host).front()), host.port == 0 ? default_port : host.port};
+    return {number_of(ipv4_addresses_of(host.host).front()), host.port == 0 ? default_port : host.port};
   } catch (const std::runtime_error& error) {
     throw std::invalid_argument(std::string("server: ") + error.what());
   }
@@ -69,20 +73,9 @@ Endpoint resolve(const std::string& text, std::uint16_t default_port) {
 
 std::string interface_address(const std::string& name_or_address) {
   if (name_or_address.empty()) return "";
-  const std::string fault = io::fault_of_interface(name_or_address);
+  const std::string fault = fault_of_interface(name_or_address);
   if (!fault.empty()) throw std::invalid_argument("interface: " + fault);
-  return io::addresses_of_interfaces({name_or_address}).front();
-}
-
-Descriptor::~Descriptor() { close(); }
-Descriptor::Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
-  std::swap(fd_, other.fd_);
-  return *this;
-}
-void Descriptor::close() {
-  if (fd_ >= 0) ::close(fd_);
-  fd_ = -1;
+  return addresses_of_interfaces({name_or_address}).front();
 }
 
 UdpSocket::UdpSocket(const std::string& interface, std::uint16_t port, bool shared)
@@ -90,7 +83,7 @@ UdpSocket::UdpSocket(const std::string& interface, std::uint16_t port, bool shar
   if (shared) set(fd(), SOL_SOCKET, SO_REUSEADDR, 1);
   set(fd(), SOL_SOCKET, SO_BROADCAST, 1);
   set(fd(), SOL_SOCKET, SO_RCVBUF, kReceiveBuffer);
-  const sockaddr_in address = address_of(interface.empty() ? INADDR_ANY : number_of(interface), port);
+  const sockaddr_in address = socket_address(interface, port);
   if (fd() >= 0 && ::bind(fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return;
   throw std::runtime_error("cannot receive on UDP port " + std::to_string(port) + ": " +
                            std::strerror(errno));
@@ -185,4 +178,4 @@ void wait_for_input(std::initializer_list<int> descriptors, std::chrono::millise
   ::poll(requests.data(), requests.size(), static_cast<int>(timeout.count()));
 }
 
-}  // namespace swiftlet::mocap
+}  // namespace swiftlet::io
