@@ -12,7 +12,7 @@ namespace swiftlet::ground {
 double vehicle_rate(const VehicleRecording& recording);
 
 CheckResults check_imu_stream(const VehicleRecording& recording);
-// Of a vehicle that brings vehicle_odometry in place of imu.
+// The stream of a vehicle that brings vehicle_odometry in place of imu.
 CheckResults check_odometry_stream(const VehicleRecording& recording);
 CheckResults check_battery_stream(const VehicleRecording& recording);
 // Optional for a vehicle: skipped if nobody publishes it.

@@ -86,6 +86,10 @@ VehicleRecording part_of(const VehicleRecording& recording, std::int64_t begin_n
 // The last tracked pose of motion capture.
 std::optional<plant::PoseSample> last_pose(const VehicleRecording& recording);
 
+// Mean speeds, rad/s, of the samples received in this time; nullopt without any.
+std::optional<plant::PerRotor> mean_rotor_speeds(const VehicleRecording& recording, std::int64_t begin_ns,
+                                                 std::int64_t end_ns);
+
 // The vehicle's time follows the answers of a controller, so that nothing can be said about its timing.
 bool runs_in_lockstep(const VehicleRecording& recording);
 

@@ -20,7 +20,6 @@
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/vehicle_check/commands.hpp"
 #include "swiftlet/ground/vehicle_check/hand_motion.hpp"
-#include "swiftlet/ground/vehicle_check/rotors.hpp"
 #include "swiftlet/ground/vehicle_check/streams.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"

@@ -10,7 +10,7 @@
 #include <fmt/core.h>
 
 #include "swiftlet/ground/cli/check/test_commands.hpp"
-#include "swiftlet/ground/vehicle_check/rotors.hpp"
+#include "swiftlet/ground/vehicle_check/commands.hpp"
 #include "swiftlet/plant/model/propulsion.hpp"
 
 namespace swiftlet::ground {

@@ -3,7 +3,7 @@
 
 #include "swiftlet/ground/cli/check/operator_dialog.hpp"
 #include "swiftlet/ground/cli/check/sample_recorder.hpp"
-#include "swiftlet/ground/vehicle_check/command_phases.hpp"
+#include "swiftlet/ground/vehicle_check/commands.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
