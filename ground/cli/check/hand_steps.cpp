@@ -1,11 +1,10 @@
-#include "swiftlet/ground/cli/check/hand_steps.hpp"
-
 #include <chrono>
 #include <iterator>
 #include <optional>
 #include <string>
 #include <thread>
 
+#include "swiftlet/ground/cli/check/steps.hpp"
 #include "swiftlet/ground/vehicle_check/motion_watch.hpp"
 
 namespace swiftlet::ground {
