@@ -92,8 +92,7 @@ constexpr Check kClock("{topic}.clock", "s/s", 0.95, 1.05, "{value:.5g} s/s", "1
                        Sentence("stamps in ms: stamp_ns must count nanoseconds", 0.5e-6, 1.5e-6),
                        Sentence("stamps in s: stamp_ns must count nanoseconds", 0.5e-9, 1.5e-9),
                        "the stamps do not run with the clock: they are not those of a clock in ns");
-constexpr Check kSimulatedClock =
-    with_limits(kClock, 0.01, 100.0, "{least:g} to {most:g}, simulated");
+constexpr Check kSimulatedClock = with_limits(kClock, 0.01, 100.0, "{least:g} to {most:g}, simulated");
 constexpr Check kRate("{topic}.rate", "Hz", 0.0, kUnlimited, "{value:.1f} Hz", "at least {least:g} Hz",
                       "too slow: {value:.1f} Hz");
 // The limits are parts of the expected rate.
@@ -194,8 +193,7 @@ constexpr Check kOdometryMocap("vehicle_odometry.mocap", "degrees", 0.0, 5.0,
 // 0.7. Otherwise they are those of a discharged cell and of twelve full ones.
 constexpr double kEmptiest = 0.7;
 constexpr double kFullest = 1.05;
-constexpr Check kVoltage("battery.voltage", "V", 2.5, 52.0,
-                         "{value:.2f} V, {charge:.0f} % charged",
+constexpr Check kVoltage("battery.voltage", "V", 2.5, 52.0, "{value:.2f} V, {charge:.0f} % charged",
                          "{least:.2f} to {most:.2f} V",
                          Sentence("battery in mV or another unit: voltage_v is {value:.4g}", 52.0),
                          "the battery is empty, or its voltage is not measured: voltage_v is {value:.4g}");

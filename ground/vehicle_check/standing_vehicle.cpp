@@ -46,30 +46,23 @@ Moments rate_moments(const VehicleRecording& recording) {
                  [&](std::size_t i) -> Vector3d { return samples[i].sample.imu.body_rates_frd; });
 }
 
-double percent(std::size_t part, std::size_t of) {
-  return 1e2 * (static_cast<double>(part) / static_cast<double>(of));
+// How many samples repeat the one before.
+template <class Samples, class Repeats>
+double repeated_percent(const Samples& samples, Repeats repeats) {
+  std::size_t repeated = 0;
+  for (std::size_t i = 1; i < samples.size(); ++i) repeated += repeats(samples[i - 1], samples[i]) ? 1 : 0;
+  return 1e2 * (static_cast<double>(repeated) / static_cast<double>(samples.size() - 1));
 }
 
-double repeated_percent(const std::vector<Received<ImuReport>>& samples) {
-  std::size_t repeated = 0;
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    const plant::ImuSample& before = samples[i - 1].sample.imu;
-    const plant::ImuSample& now = samples[i].sample.imu;
-    if (now.sequence != before.sequence && now.specific_force_frd == before.specific_force_frd &&
-        now.body_rates_frd == before.body_rates_frd)
-      ++repeated;
-  }
-  return percent(repeated, samples.size() - 1);
+bool repeats_imu(const Received<ImuReport>& before, const Received<ImuReport>& now) {
+  const plant::ImuSample& a = before.sample.imu;
+  const plant::ImuSample& b = now.sample.imu;
+  return a.sequence != b.sequence && a.specific_force_frd == b.specific_force_frd &&
+         a.body_rates_frd == b.body_rates_frd;
 }
-
-double repeated_percent(const std::vector<plant::PoseSample>& poses) {
-  std::size_t repeated = 0;
-  for (std::size_t i = 1; i < poses.size(); ++i) {
-    if (poses[i].position_ned == poses[i - 1].position_ned &&
-        poses[i].q_ned_from_frd.coeffs() == poses[i - 1].q_ned_from_frd.coeffs())
-      ++repeated;
-  }
-  return percent(repeated, poses.size() - 1);
+bool repeats_pose(const plant::PoseSample& before, const plant::PoseSample& now) {
+  return now.position_ned == before.position_ned &&
+         now.q_ned_from_frd.coeffs() == before.q_ned_from_frd.coeffs();
 }
 
 CheckResult check_level(const Moments& force) {
@@ -122,7 +115,8 @@ CheckResults check_imu_at_rest(const VehicleRecording& recording) {
   const double size = force.mean.norm();
   const std::string against =
       fmt::format("|specific force| is {:.4g}, expected {:.2f} m/s^2", size, plant::kGravity);
-  return {judge(kImuValues, repeated_percent(recording.imu.samples)), judge(kImuStill, force.deviation),
+  return {judge(kImuValues, repeated_percent(recording.imu.samples, repeats_imu)),
+          judge(kImuStill, force.deviation),
           judge(kImuGravity, size, {{"gravity", plant::kGravity}, {"against", against}}), check_level(force),
           check_gyro(rate_moments(recording), force.deviation <= kImuStill.most)};
 }
@@ -137,7 +131,7 @@ CheckResults check_mocap_at_rest(const VehicleRecording& recording, const CheckR
   if (poses.size() < kFewest) return results;
   const Moments position =
       moments(poses.size(), [&](std::size_t i) -> Vector3d { return poses[i].position_ned; });
-  results.push_back(judge(kMocapValues, repeated_percent(poses)));
+  results.push_back(judge(kMocapValues, repeated_percent(poses, repeats_pose)));
   results.push_back(judge(kMocapStill, 1e3 * position.deviation));
   results.push_back(passes(imu, kImuGravity.name) && passes(imu, kImuLevel.name)
                         ? check_mocap_gravity(poses, force_moments(recording).mean)
@@ -149,8 +143,7 @@ CheckResults check_mocap_at_rest(const VehicleRecording& recording, const CheckR
 
 // True if it publishes vehicle_odometry, and no imu.
 bool brings_odometry(const VehicleRecording& recording) {
-  const bool sends_imu = recording.imu.published || !recording.imu.samples.empty();
-  return !sends_imu && (recording.odometry.published || !recording.odometry.samples.empty());
+  return !recording.imu.is_present() && recording.odometry.is_present();
 }
 
 // "Down" in body axes.
@@ -259,10 +252,11 @@ CheckResults check_standing_vehicle(const VehicleRecording& recording, const pla
   CheckResults results = odometry ? check_odometry_stream(recording) : check_imu_stream(recording);
   const CheckResults imu = odometry ? check_odometry_at_rest(recording) : check_imu_at_rest(recording);
   append(results, imu);
-  append(results, check_battery_stream(recording));
+  append(results, check_stream(kBatteryStream, recording.battery, recording));
   append(results, check_supply(recording, vehicle));
-  append(results, check_rotor_speed_stream(recording));
-  append(results, check_mocap_stream(recording, mocap_required));
+  append(results, check_stream(kRotorSpeedStream, recording.rotor_speeds, recording));
+  append(results,
+         check_stream(mocap_required ? kRequiredMocapStream : kMocapStream, recording.mocap, recording));
   append(results, check_mocap_at_rest(recording, imu));
   if (vehicle != nullptr) append(results, check_description(recording, *vehicle));
   return results;

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
-
-#include <fmt/core.h>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "swiftlet/ground/vehicle_check/checks.hpp"
-#include "swiftlet/ground/vehicle_check/stream_statistics.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -19,54 +20,28 @@ constexpr double kLeastOuterRate_hz = 100.0;  // of the IMU of a vehicle that cl
 constexpr double kOuterJitter = 50.0;         // likewise, %
 constexpr double kEarliestPeriods = 2.0;      // of the IMU: if longer, a stamp may lie so far in the future
 
-struct StreamLimits {
-  const char* topic;
-  double least_rate_hz;
-  double longest_gap_ms;
-  double oldest_ms;  // age of a stamp when it arrives
-};
-constexpr StreamLimits kBatteryLimits{"battery", 5.0, 1000.0, 500.0};
-constexpr StreamLimits kMocapLimits{"mocap_pose", 30.0, 200.0, 100.0};
-constexpr StreamLimits kRotorSpeedLimits{"rotor_speeds", 50.0, 100.0, 100.0};
-
-// A stream, and the results of the checks that all streams share.
+// A stream, the words of its checks, and the results of those that all streams share.
 struct Stream {
-  Words topic;
   SampleTimes samples;
   SequenceCounts counts;
+  Words words;
   CheckResults results;
 
   bool has_samples() const { return samples.size() >= kFewest; }
+  void add(const Check& check, double value) { results.push_back(judge(check, value, words)); }
 };
 
-template <class Sample>
-CheckResult check_received(const TopicRecord<Sample>& record, double duration_s, Words words) {
-  const std::size_t count = record.samples.size();
-  words.insert(words.end(), {{"conflict", record.conflict},
-                             {"invalid", record.invalid},
-                             {"fault", record.fault},
-                             {"duration", duration_s}});
-  std::string finding;
-  if (!record.conflict.empty()) {
-    finding = "two processes publish {topic}: {conflict}";
-  } else if (record.invalid > 0) {
-    finding = "{invalid:.0f} messages are invalid and not used by control: {fault}";
-  } else if (count < kFewest && !record.published) {
-    finding =
-        "missing: nobody publishes {topic} here; look at the domain, the vehicle's name, the interface and "
-        "the QoS";
-  } else if (count < kFewest) {
-    finding = "missing: {topic} is published, but {value:.0f} messages arrived in {duration:.1f} s";
-  }
-  return judge_by(kReceived, static_cast<double>(count), finding, words);
+const char* reception_finding(const TopicState& state, std::size_t count) {
+  if (!state.conflict.empty()) return "two processes publish {topic}: {conflict}";
+  if (state.invalid > 0) return "{invalid:.0f} messages are invalid and not used by control: {fault}";
+  if (count >= kFewest) return "";
+  if (state.published)
+    return "missing: {topic} is published, but {value:.0f} messages arrived in {duration:.1f} s";
+  return "missing: nobody publishes {topic} here; look at the domain, the vehicle's name, the interface and "
+         "the QoS";
 }
 
-CheckResult check_sequence(const SequenceCounts& counts, Words words) {
-  words.insert(words.end(), {{"repeated", counts.repeated},
-                             {"backward", counts.backward},
-                             {"lost", counts.lost},
-                             {"numbered", counts.pairs + 1},
-                             {"sent", counts.lost + counts.pairs + 1}});
+CheckResult check_sequence(const SequenceCounts& counts, const Words& words) {
   const double lost = 1e2 * counts.lost_part();
   if (counts.repeated > 0)
     return judge_by(kSequence, lost,
@@ -79,22 +54,36 @@ CheckResult check_sequence(const SequenceCounts& counts, Words words) {
   return judge(kSequence, lost, words);
 }
 
-CheckResult check_stamps(const SequenceCounts& counts, Words words) {
-  words.insert(words.end(), {{"still", counts.stamps_still}, {"back", counts.stamps_back}});
+CheckResult check_stamps(const SequenceCounts& counts, const Words& words) {
   const auto faulty = static_cast<double>(counts.stamps_faulty());
   if (2 * counts.stamps_still > counts.pairs)
     return judge_by(kStamps, faulty, "frozen stamps: the stamp does not change from sample to sample", words);
   return judge(kStamps, faulty, words);
 }
 
-template <class Sample>
-Stream stream_of(const char* topic, const TopicRecord<Sample>& record, const VehicleRecording& recording) {
-  Stream stream{{{"topic", topic}}, times_of(record), {}, {}};
-  stream.counts = count_sequence(stream.samples);
-  stream.results.push_back(check_received(record, recording.duration_s(), stream.topic));
+Stream stream_of(const char* topic, const TopicState& state, SampleTimes samples, double duration_s) {
+  const SequenceCounts counts = count_sequence(samples);
+  Stream stream{std::move(samples),
+                counts,
+                {{"topic", topic},
+                 {"conflict", state.conflict},
+                 {"invalid", state.invalid},
+                 {"fault", state.fault},
+                 {"duration", duration_s},
+                 {"repeated", counts.repeated},
+                 {"backward", counts.backward},
+                 {"lost", counts.lost},
+                 {"numbered", counts.pairs + 1},
+                 {"sent", counts.lost + counts.pairs + 1},
+                 {"still", counts.stamps_still},
+                 {"back", counts.stamps_back}},
+                {}};
+  const std::size_t count = stream.samples.size();
+  stream.results.push_back(
+      judge_by(kReceived, static_cast<double>(count), reception_finding(state, count), stream.words));
   if (!stream.has_samples()) return stream;
-  stream.results.push_back(check_sequence(stream.counts, stream.topic));
-  stream.results.push_back(check_stamps(stream.counts, stream.topic));
+  stream.results.push_back(check_sequence(counts, stream.words));
+  stream.results.push_back(check_stamps(counts, stream.words));
   return stream;
 }
 
@@ -102,19 +91,17 @@ bool is_simulated(const VehicleRecording& recording) {
   return recording.description && recording.description->simulated;
 }
 
-CheckResult check_clock(double rate, const Stream& stream, const VehicleRecording& recording) {
-  return judge(is_simulated(recording) ? kSimulatedClock : kClock, rate, stream.topic);
+const Check& clock_check(const VehicleRecording& recording) {
+  return is_simulated(recording) ? kSimulatedClock : kClock;
 }
 
 bool keeps_the_clock(double rate) { return rate >= kClock.least && rate <= kClock.most; }
 
 // By the times of reception.
 void check_rate_and_gap(Stream& stream, double least_rate_hz, double longest_gap_ms) {
-  stream.results.push_back(
-      judge(with_limits(kRate, least_rate_hz, kUnlimited), rate_by_arrivals(stream.samples), stream.topic));
-  stream.results.push_back(judge(with_limits(kGap, 0.0, longest_gap_ms),
-                                 1e3 * longest_interval_s(stream.samples, &SampleTime::received_ns),
-                                 stream.topic));
+  stream.add(with_limits(kRate, least_rate_hz, kUnlimited), rate_by_arrivals(stream.samples));
+  stream.add(with_limits(kGap, 0.0, longest_gap_ms),
+             1e3 * longest_interval_s(stream.samples, &SampleTime::received_ns));
 }
 
 // A vehicle that is never commanded at level actuators: control closes its outer loops only.
@@ -190,10 +177,13 @@ CheckResult check_age(const StreamLimits& limits, const SampleTimes& samples, co
                {{"topic", limits.topic}});
 }
 
-template <class Sample>
-CheckResults check_stream(const StreamLimits& limits, const TopicRecord<Sample>& record,
+}  // namespace
+
+CheckResults check_stream(const StreamLimits& limits, const TopicState& state, const SampleTimes& samples,
                           const VehicleRecording& recording) {
-  Stream stream = stream_of(limits.topic, record, recording);
+  if (limits.absent != nullptr && !state.published && samples.empty())
+    return {skipped(limits.topic + std::string(".received"), limits.absent)};
+  Stream stream = stream_of(limits.topic, state, samples, recording.duration_s());
   if (!stream.has_samples()) return stream.results;
   check_rate_and_gap(stream, limits.least_rate_hz, limits.longest_gap_ms);
   const SampleTimes imu = times_of(recording.imu);
@@ -201,8 +191,6 @@ CheckResults check_stream(const StreamLimits& limits, const TopicRecord<Sample>&
       check_age(limits, stream.samples, imu.empty() ? times_of(recording.odometry) : imu));
   return stream.results;
 }
-
-}  // namespace
 
 double vehicle_rate(const VehicleRecording& recording) {
   if (!is_simulated(recording)) return 1.0;
@@ -213,12 +201,12 @@ double vehicle_rate(const VehicleRecording& recording) {
 }
 
 CheckResults check_imu_stream(const VehicleRecording& recording) {
-  Stream stream = stream_of("imu", recording.imu, recording);
+  Stream stream = stream_of("imu", recording.imu, times_of(recording.imu), recording.duration_s());
   if (!stream.has_samples()) return stream.results;
   const SampleTimes& samples = stream.samples;
   CheckResults& results = stream.results;
   const double clock = clock_rate(samples);
-  results.push_back(check_clock(clock, stream, recording));
+  stream.add(clock_check(recording), clock);
   const bool stamps_count = results.back().verdict == Verdict::kPass && stream.counts.stamps_faulty() == 0;
   const bool keeps_clock = stamps_count && keeps_the_clock(clock) &&
                            (!is_simulated(recording) || clock_slip_s(samples) <= kSimulationSlip_s);
@@ -226,13 +214,13 @@ CheckResults check_imu_stream(const VehicleRecording& recording) {
       check_imu_rate(recording, stamps_count ? rate_by_stamps(samples) : rate_by_arrivals(samples)));
   const double gap_s =
       longest_interval_s(samples, stamps_count ? &SampleTime::stamp_ns : &SampleTime::received_ns);
-  results.push_back(judge(kGap, 1e3 * gap_s, stream.topic));
+  stream.add(kGap, 1e3 * gap_s);
   const double most_jitter = closes_inner_loops(recording) ? kOuterJitter : kJitter.most;
   results.push_back(stamps_count
                         ? judge(with_limits(kJitter, 0.0, most_jitter), 1e2 * stamp_jitter_p99(samples))
                         : skipped(kJitter.name, "the stamps do not follow the clock"));
   if (keeps_clock) {
-    results.push_back(judge(kDelivery, 1e3 * delivery_delay_p99_s(samples)));
+    stream.add(kDelivery, 1e3 * delivery_delay_p99_s(samples));
     results.push_back(check_imu_age(recording, samples));
   } else {
     for (const Check& check : {kDelivery, kImuAge})
@@ -242,27 +230,12 @@ CheckResults check_imu_stream(const VehicleRecording& recording) {
 }
 
 CheckResults check_odometry_stream(const VehicleRecording& recording) {
-  Stream stream = stream_of("vehicle_odometry", recording.odometry, recording);
+  Stream stream =
+      stream_of("vehicle_odometry", recording.odometry, times_of(recording.odometry), recording.duration_s());
   if (!stream.has_samples()) return stream.results;
-  stream.results.push_back(check_clock(clock_rate(stream.samples), stream, recording));
+  stream.add(clock_check(recording), clock_rate(stream.samples));
   check_rate_and_gap(stream, kLeastOdometryRate_hz, kGap.most);
   return stream.results;
-}
-
-CheckResults check_battery_stream(const VehicleRecording& recording) {
-  return check_stream(kBatteryLimits, recording.battery, recording);
-}
-
-CheckResults check_rotor_speed_stream(const VehicleRecording& recording) {
-  if (!recording.rotor_speeds.published && recording.rotor_speeds.samples.empty())
-    return {skipped("rotor_speeds.received", "optional, and nobody publishes it")};
-  return check_stream(kRotorSpeedLimits, recording.rotor_speeds, recording);
-}
-
-CheckResults check_mocap_stream(const VehicleRecording& recording, bool required) {
-  if (!required && !recording.mocap.published && recording.mocap.samples.empty())
-    return {skipped("mocap_pose.received", "nobody publishes it; start motion capture to check it too")};
-  return check_stream(kMocapLimits, recording.mocap, recording);
 }
 
 }  // namespace swiftlet::ground

@@ -17,14 +17,19 @@ struct Received {
   std::int64_t received_ns = 0;  // monotonic clock of this computer
 };
 
-// The messages of a topic, in the order in which they arrived.
-template <class Sample>
-struct TopicRecord {
-  std::vector<Received<Sample>> samples;
+struct TopicState {
   bool published = false;     // a publisher with matching QoS was found
   std::uint64_t invalid = 0;  // messages with a field out of range, which control refuses too
   std::string fault;          // of the first of them: field, value, limit
   std::string conflict;       // names two processes that both publish the topic; else empty
+};
+
+// The messages of a topic, in the order in which they arrived.
+template <class Sample>
+struct TopicRecord : TopicState {
+  std::vector<Received<Sample>> samples;
+
+  bool is_present() const { return published || !samples.empty(); }
 };
 
 struct ImuReport {
