@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <iterator>
 
-#include <fmt/core.h>
-
 namespace swiftlet::ground {
 
 const char* to_string(Verdict verdict) {
@@ -17,15 +15,6 @@ const char* to_string(Verdict verdict) {
       return "skipped";
   }
   return "";
-}
-
-Figure figure(double value, const std::string& unit, int decimals, const std::string& more) {
-  return {value, unit, fmt::format("{:.{}f}{}{}{}", value, decimals, unit.empty() ? "" : " ", unit, more)};
-}
-
-CheckResult judged(const std::string& name, Figure figure, const std::string& limit,
-                   const std::string& finding) {
-  return {name, finding.empty() ? Verdict::kPass : Verdict::kFail, std::move(figure), limit, finding};
 }
 
 CheckResult skipped(const std::string& name, const std::string& why) {
@@ -41,9 +30,9 @@ bool any_failed(const CheckResults& results) {
                      [](const CheckResult& result) { return result.verdict == Verdict::kFail; });
 }
 
-bool passes(const CheckResults& results, const std::string& name) {
+bool has_verdict(const CheckResults& results, const std::string& name, Verdict verdict) {
   return std::any_of(results.begin(), results.end(), [&](const CheckResult& result) {
-    return result.name == name && result.verdict == Verdict::kPass;
+    return result.name == name && result.verdict == verdict;
   });
 }
 

@@ -25,19 +25,16 @@ struct CheckResult {
 };
 using CheckResults = std::vector<CheckResult>;
 
-// "12.3 ms" with this many decimals, followed by `more`.
-Figure figure(double value, const std::string& unit, int decimals, const std::string& more = "");
-
-// Fails with the finding, or passes if it is empty.
-CheckResult judged(const std::string& name, Figure figure, const std::string& limit,
-                   const std::string& finding);
 CheckResult skipped(const std::string& name, const std::string& why);
 // A failure because nothing was measured.
 CheckResult missing(const std::string& name, const std::string& finding);
 
 bool any_failed(const CheckResults& results);
-// False unless the check is among the results and passes.
-bool passes(const CheckResults& results, const std::string& name);
+// False unless the check is among the results with this verdict.
+bool has_verdict(const CheckResults& results, const std::string& name, Verdict verdict);
+inline bool passes(const CheckResults& results, const std::string& name) {
+  return has_verdict(results, name, Verdict::kPass);
+}
 void append(CheckResults& results, CheckResults more);
 
 }  // namespace swiftlet::ground

@@ -2,18 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
-#include <fmt/core.h>
 
 #include "swiftlet/ground/vehicle_check/axes.hpp"
-#include "swiftlet/ground/vehicle_check/imu_range.hpp"
+#include "swiftlet/ground/vehicle_check/checks.hpp"
 #include "swiftlet/ground/vehicle_check/rate_tracks.hpp"
-#include "swiftlet/ground/vehicle_check/rest.hpp"
+#include "swiftlet/ground/vehicle_check/standing_vehicle.hpp"
 #include "swiftlet/math/angles.hpp"
 #include "swiftlet/math/rotation_vector.hpp"
 #include "swiftlet/math/time.hpp"
@@ -25,11 +26,17 @@ constexpr double kLeastTurn_rad = 0.25;
 constexpr double kLeastForce = 0.2;  // of gravity: a tilt of 12 degrees
 constexpr double kLeastMove_m = 0.1;
 constexpr double kMoveClearness = 0.8;  // cosine to the asked direction
-constexpr double kScaleTolerance = 0.1;
-constexpr double kDelay_s = 0.015;
 constexpr double kLongestDelay_s = 0.2;
 constexpr double kLeastCorrelation = 0.8;
 constexpr double kLeastWave_rad_s = 1.0;  // root mean square
+
+// A hand cannot turn or jerk a vehicle by this much from one sample to the next.
+constexpr double kGyroStep_rad_s = 3.0;
+constexpr double kForceStep_m_s2 = 60.0;
+constexpr double kNearTheEnd = 0.6;  // of the largest value: both sides of an overflow lie there
+constexpr int kSaturated = 5;        // samples in a row at the largest value
+
+constexpr const char* kUnseen = "missing: motion capture does not see the vehicle in this step";
 
 constexpr HandStep kTurns[] = {HandStep::kRollRight, HandStep::kNoseUp, HandStep::kTurnRight};
 
@@ -66,18 +73,16 @@ std::optional<Displacement> displacement(const VehicleRecording& recording, cons
                       math::rotation_vector(begin->q_ned_from_frd.conjugate() * end->q_ned_from_frd)};
 }
 
-std::string map_finding(const std::string& sensor, const std::optional<AxisMap>& map) {
-  if (!map)
-    return "the motions do not show the axes of the " + sensor + " clearly: repeat them, one axis at a time";
-  const std::string defect = describe(*map);
-  return defect.empty() ? "" : sensor + ": " + defect;
-}
-
-CheckResult judged_map(const std::string& name, const std::string& sensor, const std::optional<AxisMap>& map,
+CheckResult check_axes(const char* subject, const std::string& sensor, const std::optional<AxisMap>& map,
                        const Eigen::Matrix3d& responses) {
   const Eigen::Vector3d along = responses.diagonal();
-  return judged(name, {along.minCoeff(), "", "x, y, z to their axes: " + to_string(along, 2)},
-                "right axes, positive", map_finding(sensor, map));
+  const std::string defect = map ? describe(*map) : "";
+  std::string finding = defect.empty() ? "" : "{sensor}: {defect}";
+  if (!map)
+    finding = "the motions do not show the axes of the {sensor} clearly: repeat them, one axis at a time";
+  return judge_by(
+      kHandAxes, along.minCoeff(), finding,
+      {{"subject", subject}, {"along", to_string(along, 2)}, {"sensor", sensor}, {"defect", defect}});
 }
 
 // Everything that the turns show, column by column: about x, y, z.
@@ -113,57 +118,41 @@ Turns measure_turns(const VehicleRecording& recording, const std::vector<HandSeg
   return turns;
 }
 
-std::string scale_finding(double scale) {
-  const auto is_near = [&](double value) { return std::abs(scale / value - 1.0) < 0.15; };
-  if (std::abs(scale - 1.0) <= kScaleTolerance) return "";
-  if (is_near(math::kDegPerRad)) return "gyro in degrees/s: it shows 57 times the turn of motion capture";
-  if (is_near(1.0 / math::kDegPerRad))
-    return "gyro converted to radians twice: it shows 1/57 of the turn of motion capture";
-  return fmt::format("gyro has a wrong scale: it shows {:.3g} times the turn of motion capture", scale);
-}
-
 CheckResult check_scale(const Turns& turns) {
   const double by_mocap = turns.mocap.colwise().norm().sum();
   if (by_mocap < kLeastTurn_rad)
-    return missing("hand.gyro_scale", "missing: motion capture shows no turn to compare with");
-  const double scale = turns.gyro.colwise().norm().sum() / by_mocap;
-  return judged("hand.gyro_scale", figure(scale, "", 3, " of motion capture"),
-                fmt::format("1 +- {:g}", kScaleTolerance), scale_finding(scale));
+    return missing(kGyroScale.name, "missing: motion capture shows no turn to compare with");
+  return judge(kGyroScale, turns.gyro.colwise().norm().sum() / by_mocap);
 }
 
-std::string forward_finding(const Displacement& forward) {
-  const Eigen::Vector3d& moved = forward.position_begin_frd;
-  if (moved.norm() < kLeastMove_m)
-    return "motion capture shows no move along the nose: wrong unit, or another body";
-  const double cosine = moved.x() / moved.norm();
-  if (cosine >= kMoveClearness) return "";
-  if (cosine <= -kMoveClearness)
-    return "motion capture: the vehicle moves backwards when carried along its nose";
-  return fmt::format(
-      "motion capture: carried along its nose it moves to {} in body axes: position and attitude are in "
-      "different "
-      "frames, such as ENU and NED, or the marker body's yaw is misaligned",
-      to_string(moved.normalized(), 2));
+// moved: by the vehicle; nearly all of it should be along. The sentences name no move, one to the other side, and one
+// to another side.
+CheckResult check_move(const Check& check, const Eigen::Vector3d& moved, double along, const char* none,
+                       const char* reversed, const char* aside) {
+  const double size = moved.norm();
+  const double cosine = along / size;
+  const char* finding = cosine >= kMoveClearness ? "" : cosine <= -kMoveClearness ? reversed : aside;
+  if (size < kLeastMove_m) finding = none;
+  return judge_by(check, size, finding,
+                  {{"moved", to_string(moved, 2)}, {"direction", to_string(moved.normalized(), 2)}});
 }
 
-std::string up_finding(const Displacement& up) {
-  if (up.position_ned.norm() < kLeastMove_m)
-    return "motion capture shows no move upwards: wrong unit, or another body";
-  const double cosine = -up.position_ned.z() / up.position_ned.norm();
-  if (cosine >= kMoveClearness) return "";
-  if (cosine <= -kMoveClearness)
-    return "motion capture in ENU: z rises when the vehicle is lifted, expected NED";
-  return "motion capture: lifted, the vehicle moves sideways to " +
-         to_string(up.position_ned.normalized(), 2) + ": axes swapped, y up?";
+CheckResult check_forward(const std::optional<Displacement>& moved) {
+  if (!moved) return missing(kHandForward.name, kUnseen);
+  return check_move(kHandForward, moved->position_begin_frd, moved->position_begin_frd.x(),
+                    "motion capture shows no move along the nose: wrong unit, or another body",
+                    "motion capture: the vehicle moves backwards when carried along its nose",
+                    "motion capture: carried along its nose it moves to {direction} in body axes: position "
+                    "and attitude are in different frames, such as ENU and NED, or the marker body's yaw is "
+                    "misaligned");
 }
 
-CheckResult check_move(const char* name, const VehicleRecording& recording, const HandSegment& segment,
-                       std::string (*finding)(const Displacement&), Eigen::Vector3d Displacement::*shown,
-                       const char* limit) {
-  const auto moved = displacement(recording, segment);
-  if (!moved) return missing(name, "missing: motion capture does not see the vehicle in this step");
-  const Eigen::Vector3d vector = (*moved).*shown;
-  return judged(name, {vector.norm(), "m", to_string(vector, 2) + " m"}, limit, finding(*moved));
+CheckResult check_up(const std::optional<Displacement>& moved) {
+  if (!moved) return missing(kHandUp.name, kUnseen);
+  return check_move(kHandUp, moved->position_ned, -moved->position_ned.z(),
+                    "motion capture shows no move upwards: wrong unit, or another body",
+                    "motion capture in ENU: z rises when the vehicle is lifted, expected NED",
+                    "motion capture: lifted, the vehicle moves sideways to {direction}: axes swapped, y up?");
 }
 
 // Rotation that turns the rates of motion capture into those of the gyro with the least squares of the rest (Kabsch).
@@ -182,23 +171,11 @@ double misalignment_deg(const std::vector<RatePair>& pairs) {
 }
 
 CheckResult check_delay(const Delay& delay) {
-  std::string finding;
-  if (delay.correlation < kLeastCorrelation) {
-    finding = "gyro and motion capture do not show the same motion: another body, or one of them is wrong";
-  } else if (delay.delay_s > kDelay_s) {
-    finding = fmt::format(
-        "motion capture delayed: its stamps are {:.0f} ms later than the motion; they must be those of the "
-        "exposure",
-        1e3 * delay.delay_s);
-  } else if (delay.delay_s < -kDelay_s) {
-    finding = fmt::format("late IMU stamps: they are {:.0f} ms later than the motion, by motion capture",
-                          -1e3 * delay.delay_s);
-  }
-  return judged(
-      "hand.delay",
-      figure(1e3 * delay.delay_s, "ms", 0,
-             fmt::format(" of motion capture behind the gyro, correlation {:.2f}", delay.correlation)),
-      fmt::format("+- {:.0f} ms", 1e3 * kDelay_s), finding);
+  const Words words = {{"correlation", delay.correlation}};
+  if (delay.correlation >= kLeastCorrelation) return judge(kHandDelay, 1e3 * delay.delay_s, words);
+  return judge_by(
+      kHandDelay, 1e3 * delay.delay_s,
+      "gyro and motion capture do not show the same motion: another body, or one of them is wrong", words);
 }
 
 CheckResults check_wave(const VehicleRecording& wave, const VehicleRecording& rest,
@@ -207,14 +184,13 @@ CheckResults check_wave(const VehicleRecording& wave, const VehicleRecording& re
   const std::vector<MocapRate> mocap = mocap_rates(wave);
   double square = 0.0;
   for (const MocapRate& rate : mocap) square += rate.body_rates_frd.squaredNorm();
-  if (mocap.empty())
-    return {missing("hand.delay", "missing: motion capture does not see the vehicle in this step")};
+  if (mocap.empty()) return {missing(kHandDelay.name, kUnseen)};
   if (std::sqrt(square / static_cast<double>(mocap.size())) < kLeastWave_rad_s)
-    return {missing("hand.delay", "missing: the turns about all axes were too slow; repeat them quicker")};
+    return {missing(kHandDelay.name, "missing: the turns about all axes were too slow; repeat them quicker")};
   const Delay delay = find_delay(gyro, mocap, kLongestDelay_s);
   CheckResults results = {check_delay(delay)};
   if (!gyro_map || !mocap_map || delay.correlation < kLeastCorrelation) {
-    results.push_back(skipped("hand.alignment", "the axes of gyro and motion capture are not clear"));
+    results.push_back(skipped(kHandAlignment.name, "the axes of gyro and motion capture are not clear"));
     return results;
   }
   std::vector<RatePair> pairs;
@@ -224,16 +200,79 @@ CheckResults check_wave(const VehicleRecording& wave, const VehicleRecording& re
       pairs.push_back(
           {gyro_map->matrix().transpose() * *mean, mocap_map->matrix().transpose() * rate.body_rates_frd});
   }
-  const double off_deg = misalignment_deg(pairs);
-  results.push_back(
-      judged("hand.alignment", figure(off_deg, "degrees", 1, " between motion capture and gyro"),
-             fmt::format("at most {:g} degrees", kAlignment_deg),
-             off_deg <= kAlignment_deg
-                 ? ""
-                 : fmt::format("motion capture attitude is misaligned by {:.0f} degrees with the IMU: "
-                               "align the marker body, or look at the IMU's mounting",
-                               off_deg)));
+  results.push_back(judge(kHandAlignment, misalignment_deg(pairs)));
   return results;
+}
+
+struct Axis {
+  std::string name;  // "gyro x"
+  const char* unit;
+  double step;  // no motion of a hand
+  std::vector<double> values;
+};
+
+std::vector<Axis> axes_of(const VehicleRecording& recording) {
+  std::vector<Axis> axes;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    axes.push_back({std::string("gyro ") + "xyz"[i], "rad/s", kGyroStep_rad_s, {}});
+    for (const auto& received : recording.imu.samples)
+      axes.back().values.push_back(received.sample.imu.body_rates_frd(i));
+    axes.push_back({std::string("accelerometer ") + "xyz"[i], "m/s^2", kForceStep_m_s2, {}});
+    for (const auto& received : recording.imu.samples)
+      axes.back().values.push_back(received.sample.imu.specific_force_frd(i));
+  }
+  return axes;
+}
+
+double largest(const std::vector<double>& values) {
+  double largest = 0.0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+std::size_t overflows(const Axis& axis) {
+  const double end = kNearTheEnd * largest(axis.values);
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < axis.values.size(); ++i) {
+    const double before = axis.values[i - 1];
+    const double now = axis.values[i];
+    if (before * now < 0.0 && std::abs(now - before) > axis.step && std::abs(before) > end &&
+        std::abs(now) > end)
+      ++count;
+  }
+  return count;
+}
+
+std::size_t is_saturated(const Axis& axis) {
+  const double most = largest(axis.values);
+  if (2.0 * most < axis.step) return 0;  // too small to tell from a sensor at rest
+  int in_a_row = 0;
+  for (const double value : axis.values) {
+    in_a_row = std::abs(value) == most ? in_a_row + 1 : 0;
+    if (in_a_row >= kSaturated) return 1;
+  }
+  return 0;
+}
+
+// Names the first axis with a fault.
+CheckResult check_range(const Check& check, const std::vector<Axis>& axes,
+                        std::size_t (*faults)(const Axis&)) {
+  std::size_t total = 0;
+  const Axis* faulty = &axes.front();
+  for (const Axis& axis : axes) {
+    const std::size_t count = faults(axis);
+    if (count > 0 && total == 0) faulty = &axis;
+    total += count;
+  }
+  return judge(check, static_cast<double>(total),
+               {{"axis", faulty->name}, {"end", largest(faulty->values)}, {"unit", faulty->unit}});
+}
+
+// The range of the IMU over fast motion: overflow of 16-bit values and saturation.
+CheckResults check_imu_range(const VehicleRecording& recording) {
+  if (recording.imu.samples.empty()) return {missing(kWrapAround.name, "missing: no imu message arrived")};
+  const std::vector<Axis> axes = axes_of(recording);
+  return {check_range(kWrapAround, axes, overflows), check_range(kSaturation, axes, is_saturated)};
 }
 
 std::string missing_step(const std::vector<HandSegment>& segments) {
@@ -260,15 +299,12 @@ CheckResults check_hand_motion(const VehicleRecording& recording, const std::vec
   const auto force_map = axis_map(turns.force, kLeastForce);
   const auto mocap_map = axis_map(turns.mocap, kLeastTurn_rad);
   const VehicleRecording wave = part_of(recording, *segment_of(segments, HandStep::kWave));
-  CheckResults results = {
-      judged_map("hand.gyro", "gyro", gyro_map, turns.gyro),
-      judged_map("hand.accelerometer", "accelerometer", force_map, turns.force),
-      judged_map("hand.mocap_attitude", "motion capture attitude", mocap_map, turns.mocap),
-      check_scale(turns),
-      check_move("hand.mocap_forward", recording, *segment_of(segments, HandStep::kForward), forward_finding,
-                 &Displacement::position_begin_frd, "along +x, body axes"),
-      check_move("hand.mocap_up", recording, *segment_of(segments, HandStep::kUp), up_finding,
-                 &Displacement::position_ned, "along -z, NED")};
+  CheckResults results = {check_axes("gyro", "gyro", gyro_map, turns.gyro),
+                          check_axes("accelerometer", "accelerometer", force_map, turns.force),
+                          check_axes("mocap_attitude", "motion capture attitude", mocap_map, turns.mocap),
+                          check_scale(turns),
+                          check_forward(displacement(recording, *segment_of(segments, HandStep::kForward))),
+                          check_up(displacement(recording, *segment_of(segments, HandStep::kUp)))};
   append(results, check_wave(wave, rest, gyro_map, mocap_map));
   append(results, check_imu_range(wave));
   return results;

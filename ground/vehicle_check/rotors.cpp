@@ -1,5 +1,3 @@
-#include "swiftlet/ground/vehicle_check/rotors.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -11,7 +9,8 @@
 #include <fmt/core.h>
 
 #include "swiftlet/ground/vehicle_check/axes.hpp"
-#include "swiftlet/ground/vehicle_check/rotor_activity.hpp"
+#include "swiftlet/ground/vehicle_check/checks.hpp"
+#include "swiftlet/ground/vehicle_check/commands.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -26,8 +25,6 @@ const char* name_of(plant::Spin spin) {
   return spin == plant::Spin::kClockwise ? "clockwise" : "counter-clockwise";
 }
 
-std::string rotor_name(int rotor, const char* subject) { return fmt::format("rotor_{}.{}", rotor, subject); }
-
 std::string rotor_text(int rotor, const plant::Vehicle& vehicle) {
   return fmt::format("rotor {} ({})", rotor, place_of(vehicle.rotors[static_cast<std::size_t>(rotor - 1)]));
 }
@@ -35,32 +32,47 @@ std::string rotor_text(int rotor, const plant::Vehicle& vehicle) {
 // What was seen for each commanded rotor.
 using SeenRotors = std::vector<std::optional<int>>;
 
-std::string order_finding(int rotor, const SeenRotors& seen, const plant::Vehicle& vehicle) {
-  const int answered = *seen[static_cast<std::size_t>(rotor - 1)];
-  if (answered == rotor) return "";
-  const auto index = static_cast<std::size_t>(answered - 1);
-  if (index < seen.size() && seen[index] == rotor)
-    return fmt::format("two rotors exchanged: {} and {} answer each other's commands",
-                       rotor_text(rotor, vehicle), rotor_text(answered, vehicle));
-  return fmt::format("wrong order: the command of {} reaches {}", rotor_text(rotor, vehicle),
-                     rotor_text(answered, vehicle));
+// The words of the checks of a rotor.
+Words words_of(int rotor, const plant::Vehicle& vehicle) {
+  return {{"rotor", rotor},
+          {"asked", rotor_text(rotor, vehicle)},
+          {"expected", name_of(vehicle.rotors[static_cast<std::size_t>(rotor - 1)].spin)}};
 }
 
-std::string spin_finding(int rotor, plant::Spin seen, const plant::Vehicle& vehicle) {
-  const plant::Spin expected = vehicle.rotors[static_cast<std::size_t>(rotor - 1)].spin;
-  if (seen == expected) return "";
-  return fmt::format(
-      "wrong spin: {} turns {} seen from above, the vehicle file says {}; exchange two of its motor wires, "
-      "and the propeller",
-      rotor_text(rotor, vehicle), name_of(seen), name_of(expected));
+// not_seen: the finding if no rotor was seen.
+CheckResult judge_order(const Check& check, double value, int rotor, const SeenRotors& seen,
+                        const std::string& not_seen, const plant::Vehicle& vehicle, Words words) {
+  const std::optional<int> answered = seen[static_cast<std::size_t>(rotor - 1)];
+  if (!answered) return judge_by(check, value, not_seen, words);
+  if (answered == rotor) return judge_by(check, value, "", words);
+  words.emplace_back("answered", rotor_text(*answered, vehicle));
+  const auto index = static_cast<std::size_t>(*answered - 1);
+  const bool exchanged = index < seen.size() && seen[index] == rotor;
+  return judge_by(check, value,
+                  exchanged ? "two rotors exchanged: {asked} and {answered} answer each other's commands"
+                            : "wrong order: the command of {asked} reaches {answered}",
+                  words);
 }
 
+CheckResult judge_spin(const Check& check, double value, plant::Spin seen, plant::Spin expected,
+                       Words words) {
+  words.emplace_back("seen", name_of(seen));
+  return judge_by(check, value,
+                  seen == expected
+                      ? ""
+                      : "wrong spin: {asked} turns {seen} seen from above, the vehicle file says "
+                        "{expected}; exchange two of its motor wires, and the propeller",
+                  words);
+}
+
+// A phase for each rotor; empty if one is missing.
 std::vector<const CommandPhase*> spins_of(const CommandPhases& phases, int rotor_count) {
   std::vector<const CommandPhase*> spins(static_cast<std::size_t>(rotor_count), nullptr);
   for (const CommandPhase& phase : phases) {
     if (phase.stage == CommandStage::kSpin && phase.rotor >= 1 && phase.rotor <= rotor_count)
       spins[static_cast<std::size_t>(phase.rotor - 1)] = &phase;
   }
+  if (std::count(spins.begin(), spins.end(), nullptr) > 0) return {};
   return spins;
 }
 
@@ -140,7 +152,7 @@ CheckResults check_rotor_spins(const VehicleRecording& recording, const CommandP
   const int count = vehicle.rotor_count();
   const CommandPhase* const idle = phase_of(phases, CommandStage::kIdle);
   const std::vector<const CommandPhase*> spins = spins_of(phases, count);
-  if (idle == nullptr || std::count(spins.begin(), spins.end(), nullptr) > 0)
+  if (idle == nullptr || spins.empty())
     return {missing("rotors.steps", "missing: not every rotor was turned by itself")};
   const bool measured = !recording.rotor_speeds.samples.empty();
   std::vector<Faster> faster;
@@ -152,36 +164,27 @@ CheckResults check_rotor_spins(const VehicleRecording& recording, const CommandP
   CheckResults results;
   for (int rotor = 1; rotor <= count; ++rotor) {
     const auto i = static_cast<std::size_t>(rotor - 1);
-    const std::string order = rotor_name(rotor, "order");
-    Figure shown = figure(faster[i].rises[i], "rad/s", 0, " faster than idle");
-    if (spins[i]->seen_rotor)
-      shown = {static_cast<double>(*seen[i]), "", fmt::format("rotor {} seen", *seen[i])};
-    const std::string limit = "only " + rotor_text(rotor, vehicle) + " faster";
-    if (seen[i]) {
-      results.push_back(judged(order, shown, limit, order_finding(rotor, seen, vehicle)));
-      if (measured && spins[i]->seen_rotor && faster[i].rotor && faster[i].rotor != spins[i]->seen_rotor)
-        results.push_back(missing(
-            rotor_name(rotor, "speeds"),
-            fmt::format("rotor_speeds are numbered otherwise: rotor {} was seen, rotor {} is reported",
-                        *spins[i]->seen_rotor, *faster[i].rotor)));
-    } else if (measured) {
+    const CommandPhase& spin = *spins[i];
+    const Words words = words_of(rotor, vehicle);
+    const std::string name = fmt::format("rotor_{}.", rotor);
+    if (!seen[i] && !measured)
+      results.push_back(skipped(
+          name + "order", "rotor_speeds is not published, and nobody at a terminal confirmed the rotor"));
+    else
+      results.push_back(judge_order(spin.seen_rotor ? kOrderSeen : kOrderBySpeeds,
+                                    spin.seen_rotor ? *spin.seen_rotor : faster[i].rises[i], rotor, seen,
+                                    "no rotor, or more than one, turns faster on the command of {asked}",
+                                    vehicle, words));
+    if (measured && spin.seen_rotor && faster[i].rotor && faster[i].rotor != spin.seen_rotor)
       results.push_back(
-          judged(order, shown, limit,
-                 "no rotor, or more than one, turns faster on the command of " + rotor_text(rotor, vehicle)));
-    } else {
-      results.push_back(
-          skipped(order, "rotor_speeds is not published, and nobody at a terminal confirmed the rotor"));
-    }
-    const std::string spin = rotor_name(rotor, "spin");
-    if (spins[i]->seen_spin) {
-      results.push_back(judged(
-          spin,
-          {*spins[i]->seen_spin == plant::Spin::kClockwise ? 1.0 : -1.0, "", name_of(*spins[i]->seen_spin)},
-          name_of(vehicle.rotors[i].spin), spin_finding(rotor, *spins[i]->seen_spin, vehicle)));
-    } else {
-      results.push_back(
-          skipped(spin, "nobody at a terminal confirmed the direction; --tethered measures it"));
-    }
+          missing(name + "speeds",
+                  fmt::format("rotor_speeds are numbered otherwise: rotor {} was seen, rotor {} is reported",
+                              *spin.seen_rotor, *faster[i].rotor)));
+    results.push_back(
+        spin.seen_spin
+            ? judge_spin(kSpinSeen, *spin.seen_spin == plant::Spin::kClockwise ? 1.0 : -1.0, *spin.seen_spin,
+                         vehicle.rotors[i].spin, words)
+            : skipped(name + "spin", "nobody at a terminal confirmed the direction; --tethered measures it"));
   }
   return results;
 }
@@ -189,8 +192,7 @@ CheckResults check_rotor_spins(const VehicleRecording& recording, const CommandP
 CheckResults check_rotor_thrusts(const VehicleRecording& recording, const CommandPhases& phases,
                                  const plant::Vehicle& vehicle) {
   const std::vector<const CommandPhase*> spins = spins_of(phases, vehicle.rotor_count());
-  if (std::count(spins.begin(), spins.end(), nullptr) > 0)
-    return {missing("rotors.steps", "missing: not every rotor was raised by itself")};
+  if (spins.empty()) return {missing("rotors.steps", "missing: not every rotor was raised by itself")};
   std::vector<std::optional<Eigen::Vector3d>> changes;
   SeenRotors seen;
   for (const CommandPhase* const spin : spins) {
@@ -206,26 +208,23 @@ CheckResults check_rotor_thrusts(const VehicleRecording& recording, const Comman
   CheckResults results;
   for (int rotor = 1; rotor <= vehicle.rotor_count(); ++rotor) {
     const auto i = static_cast<std::size_t>(rotor - 1);
-    const std::string order = rotor_name(rotor, "order");
-    const std::string spin = rotor_name(rotor, "spin");
     if (!changes[i]) {
-      results.push_back(missing(order, "missing: no imu message arrived in this step"));
+      results.push_back(
+          missing(fmt::format("rotor_{}.order", rotor), "missing: no imu message arrived in this step"));
       continue;
     }
     const Eigen::Vector3d& change = *changes[i];
-    const Figure shown{change.head<2>().norm(), "rad/s", "turn of " + to_string(change, 2) + " rad/s"};
-    results.push_back(judged(order, shown, "as thrust of " + rotor_text(rotor, vehicle),
-                             seen[i]
-                                 ? order_finding(rotor, seen, vehicle)
-                                 : "the vehicle does not turn when " + rotor_text(rotor, vehicle) +
-                                       " is raised: it is held too tightly, or the rotor gives no thrust"));
-    const plant::Spin shown_spin =
-        change.z() > 0.0 ? plant::Spin::kCounterClockwise : plant::Spin::kClockwise;
-    std::string finding = spin_finding(rotor, shown_spin, vehicle);
-    if (std::abs(change.z()) < kLeastYaw_rad_s)
-      finding = "the vehicle shows no reaction torque: it cannot turn about z";
-    results.push_back(judged(spin, figure(change.z(), "rad/s", 3, " about z"),
-                             std::string("as ") + name_of(vehicle.rotors[i].spin), finding));
+    Words words = words_of(rotor, vehicle);
+    words.emplace_back("turn", to_string(change, 2));
+    results.push_back(judge_order(kOrderByTurn, change.head<2>().norm(), rotor, seen,
+                                  "the vehicle does not turn when {asked} is raised: it is held too tightly, "
+                                  "or the rotor gives no thrust",
+                                  vehicle, words));
+    const plant::Spin spin = change.z() > 0.0 ? plant::Spin::kCounterClockwise : plant::Spin::kClockwise;
+    results.push_back(std::abs(change.z()) < kLeastYaw_rad_s
+                          ? judge_by(kSpinByTurn, change.z(),
+                                     "the vehicle shows no reaction torque: it cannot turn about z", words)
+                          : judge_spin(kSpinByTurn, change.z(), spin, vehicle.rotors[i].spin, words));
   }
   return results;
 }

@@ -1,7 +1,7 @@
 // All checks of a vehicle that stands on the floor with its rotors off. They need neither motion nor commands.
 #pragma once
 
-#include <optional>
+#include <Eigen/Core>
 
 #include "swiftlet/ground/vehicle_check/check_result.hpp"
 #include "swiftlet/ground/vehicle_check/vehicle_recording.hpp"
@@ -13,5 +13,9 @@ namespace swiftlet::ground {
 // lockstep fails with that finding alone.
 CheckResults check_standing_vehicle(const VehicleRecording& recording, const plant::Vehicle* vehicle,
                                     bool mocap_required);
+
+// Mean specific force, m/s^2; zero for no samples.
+Eigen::Vector3d mean_specific_force(const VehicleRecording& recording);
+Eigen::Vector3d mean_body_rates(const VehicleRecording& recording);
 
 }  // namespace swiftlet::ground

@@ -13,19 +13,6 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kWindows = 10;  // of clock_rate()
 
-template <class Sample, class Stamped>
-SampleTimes times_of(const TopicRecord<Sample>& topic, Stamped stamped) {
-  SampleTimes times;
-  times.reserve(topic.samples.size());
-  for (const Received<Sample>& received : topic.samples) {
-    const auto& sample = stamped(received.sample);
-    times.push_back({sample.stamp_ns, sample.sequence, received.received_ns});
-  }
-  return times;
-}
-
-constexpr auto kItself = [](const auto& sample) -> const auto& { return sample; };
-
 struct Point {
   double x = 0.0;
   double y = 0.0;
@@ -46,25 +33,7 @@ double slope_of(const std::vector<Point>& points) {
   return variance > 0.0 ? covariance / variance : kNaN;
 }
 
-double longest(const SampleTimes& samples, std::int64_t SampleTime::*time) {
-  std::int64_t longest_ns = 0;
-  for (std::size_t i = 1; i < samples.size(); ++i)
-    longest_ns = std::max(longest_ns, samples[i].*time - samples[i - 1].*time);
-  return math::seconds(longest_ns);
-}
-
 }  // namespace
-
-SampleTimes times_of(const TopicRecord<OdometryReport>& topic) {
-  return times_of(
-      topic, [](const OdometryReport& report) -> const plant::OdometrySample& { return report.odometry; });
-}
-SampleTimes times_of(const TopicRecord<ImuReport>& topic) {
-  return times_of(topic, [](const ImuReport& report) -> const plant::ImuSample& { return report.imu; });
-}
-SampleTimes times_of(const TopicRecord<plant::BatterySample>& topic) { return times_of(topic, kItself); }
-SampleTimes times_of(const TopicRecord<plant::PoseSample>& topic) { return times_of(topic, kItself); }
-SampleTimes times_of(const TopicRecord<plant::RotorSpeedSample>& topic) { return times_of(topic, kItself); }
 
 double SequenceCounts::lost_part() const {
   const double received = static_cast<double>(pairs - repeated - backward) + 1.0;
@@ -133,11 +102,11 @@ double rate_by_arrivals(const SampleTimes& samples) {
          math::seconds(samples.back().received_ns - samples.front().received_ns);
 }
 
-double longest_interval_by_stamps_s(const SampleTimes& samples) {
-  return longest(samples, &SampleTime::stamp_ns);
-}
-double longest_interval_by_arrivals_s(const SampleTimes& samples) {
-  return longest(samples, &SampleTime::received_ns);
+double longest_interval_s(const SampleTimes& samples, std::int64_t SampleTime::*time) {
+  std::int64_t longest_ns = 0;
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    longest_ns = std::max(longest_ns, samples[i].*time - samples[i - 1].*time);
+  return math::seconds(longest_ns);
 }
 
 double stamp_jitter_p99(const SampleTimes& samples) {

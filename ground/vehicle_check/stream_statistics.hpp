@@ -16,11 +16,22 @@ struct SampleTime {
 };
 using SampleTimes = std::vector<SampleTime>;
 
-SampleTimes times_of(const TopicRecord<ImuReport>& topic);
-SampleTimes times_of(const TopicRecord<OdometryReport>& topic);
-SampleTimes times_of(const TopicRecord<plant::BatterySample>& topic);
-SampleTimes times_of(const TopicRecord<plant::PoseSample>& topic);
-SampleTimes times_of(const TopicRecord<plant::RotorSpeedSample>& topic);
+inline const plant::ImuSample& stamped(const ImuReport& report) { return report.imu; }
+inline const plant::OdometrySample& stamped(const OdometryReport& report) { return report.odometry; }
+template <class Sample>
+const Sample& stamped(const Sample& sample) {
+  return sample;
+}
+
+template <class Sample>
+SampleTimes times_of(const TopicRecord<Sample>& topic) {
+  SampleTimes times;
+  for (const Received<Sample>& received : topic.samples) {
+    const auto& sample = stamped(received.sample);
+    times.push_back({sample.stamp_ns, sample.sequence, received.received_ns});
+  }
+  return times;
+}
 
 // Counts over the pairs of neighbours in the order of reception.
 struct SequenceCounts {
@@ -31,6 +42,7 @@ struct SequenceCounts {
   std::size_t stamps_still = 0;  // pairs with a higher number, but the same stamp
   std::size_t stamps_back = 0;   // pairs with a higher number, but a lower stamp
   double lost_part() const;      // of all that were sent
+  std::size_t stamps_faulty() const { return stamps_still + stamps_back; }
 };
 SequenceCounts count_sequence(const SampleTimes& samples);
 
@@ -42,8 +54,7 @@ double clock_rate(const SampleTimes& samples);
 // Samples per second by their stamps, of which each is counted once. NaN for fewer than three stamps or if they do not rise.
 double rate_by_stamps(const SampleTimes& samples);
 double rate_by_arrivals(const SampleTimes& samples);
-double longest_interval_by_stamps_s(const SampleTimes& samples);
-double longest_interval_by_arrivals_s(const SampleTimes& samples);
+double longest_interval_s(const SampleTimes& samples, std::int64_t SampleTime::*time);
 
 // 99 % of the intervals between stamps of consecutive numbers differ from their median by less than this part of it.
 double stamp_jitter_p99(const SampleTimes& samples);

@@ -37,6 +37,20 @@ std::optional<plant::PoseSample> last_pose(const VehicleRecording& recording) {
   return found == poses.rend() ? std::nullopt : std::optional(found->sample);
 }
 
+std::optional<plant::PerRotor> mean_rotor_speeds(const VehicleRecording& recording, std::int64_t begin_ns,
+                                                 std::int64_t end_ns) {
+  plant::PerRotor sum{};
+  int count = 0;
+  for (const auto& received : recording.rotor_speeds.samples) {
+    if (received.received_ns < begin_ns || received.received_ns > end_ns) continue;
+    ++count;
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += received.sample.speeds[i];
+  }
+  if (count == 0) return std::nullopt;
+  for (double& speed : sum) speed /= count;
+  return sum;
+}
+
 bool runs_in_lockstep(const VehicleRecording& recording) {
   const auto in_lockstep = [](const auto& samples) {
     return std::any_of(samples.begin(), samples.end(),

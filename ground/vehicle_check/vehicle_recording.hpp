@@ -17,14 +17,19 @@ struct Received {
   std::int64_t received_ns = 0;  // monotonic clock of this computer
 };
 
-// The messages of a topic, in the order in which they arrived.
-template <class Sample>
-struct TopicRecord {
-  std::vector<Received<Sample>> samples;
+struct TopicState {
   bool published = false;     // a publisher with matching QoS was found
   std::uint64_t invalid = 0;  // messages with a field out of range, which control refuses too
   std::string fault;          // of the first of them: field, value, limit
   std::string conflict;       // names two processes that both publish the topic; else empty
+};
+
+// The messages of a topic, in the order in which they arrived.
+template <class Sample>
+struct TopicRecord : TopicState {
+  std::vector<Received<Sample>> samples;
+
+  bool is_present() const { return published || !samples.empty(); }
 };
 
 struct ImuReport {
@@ -85,6 +90,10 @@ VehicleRecording part_of(const VehicleRecording& recording, std::int64_t begin_n
 
 // The last tracked pose of motion capture.
 std::optional<plant::PoseSample> last_pose(const VehicleRecording& recording);
+
+// Mean speeds, rad/s, of the samples received in this time; nullopt without any.
+std::optional<plant::PerRotor> mean_rotor_speeds(const VehicleRecording& recording, std::int64_t begin_ns,
+                                                 std::int64_t end_ns);
 
 // The vehicle's time follows the answers of a controller, so that nothing can be said about its timing.
 bool runs_in_lockstep(const VehicleRecording& recording);

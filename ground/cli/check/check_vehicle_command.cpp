@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -10,17 +9,15 @@
 #include <fmt/format.h>
 
 #include "swiftlet/ground/cli/check/check_report.hpp"
-#include "swiftlet/ground/cli/check/command_steps.hpp"
 #include "swiftlet/ground/cli/check/examine_standing.hpp"
-#include "swiftlet/ground/cli/check/hand_steps.hpp"
 #include "swiftlet/ground/cli/check/operator_dialog.hpp"
 #include "swiftlet/ground/cli/check/sample_recorder.hpp"
+#include "swiftlet/ground/cli/check/steps.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/client/network_options.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/vehicle_check/commands.hpp"
 #include "swiftlet/ground/vehicle_check/hand_motion.hpp"
-#include "swiftlet/ground/vehicle_check/rotors.hpp"
 #include "swiftlet/ground/vehicle_check/streams.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
@@ -113,12 +110,6 @@ CheckResults check_by_commands(SampleRecorder& recorder, const VehicleRecording&
   }
 }
 
-bool fails(const CheckResults& results, const std::string& name) {
-  return std::any_of(results.begin(), results.end(), [&](const CheckResult& result) {
-    return result.name == name && result.verdict == Verdict::kFail;
-  });
-}
-
 // Why the vehicle can be neither moved nor commanded; "" if it can. These checks need the stamps and arrivals that are
 // checked first.
 std::string fault_of_imu(const CheckResults& results) {
@@ -130,8 +121,9 @@ std::string fault_of_imu(const CheckResults& results) {
 // Why the rotors must not turn; "" if they may.
 std::string fault_of_rotors(const CheckResults& results, const CheckVehicleOptions& options) {
   // The throttle of half the hover thrust of one vehicle may lift another.
-  const bool is_another = fails(results, "vehicle_info.rotors") || fails(results, "vehicle_info.mass") ||
-                          fails(results, "battery.voltage");
+  const auto fails = [&](const char* name) { return has_verdict(results, name, Verdict::kFail); };
+  const bool is_another =
+      fails("vehicle_info.rotors") || fails("vehicle_info.mass") || fails("battery.voltage");
   if (options.tethered && is_another)
     return "the vehicle file, which tells the throttle, is of another vehicle or battery: choose it with "
            "--vehicle";
@@ -140,7 +132,7 @@ std::string fault_of_rotors(const CheckResults& results, const CheckVehicleOptio
 
 // Why a hand must not take the vehicle; "" if it may.
 std::string fault_of_hand(const CheckResults& results) {
-  if (fails(results, "commands.stop")) return "the rotors did not stop";
+  if (has_verdict(results, "commands.stop", Verdict::kFail)) return "the rotors did not stop";
   return fault_of_imu(results);
 }
 

@@ -1,5 +1,3 @@
-#include "swiftlet/ground/cli/check/command_steps.hpp"
-
 #include <algorithm>
 #include <chrono>
 #include <set>
@@ -9,8 +7,8 @@
 
 #include <fmt/core.h>
 
+#include "swiftlet/ground/cli/check/steps.hpp"
 #include "swiftlet/ground/cli/check/test_commands.hpp"
-#include "swiftlet/ground/vehicle_check/rotors.hpp"
 #include "swiftlet/plant/model/propulsion.hpp"
 
 namespace swiftlet::ground {
@@ -44,29 +42,26 @@ class CommandSequence {
         rotor_count_(vehicle.rotor_count()),
         commands_(network, rotor_count_, term_above(obeyed_term(recorder))) {}
 
-  void off(CommandStage stage, std::chrono::milliseconds time) {
-    commands_.off();
-    hold(stage, time);
-  }
+  void off(CommandStage stage, std::chrono::milliseconds time) { hold(stage, {}, time); }
   void run(double throttle, std::chrono::milliseconds time) {
-    commands_.run(all(throttle));
-    hold(CommandStage::kIdle, time);
+    hold(CommandStage::kIdle, running(throttle), time);
   }
   CommandPhase& raise(int rotor, double throttle, double of_others, std::chrono::milliseconds time) {
-    plant::PerRotor throttles = all(of_others);
-    throttles[static_cast<std::size_t>(rotor - 1)] = throttle;
-    commands_.run(throttles);
-    CommandPhase& phase = hold(CommandStage::kSpin, time);
+    TestCommands::Order order = running(of_others);
+    order.throttle[static_cast<std::size_t>(rotor - 1)] = throttle;
+    CommandPhase& phase = hold(CommandStage::kSpin, order, time);
     phase.rotor = rotor;
     return phase;
   }
   void lower_term() {
-    commands_.off_in_lower_term();
-    hold(CommandStage::kLowerTerm, kLowerTermTime);
+    TestCommands::Order order;
+    order.lower_term = true;
+    hold(CommandStage::kLowerTerm, order, kLowerTermTime);
   }
   void silence() {
-    commands_.silence();
-    hold(CommandStage::kSilence, kSilenceTime);
+    TestCommands::Order order;
+    order.silent = true;
+    hold(CommandStage::kSilence, order, kSilenceTime);
   }
 
   // Keeps the commands alive. Throws if somebody else commands the vehicle, or IMU samples cease.
@@ -93,16 +88,18 @@ class CommandSequence {
     return imu && imu->obeyed.any ? imu->obeyed.term : 0;
   }
 
-  plant::PerRotor all(double throttle) const {
-    plant::PerRotor throttles{};
-    std::fill_n(throttles.begin(), rotor_count_, throttle);
-    return throttles;
+  TestCommands::Order running(double throttle) const {
+    TestCommands::Order order;
+    order.state = plant::RotorState::kRunning;
+    std::fill_n(order.throttle.begin(), rotor_count_, throttle);
+    return order;
   }
 
-  CommandPhase& hold(CommandStage stage, std::chrono::milliseconds time) {
+  CommandPhase& hold(CommandStage stage, const TestCommands::Order& order, std::chrono::milliseconds time) {
+    commands_.set(order);
     CommandPhase phase;
     phase.stage = stage;
-    phase.term = stage == CommandStage::kLowerTerm ? commands_.lower_term() : commands_.term();
+    phase.term = order.lower_term ? commands_.lower_term() : commands_.term();
     phase.begin_ns = recorder_.now_ns();
     const std::int64_t end_ns = phase.begin_ns + std::chrono::nanoseconds(time).count();
     for (; recorder_.now_ns() < end_ns; std::this_thread::sleep_for(kPoll)) renew();
@@ -146,14 +143,15 @@ bool obeys_somebody(const SampleRecorder& recorder) {
   return imu && imu->obeyed.any && imu->imu.stamp_ns - imu->obeyed.stamp_ns < kRecentCommand_ns;
 }
 
-}  // namespace
-
+// Throws std::runtime_error if somebody commands the vehicle.
 void require_no_controller(const SampleRecorder& recorder) {
   std::string other = recorder.other_controller({});
   if (other.empty() && obeys_somebody(recorder))
     other = "the vehicle reports that it obeys commands of somebody";
   if (!other.empty()) throw std::runtime_error("refused to command the vehicle: " + other);
 }
+
+}  // namespace
 
 CommandPhases command_without_propellers(const SampleRecorder& recorder, const dds::NodeSettings& network,
                                          const plant::Vehicle& vehicle, const OperatorDialog& dialog) {

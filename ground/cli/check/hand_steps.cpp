@@ -1,11 +1,10 @@
-#include "swiftlet/ground/cli/check/hand_steps.hpp"
-
 #include <chrono>
 #include <iterator>
 #include <optional>
 #include <string>
 #include <thread>
 
+#include "swiftlet/ground/cli/check/steps.hpp"
 #include "swiftlet/ground/vehicle_check/motion_watch.hpp"
 
 namespace swiftlet::ground {
@@ -34,58 +33,31 @@ constexpr Instruction kInstructions[] = {
     {HandStep::kWave, "turn it to and fro quickly about all axes for five seconds, then hold it"},
 };
 
-// Feeds the poses to the watch.
-class HandFollower {
- public:
-  HandFollower(const SampleRecorder& recorder, const OperatorDialog& dialog)
-      : recorder_(recorder), dialog_(dialog) {}
-
-  // False if it is not seen at rest within the time.
-  bool wait_for_rest() {
-    return follow([&](const std::optional<HandSegment>&) { return watch_.is_ready(); });
-  }
-  std::optional<HandSegment> wait_for(HandStep step) {
-    watch_.expect(step);
-    std::optional<HandSegment> segment;
-    follow([&](const std::optional<HandSegment>& ended) {
-      segment = ended;
-      return segment.has_value();
-    });
-    return segment;
-  }
-
- private:
-  template <class Done>
-  bool follow(Done done) {
-    const auto end = Clock::now() + kStepTime;
-    auto pose_due = Clock::now() + kPoseTime;
-    while (Clock::now() < end && Clock::now() < pose_due) {
-      dialog_.require_going_on();
-      const auto pose = recorder_.newest_tracked_pose();
-      if (pose && pose->received_ns != last_ns_) {
-        last_ns_ = pose->received_ns;
-        pose_due = Clock::now() + kPoseTime;
-        if (done(watch_.update(pose->sample, pose->received_ns))) return true;
-      }
-      std::this_thread::sleep_for(kReactionPoll);
-    }
-    return false;
-  }
-
-  const SampleRecorder& recorder_;
-  const OperatorDialog& dialog_;
-  MotionWatch watch_;
-  std::int64_t last_ns_ = 0;
-};
-
 }  // namespace
 
 std::vector<HandSegment> guide_hand(const SampleRecorder& recorder, const OperatorDialog& dialog) {
   dialog.say(
       "Take the vehicle in the hand, level. Each step ends when it rests for a second; no key is needed.");
-  HandFollower follower(recorder, dialog);
+  MotionWatch watch;
+  std::int64_t last_ns = 0;
+  // Feeds the poses to the watch. False if it is not done within the time of a step, or no pose comes.
+  const auto follow = [&](const auto& is_done) {
+    const auto end = Clock::now() + kStepTime;
+    auto pose_due = Clock::now() + kPoseTime;
+    while (Clock::now() < end && Clock::now() < pose_due) {
+      dialog.require_going_on();
+      const auto pose = recorder.newest_tracked_pose();
+      if (pose && pose->received_ns != last_ns) {
+        last_ns = pose->received_ns;
+        pose_due = Clock::now() + kPoseTime;
+        if (is_done(watch.update(pose->sample, pose->received_ns))) return true;
+      }
+      std::this_thread::sleep_for(kReactionPoll);
+    }
+    return false;
+  };
   std::vector<HandSegment> segments;
-  if (!follower.wait_for_rest()) {
+  if (!follow([&](const auto&) { return watch.is_ready(); })) {
     dialog.say("motion capture does not see the vehicle at rest");
     return segments;
   }
@@ -93,12 +65,15 @@ std::vector<HandSegment> guide_hand(const SampleRecorder& recorder, const Operat
   for (const Instruction& instruction : kInstructions) {
     dialog.say("step " + std::to_string(++number) + " of " + std::to_string(std::size(kInstructions)) + ": " +
                instruction.text);
-    const auto segment = follower.wait_for(instruction.step);
-    if (!segment) {
+    watch.expect(instruction.step);
+    const bool seen = follow([&](const std::optional<HandSegment>& ended) {
+      if (ended) segments.push_back(*ended);
+      return ended.has_value();
+    });
+    if (!seen) {
       dialog.say("motion capture did not see this motion");
       break;
     }
-    segments.push_back(*segment);
   }
   return segments;
 }

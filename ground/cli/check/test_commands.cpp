@@ -35,7 +35,7 @@ TestCommands::TestCommands(const dds::NodeSettings& settings, int rotor_count, s
           dds::Delivery::kSamples, dds::kSourceSilence)) {}
 
 TestCommands::~TestCommands() {
-  off();
+  set({});
   const auto is_enough = [this] { return commands_in_order_ >= kLastCommands; };
   const auto end = std::chrono::steady_clock::now() + kLastTime;
   std::unique_lock lock(mutex_);
@@ -51,27 +51,6 @@ void TestCommands::set(const Order& order) {
   order_ = order;
   commands_in_order_ = 0;
   renewed_ns_ = runtime::monotonic_ns();
-}
-
-void TestCommands::off() { set({}); }
-
-void TestCommands::run(const plant::PerRotor& throttle) {
-  Order order;
-  order.state = plant::RotorState::kRunning;
-  order.throttle = throttle;
-  set(order);
-}
-
-void TestCommands::off_in_lower_term() {
-  Order order;
-  order.lower_term = true;
-  set(order);
-}
-
-void TestCommands::silence() {
-  Order order;
-  order.silent = true;
-  set(order);
 }
 
 void TestCommands::renew() {

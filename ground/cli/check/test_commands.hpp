@@ -25,24 +25,20 @@ class TestCommands {
   TestCommands(const TestCommands&) = delete;
   TestCommands& operator=(const TestCommands&) = delete;
 
-  void off();
-  void run(const plant::PerRotor& throttle);  // 0 .. 1
-  void off_in_lower_term();
-  void silence();  // sends nothing
+  // Rotors off, unless told otherwise.
+  struct Order {
+    bool silent = false;  // sends nothing
+    bool lower_term = false;
+    plant::RotorState state = plant::RotorState::kOff;
+    plant::PerRotor throttle{};  // 0 .. 1
+  };
+  void set(const Order& order);
   void renew();
 
   std::uint32_t term() const { return term_; }
   std::uint32_t lower_term() const { return term_ - 1; }
 
  private:
-  struct Order {
-    bool silent = false;
-    bool lower_term = false;
-    plant::RotorState state = plant::RotorState::kOff;
-    plant::PerRotor throttle{};
-  };
-
-  void set(const Order& order);
   void answer(const messages::msg::Imu& imu);
   void send();  // answers the newest sample; the caller holds mutex_
 

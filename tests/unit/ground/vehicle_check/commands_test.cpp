@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/ground/vehicle_check/rotors.hpp"
 #include "tests/unit/ground/vehicle_check/expect_results.hpp"
 #include "tests/unit/ground/vehicle_check/recorded_vehicle.hpp"
 

@@ -1,6 +1,4 @@
 // The checks of a standing vehicle that brings an estimate of its own in place of IMU samples.
-#include "swiftlet/ground/vehicle_check/odometry.hpp"
-
 #include <functional>
 #include <string>
 
@@ -8,6 +6,7 @@
 
 #include "swiftlet/ground/vehicle_check/standing_vehicle.hpp"
 #include "swiftlet/math/rotation_vector.hpp"
+#include "tests/unit/ground/vehicle_check/expect_results.hpp"
 #include "tests/unit/ground/vehicle_check/recorded_vehicle.hpp"
 
 namespace swiftlet::tests::odometry_test {
@@ -70,12 +69,8 @@ TEST(OdometryAtRest, DefectsAreNamed) {
   for (const Defect& defect : defects) {
     VehicleRecording recording = standing();
     for (auto& received : recording.odometry.samples) defect.seed(received.sample.odometry);
-    bool named = false;
-    for (const auto& result : check(recording)) {
-      const bool found = result.name == defect.check && result.verdict == ground::Verdict::kFail;
-      named = named || (found && result.finding.find(defect.words) != std::string::npos);
-    }
-    EXPECT_TRUE(named) << defect.check << ": " << defect.words;
+    SCOPED_TRACE(defect.words);
+    expect_names(check(recording), defect.check, defect.words);
   }
 }
 

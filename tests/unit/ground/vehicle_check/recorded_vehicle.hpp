@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "swiftlet/ground/vehicle_check/command_phases.hpp"
+#include "swiftlet/ground/vehicle_check/commands.hpp"
 #include "swiftlet/ground/vehicle_check/hand_motion.hpp"
 #include "swiftlet/ground/vehicle_check/vehicle_recording.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
