@@ -24,7 +24,7 @@ constexpr int kUnusableToFault = 200;  // unusable IMU samples in a row to a fau
 constexpr double kDescentGain = 4.0;   // 1/s, vertical speed error to acceleration, level descent
 constexpr double kBrakeGain = 2.0;     // 1/s, the same for the horizontal speed
 constexpr double kDescentLimit = 2.0;  // m/s^2, of that acceleration
-// Of the lag of the attitude loop, by which the law kLead leads. A longer lead helps little more in gusts, and passes
+// The law kLead leads by this share of the attitude loop's lag. A longer lead helps little more in gusts, and passes
 // on more noise.
 constexpr double kLeadShare = 2.0 / 3.0;
 
@@ -213,7 +213,7 @@ void FlightController::Impl::observe(const ControlSetpoint& setpoint, double dt_
       observe_sliding(dt_s);
       return;
     case ControlMode::kLevelDescent:
-      // That of the ground is no disturbance.
+      // On the ground the moment comes from the contact, and is no disturbance.
       if (supervisor.state().contact_since_ns == 0) observe_moment(dt_s);
       return;
     case ControlMode::kFly:

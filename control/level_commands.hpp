@@ -27,7 +27,7 @@ double thrust_along_body(const AttitudeDemand& demand, const Estimate& estimate)
 plant::RatesSetpoint rates_command(const AttitudeDemand& demand, double thrust_n, const Estimate& estimate,
                                    const AttitudeController& law, double max_body_rate);
 
-// Of demanded body rates: the present attitude, at which the vehicle's attitude law adds nothing.
+// The demanded attitude. For demanded body rates it is the present one, at which the vehicle's attitude law adds nothing.
 plant::AttitudeSetpoint attitude_command(const AttitudeDemand& demand, double thrust_n,
                                          const Estimate& estimate);
 

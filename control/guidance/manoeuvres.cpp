@@ -97,8 +97,8 @@ PolynomialSegment join_inside(const Limits& limits, Reference from, const Eigen:
   }
 }
 
-// Of the weight, per second. Lift-off is seen, and answered, later by the delay of the commands: the lift must not have risen much
-// until then.
+// The lift rises at this rate, in weights per second. Lift-off is seen and answered later by the delay of the commands:
+// the lift must not have risen much until then.
 double lift_rate(const GuidanceContext& context) {
   return context.command_delay_s * kLiftRate > kMostLead ? kMostLead / context.command_delay_s : kLiftRate;
 }

@@ -342,7 +342,7 @@ void print(const View& view, const TopicRates& rates, const CommandOptions& opti
               age_text(view.estimate, now).c_str(), age_text(view.battery, now).c_str());
 }
 
-// Of a vehicle that an autopilot flies in place of control.
+// True if an autopilot flies the vehicle in place of control.
 bool is_flown_by_autopilot(const View& view) {
   return !view.control.seen() && view.vehicle.seen() && view.vehicle.message.autopilot().size() > 0;
 }

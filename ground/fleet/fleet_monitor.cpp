@@ -230,7 +230,8 @@ Eigen::Vector3d FleetMonitor::place_aside(std::size_t i, const Eigen::Vector3d& 
   return beside(0, 1.0);
 }
 
-// Of two off their paths, one that the monitor has sent there yields to one that is there of its own accord.
+// True if vehicle i yields to vehicle `of`. If both are off their paths, one that the monitor has sent there yields to one
+// that is there of its own accord.
 bool FleetMonitor::yields(std::size_t i, std::size_t of, const Scene& scene) const {
   if (scene.status[i] == Status::kOnPath || scene.status[of] == Status::kLost) return true;
   const bool is_sent = way_[i] != Way::kPath;
@@ -239,7 +240,7 @@ bool FleetMonitor::yields(std::size_t i, std::size_t of, const Scene& scene) con
   return i > of;
 }
 
-// From one that is off its path.
+// The others keep away from vehicle `of`, which is off its path.
 void FleetMonitor::keep_away(std::size_t of, const Scene& scene, std::vector<Order>& orders) const {
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     const Status status = scene.status[i];
@@ -348,7 +349,7 @@ void FleetMonitor::pass_turn() {
   }
 }
 
-// Of a vehicle that the monitor has sent aside.
+// Vehicle i, which the monitor has sent aside, returns to its path when nobody is in its way.
 void FleetMonitor::send_back(std::size_t i, const Scene& scene, std::vector<Order>& orders) {
   const Eigen::Vector3d& here = scene.news[i].position_ned;
   const std::optional<std::size_t> in_the_way =
@@ -372,7 +373,7 @@ void FleetMonitor::send_back(std::size_t i, const Scene& scene, std::vector<Orde
   }
 }
 
-// Of a vehicle that waits aside: one that was sent aside to its way back, and waits too, goes elsewhere.
+// Vehicle i waits aside. Another one that was sent aside to its way back, and waits too, goes elsewhere.
 void FleetMonitor::make_way_back(std::size_t i, const Scene& scene, std::vector<Order>& orders) {
   const std::size_t j = orders[i].because_of;
   const bool both_wait = orders[j].kind == Order::Kind::kPause && stands(i, scene) && stands(j, scene);

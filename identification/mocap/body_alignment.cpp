@@ -54,8 +54,8 @@ constexpr double kMostRateNoise = 5e-3;   // rad/s/sqrt(Hz)
 constexpr double kTurning_rad_s = 0.05;   // least RMS of the rates at which they tell the delay of the poses
 constexpr double kKnownDelay_s = 1e-5;
 constexpr std::size_t kLeastPoses = 50;
-// Of the deviations: the derivatives are those at a motion that is itself estimated, whose noise passes for motion. With it,
-// the intervals of simulated flights hold the true values.
+// The deviations are larger by this factor: the derivatives are those at a motion that is itself estimated, and its noise
+// passes for motion. With it, the intervals of simulated flights hold the true values.
 constexpr double kAllowance = 1.25;
 
 // Least noise: that of usual sensors. That of the force is four times as large: it allows for vibration, and for noise of the

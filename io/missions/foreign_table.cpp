@@ -302,7 +302,7 @@ class Writer {
     return " [" + (unit.empty() ? usual : unit) + "]";
   }
 
-  // Of the heading in the frame of the file: the direction of body x, also for a vehicle that is tilted.
+  // The yaw in the frame of the file, as text: the direction of body x, also for a vehicle that is tilted.
   std::string yaw_of(const Fields& fields, int line) const {
     std::array<double, 4> q{};
     for (std::size_t k = 0; k < 4; ++k)

@@ -50,12 +50,12 @@ class ClockClient {
   const std::uint64_t id_;
   runtime::LatestValue<Knowledge> latest_;
 
-  // Of the thread that asks.
+  // Only the thread that asks uses these.
   Knowledge known_;
   std::atomic<std::uint64_t> requests_sent_{0};  // read by the other thread
   Time due_;
 
-  // Of the thread that receives.
+  // Only the thread that receives uses these.
   ClockFilter filter_;
   std::uint64_t last_answered_ = 0;
   bool was_known_ = false;

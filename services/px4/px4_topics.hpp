@@ -23,7 +23,7 @@ namespace swiftlet::px4 {
 
 namespace msg = px4_msgs::msg;
 
-// Of the first instance, 0, "/fmu"; of instance N "/px4_N/fmu", as PX4's simulation names them.
+// The folder of the first instance, 0, is "/fmu", that of instance N "/px4_N/fmu", as PX4's simulation names them.
 std::string topic_folder(int instance);
 
 // A topic of PX4 whose name this object keeps. The name begins with "/": it is outside the namespace of a vehicle.

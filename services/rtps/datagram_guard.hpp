@@ -75,7 +75,7 @@ class DatagramGuard {
   bool has_moved_hosts() const { return moved_hosts_.any(); }
   Ipv4 now_at(Ipv4 announced);
   MovedHosts::News take_moves();
-  // Those of this host, with an address.
+  // own: the interfaces of this host that have an address.
   void set_own_interfaces(const std::vector<io::Interface>& own);
 
   // Held while the middleware takes in what a discovery server sent, and while its participant announces a change: Fast DDS
