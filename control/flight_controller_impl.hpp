@@ -1,4 +1,4 @@
-// The stages of the controller's step and its state, for flight_controller.cpp and flight_controller_step.cpp.
+// The stages of the controller's step and its state, for the files flight_controller*.cpp.
 #pragma once
 
 #include <cstdint>
