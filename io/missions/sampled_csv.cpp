@@ -52,7 +52,7 @@ Given given_in(const MotionColumns& columns, const std::string& file_name) {
   return {columns.has(Motion::kVx), columns.has(Motion::kAx), columns.has(Motion::kYaw)};
 }
 
-// In NED, one entry per row.
+// The samples in NED, one entry per row.
 struct Samples {
   SampleTimes times;
   std::vector<PositionYaw> places;

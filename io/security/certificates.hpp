@@ -7,7 +7,7 @@
 
 namespace swiftlet::io {
 
-// Both in PEM.
+// A certificate and its key, both in PEM.
 struct Credential {
   std::string certificate;
   std::string private_key;
