@@ -38,7 +38,7 @@ plant::TrajectorySetpoint trajectory_command(const ControlSetpoint& setpoint, co
 // The same command in the frame of the vehicle's own estimate: attitude, position and all horizontal vectors.
 plant::VehicleCommand in_vehicle_frame(const plant::VehicleCommand& command, const EstimateSource& source);
 
-// Without thrust: rotors off or idling. At level trajectory, free fall asks for no thrust.
+// The command while the rotors are off or idle. At level trajectory, free fall asks for no thrust.
 plant::VehicleCommand idle_command(plant::ControlLevel level, const Estimate& estimate);
 
 }  // namespace swiftlet::control

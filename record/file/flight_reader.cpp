@@ -53,7 +53,7 @@ class Numbers {
 };
 using Number = Numbers<1>;
 
-// One without which the messages say nothing. Throws ConfigError if they do not have it.
+// A member without which the messages say nothing. Throws ConfigError if they do not have it.
 template <std::size_t N>
 class Required : public Numbers<N> {
  public:

@@ -22,7 +22,7 @@ struct ProcessLogLine {
 // brings it nearest to near_ns, since 1970. Lines of another form are left out. Throws ConfigError if a log cannot be read.
 std::vector<ProcessLogLine> process_log_lines(const std::filesystem::path& folder, std::int64_t near_ns);
 
-// On topic /log.
+// The message for topic /log.
 StandardMessage log_message(const ProcessLogLine& line);
 
 }  // namespace swiftlet::record

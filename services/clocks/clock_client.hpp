@@ -41,7 +41,7 @@ class ClockClient {
     bool is_certain = false;
   };
 
-  // In the thread that receives.
+  // Called by the thread that receives.
   void take(const messages::msg::ClockReply& reply);
   void log_changes(bool is_known, const ClockEstimate& clock, std::int64_t now_ns);
   void publish_status(bool is_known, const ClockEstimate& clock, std::int64_t now_ns);

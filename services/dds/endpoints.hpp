@@ -138,7 +138,7 @@ class DdsWriter final : public Writer, private Endpoint {
     writer->clear_history(nullptr);
     session.publisher->delete_datawriter(writer);
   }
-  // By another participant.
+  // True if another participant reads the topic.
   bool is_heard(fastdds::DataWriter& writer) const {
     fastdds::PublicationMatchedStatus status;
     writer.get_publication_matched_status(status);

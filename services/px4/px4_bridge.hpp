@@ -42,7 +42,7 @@ class Px4Bridge final : public runtime::HostedVehicle {
 
  private:
   void subscribe();
-  // Each in the thread that receives.
+  // Each is called by the thread that receives the topic.
   void on_sensors(const msg::SensorCombined& message);
   void on_odometry(const msg::VehicleOdometry& message);
   void on_battery(const msg::BatteryStatus& message);
