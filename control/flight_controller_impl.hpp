@@ -1,4 +1,4 @@
-// The stages of the controller's step and its state, for flight_controller.cpp and flight_controller_step.cpp.
+// The stages of the controller's step and its state, for the files flight_controller*.cpp.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +47,7 @@ struct FlightController::Impl {
   const plant::VehicleCommand& step(const plant::ImuSample& sample, bool usable, ClientInputs& clients);
   const plant::VehicleCommand& stamp_command(const plant::ImuSample& sample);
 
-  // Of the last sample, or that of the vehicle in its place.
+  // The estimate at the last sample: the controller's own, or that of a vehicle that brings one.
   const Estimate& estimate() const {
     return brings_odometry ? estimate_source.estimate() : estimator.estimate();
   }

@@ -27,7 +27,7 @@ double thrust_along_body(const AttitudeDemand& demand, const Estimate& estimate)
 plant::RatesSetpoint rates_command(const AttitudeDemand& demand, double thrust_n, const Estimate& estimate,
                                    const AttitudeController& law, double max_body_rate);
 
-// Of demanded body rates: the present attitude, at which the vehicle's attitude law adds nothing.
+// The demanded attitude. For demanded body rates it is the present one, at which the vehicle's attitude law adds nothing.
 plant::AttitudeSetpoint attitude_command(const AttitudeDemand& demand, double thrust_n,
                                          const Estimate& estimate);
 
@@ -38,7 +38,7 @@ plant::TrajectorySetpoint trajectory_command(const ControlSetpoint& setpoint, co
 // The same command in the frame of the vehicle's own estimate: attitude, position and all horizontal vectors.
 plant::VehicleCommand in_vehicle_frame(const plant::VehicleCommand& command, const EstimateSource& source);
 
-// Without thrust: rotors off or idling. At level trajectory, free fall asks for no thrust.
+// The command while the rotors are off or idle. At level trajectory, free fall asks for no thrust.
 plant::VehicleCommand idle_command(plant::ControlLevel level, const Estimate& estimate);
 
 }  // namespace swiftlet::control

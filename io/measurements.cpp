@@ -156,11 +156,6 @@ std::optional<double> factor_of(const QuantityKind& kind, const std::string& uni
   return std::nullopt;
 }
 
-std::string lower(std::string text) {
-  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return text;
-}
-
 // "speed [rad/s]" -> "speed" and "rad/s"; no unit without brackets.
 struct Declaration {
   std::string name;

@@ -36,6 +36,12 @@ inline std::string joined(const std::vector<std::string>& texts, std::string_vie
   return out;
 }
 
+// Only the letters of ASCII change.
+inline std::string lower(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
 // No control character. Each byte of a UTF-8 character is printable.
 inline bool is_printable(char c) { return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f; }
 

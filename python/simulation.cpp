@@ -94,7 +94,7 @@ class Cancellation {
   std::optional<py::error_already_set> raised_;  // guarded by the GIL
 };
 
-// Of a program without a terminal of its own: what would be said there is not kept.
+// For a program without a terminal of its own: drops what would be said there.
 class NoProgress final : public io::Progress {
  public:
   void update(int, const std::string&) override {}

@@ -65,8 +65,8 @@ struct Evaluation {
 };
 Evaluation evaluate(const Flight& flight);
 
-// Of a mission that ended with its landing: the stamps of the last item, during which the ground stops the vehicle short of its
-// reference.
+// The stamps of the last item of each mission that ended with its landing: the ground stops the vehicle short of its reference
+// there.
 std::vector<Window> landing_items(const Flight& flight);
 
 }  // namespace swiftlet::record

@@ -174,6 +174,50 @@ void add_prediction(pages::Page& page, const FlightIdentification& found) {
   page.figures(figures);
 }
 
+Json logs_json(const FlightIdentificationReport& report) {
+  Json logs = Json::array();
+  for (std::size_t i = 0; i < report.logs.size(); ++i) {
+    const auto& rows = report.found.windows[i].flight;
+    logs.push_back({{"file", report.logs[i]}, {"from_row", rows.first}, {"to_row", rows.last}});
+  }
+  return logs;
+}
+
+Json lag_json(const ParameterEstimate& e) {
+  return {
+      {"response", e.parameter}, {"value", e.value}, {"interval_95", {e.low(), e.high()}}, {"unit", e.unit}};
+}
+
+Json comparison_json(const FileComparison& row) {
+  return {{"parameter", row.identified.parameter},
+          {"value", row.identified.value},
+          {"interval_95", {row.identified.low(), row.identified.high()}},
+          {"file", row.file},
+          {"ratio", row.ratio()},
+          {"unit", row.identified.unit}};
+}
+
+Json horizon_json(const HorizonError& e) {
+  return {{"quantity", e.quantity},
+          {"unit", e.unit},
+          {"horizon_s", e.horizon_s},
+          {"by_commands", e.by_commands},
+          {"persistence", e.persistence}};
+}
+
+Json prediction_json(const PredictionError& e) {
+  return {{"quantity", e.quantity},       {"unit", e.unit},
+          {"one_step", e.one_step},       {"persistence_one_step", e.persistence_one_step},
+          {"half_second", e.half_second}, {"persistence_half_second", e.persistence_half_second}};
+}
+
+template <class Row>
+Json list_of(const std::vector<Row>& rows, Json (*json)(const Row&)) {
+  Json list = Json::array();
+  for (const Row& row : rows) list.push_back(json(row));
+  return list;
+}
+
 }  // namespace
 
 std::string flight_identification_table(const FlightIdentificationReport& report) {
@@ -204,63 +248,23 @@ std::string flight_identification_table(const FlightIdentificationReport& report
 
 std::string flight_identification_json(const FlightIdentificationReport& report) {
   const FlightIdentification& found = report.found;
-  Json logs = Json::array();
-  for (std::size_t i = 0; i < report.logs.size(); ++i) {
-    logs.push_back({{"file", report.logs[i]},
-                    {"from_row", found.windows[i].flight.first},
-                    {"to_row", found.windows[i].flight.last}});
-  }
-  Json parameters = Json::array();
-  for (const ParameterEstimate& e : found.estimates) parameters.push_back(json_of(e));
-  Json prediction = Json::array();
-  for (const PredictionError& e : found.errors) {
-    prediction.push_back({{"quantity", e.quantity},
-                          {"unit", e.unit},
-                          {"one_step", e.one_step},
-                          {"persistence_one_step", e.persistence_one_step},
-                          {"half_second", e.half_second},
-                          {"persistence_half_second", e.persistence_half_second}});
-  }
   Json out = {{"vehicle", found.vehicle.name},
               {"base_vehicle", report.base_vehicle},
-              {"logs", logs},
+              {"logs", logs_json(report)},
               {"source", source_key(found.source)},
               {"estimation_set_s", found.estimation_set_s},
               {"validation_set_s", found.validation_set_s},
-              {"parameters", parameters}};
+              {"parameters", list_of(found.estimates, json_of)}};
   if (found.source == SpeedSource::kCommanded) {
-    Json lags = Json::array();
-    for (const ParameterEstimate& e : found.lags)
-      lags.push_back({{"response", e.parameter},
-                      {"value", e.value},
-                      {"interval_95", {e.low(), e.high()}},
-                      {"unit", e.unit}});
-    Json comparisons = Json::array();
-    for (const FileComparison& row : found.comparisons) {
-      comparisons.push_back({{"parameter", row.identified.parameter},
-                             {"value", row.identified.value},
-                             {"interval_95", {row.identified.low(), row.identified.high()}},
-                             {"file", row.file},
-                             {"ratio", row.ratio()},
-                             {"unit", row.identified.unit}});
-    }
-    Json horizons = Json::array();
-    for (const HorizonError& e : found.horizons) {
-      horizons.push_back({{"quantity", e.quantity},
-                          {"unit", e.unit},
-                          {"horizon_s", e.horizon_s},
-                          {"by_commands", e.by_commands},
-                          {"persistence", e.persistence}});
-    }
-    out["lags"] = lags;
-    out["beside_file"] = comparisons;
+    out["lags"] = list_of(found.lags, lag_json);
+    out["beside_file"] = list_of(found.comparisons, comparison_json);
     out["step_s"] = found.step_s;
-    out["horizons"] = horizons;
+    out["horizons"] = list_of(found.horizons, horizon_json);
     out["thrust_per_mass"] = {{"command", found.thrust.command},
                               {"value", found.thrust.over_mass},
                               {"half_width_95", found.thrust.half_width}};
   }
-  out["prediction"] = prediction;
+  out["prediction"] = list_of(found.errors, prediction_json);
   out["assumptions"] = report.assumptions;
   out["unexcited"] = found.unexcited;
   out["findings"] = found.findings;

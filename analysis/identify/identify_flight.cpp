@@ -38,26 +38,19 @@ Base base_of(const IdentifyFlightOptions& options) {
   return {io::configuration_file(io::kinds::kVehicle, "kaylion"), true};
 }
 
-}  // namespace
-
-int identify_flight(IdentifyFlightOptions options) {
-  std::vector<fs::path> inputs;
-  for (const std::string& log : options.logs) {
-    for (const fs::path& file : io::files_of(log)) inputs.push_back(file);
-  }
-  const auto [base_path, is_assumed] = base_of(options);
-  if (is_ulog(options.logs.front()))
-    return identify_ulog(options, io::load_vehicle(base_path.string()), base_path.stem().string());
-  inputs.push_back(base_path);
-  io::refuse_overwriting({{"--out", options.out}, {"--report", options.report}}, inputs);
-  const plant::Vehicle base = io::load_vehicle(base_path.string());
+FlightIdentificationReport report_begun(const IdentifyFlightOptions& options, const fs::path& base_path,
+                                        bool is_assumed, const plant::Vehicle& base) {
   FlightIdentificationReport report;
   report.logs = options.logs;
   report.base_vehicle = options.base.empty() ? base_path.string() : options.base;
   if (is_assumed)
     report.assumptions.push_back("the base vehicle is " + base.name +
                                  ": --base is not given, and the log is not part of a record");
+  return report;
+}
 
+// Reads the logs and fits the vehicle to them.
+void fit(IdentifyFlightOptions& options, const plant::Vehicle& base, FlightIdentificationReport& report) {
   io::ProgressLine progress;
   const auto started = std::chrono::steady_clock::now();
   int iterations = 0;
@@ -79,9 +72,55 @@ int identify_flight(IdentifyFlightOptions options) {
     throw io::InputError(fault.what());
   }
   progress.close();
-  plant::Vehicle& vehicle = report.found.vehicle;
+}
+
+// Throws if the vehicle is not good enough for a file.
+void write_vehicle(const std::string& out, const fs::path& base_path, const std::string& base_name,
+                   const FlightIdentificationReport& report) {
+  const identification::FlightIdentification& found = report.found;
+  if (found.uncertainty.parameters.empty())
+    throw std::runtime_error("no parameter is identifiable, see above: " + out + " is not written");
+  for (const plant::Violation& broken : plant::validate(found.vehicle)) {
+    throw io::InputError("the identified vehicle cannot fly: " + broken.key + ": " + broken.message +
+                         "; parameters that are not identified are those of " + report.base_vehicle);
+  }
+  io::VehicleSources sources = io::load_vehicle_sources(base_path.string());
+  for (const auto& [key, source] : found.sources) sources[key] = source;
+  const std::string text = io::vehicle_text(
+      found.vehicle, sources, found.uncertainty,
+      "Identified by `swiftlet identify flight`; parameters that were not identified are those of " +
+          base_name + ". Frame: Forward-Right-Down, origin at the centre of mass.");
+  io::parse_vehicle(text, out);
+  io::write_atomically(out, text);
+}
+
+void say_what_was_done(const IdentifyFlightOptions& options, const FlightIdentificationReport& report) {
+  std::string wrote;
+  for (const std::string& file : {options.out, options.report}) {
+    if (!file.empty()) wrote += (wrote.empty() ? "; wrote " : " and ") + file;
+  }
+  std::fprintf(stderr, "swiftlet: %s identified from %s%s\n",
+               io::counted(report.found.uncertainty.parameters.size(), "parameter").c_str(),
+               io::counted(options.logs.size(), "flight").c_str(), wrote.c_str());
+}
+
+}  // namespace
+
+int identify_flight(IdentifyFlightOptions options) {
+  std::vector<fs::path> inputs;
+  for (const std::string& log : options.logs) {
+    for (const fs::path& file : io::files_of(log)) inputs.push_back(file);
+  }
+  const auto [base_path, is_assumed] = base_of(options);
+  if (is_ulog(options.logs.front()))
+    return identify_ulog(options, io::load_vehicle(base_path.string()), base_path.stem().string());
+  inputs.push_back(base_path);
+  io::refuse_overwriting({{"--out", options.out}, {"--report", options.report}}, inputs);
+  const plant::Vehicle base = io::load_vehicle(base_path.string());
+  FlightIdentificationReport report = report_begun(options, base_path, is_assumed, base);
+  fit(options, base, report);
   if (!options.out.empty())
-    vehicle.name = options.name.empty() ? fs::path(options.out).stem().string() : options.name;
+    report.found.vehicle.name = options.name.empty() ? fs::path(options.out).stem().string() : options.name;
 
   if (options.json) {
     std::printf("%s\n", flight_identification_json(report).c_str());
@@ -94,29 +133,8 @@ int identify_flight(IdentifyFlightOptions options) {
     throw std::runtime_error(options.out.empty() ? "the fit did not converge within its bounds"
                                                  : "the fit did not converge within its bounds: " +
                                                        options.out + " is not written");
-  if (!options.out.empty()) {
-    if (report.found.uncertainty.parameters.empty())
-      throw std::runtime_error("no parameter is identifiable, see above: " + options.out + " is not written");
-    for (const plant::Violation& broken : plant::validate(vehicle)) {
-      throw io::InputError("the identified vehicle cannot fly: " + broken.key + ": " + broken.message +
-                           "; parameters that are not identified are those of " + report.base_vehicle);
-    }
-    io::VehicleSources sources = io::load_vehicle_sources(base_path.string());
-    for (const auto& [key, source] : report.found.sources) sources[key] = source;
-    const std::string text = io::vehicle_text(
-        vehicle, sources, report.found.uncertainty,
-        "Identified by `swiftlet identify flight`; parameters that were not identified are those of " +
-            base.name + ". Frame: Forward-Right-Down, origin at the centre of mass.");
-    io::parse_vehicle(text, options.out);
-    io::write_atomically(options.out, text);
-  }
-  std::string wrote;
-  for (const std::string& file : {options.out, options.report}) {
-    if (!file.empty()) wrote += (wrote.empty() ? "; wrote " : " and ") + file;
-  }
-  std::fprintf(stderr, "swiftlet: %s identified from %s%s\n",
-               io::counted(report.found.uncertainty.parameters.size(), "parameter").c_str(),
-               io::counted(logs.size(), "flight").c_str(), wrote.c_str());
+  if (!options.out.empty()) write_vehicle(options.out, base_path, base.name, report);
+  say_what_was_done(options, report);
   return io::kDone;
 }
 

@@ -17,7 +17,7 @@ struct RecordedFlight {  // NOLINT(bugprone-exception-escape): ordered_json is m
   std::string name;  // of the record; RECORD/VEHICLE for one of several vehicles
   nlohmann::ordered_json
       report;  // as report.json, from the messages; of a flight of `swiftlet fly` with its timing
-  // Of the files of the flight, such as "control.position.x.omega_n" and "2.0".
+  // Keys and values in the files of the flight, such as "control.position.x.omega_n" and "2.0".
   std::vector<std::pair<std::string, std::string>> settings;
   std::string vehicle;
   std::filesystem::path file;  // of its messages

@@ -21,8 +21,8 @@ struct LoopDelay {
   double total_s() const { return sampling_s + actuation_s; }
 };
 
-// Of a unit step of the reference. NaN: not reached within eight times the plotted time, or the loop is
-// unstable.
+// The response to a unit step of the reference. NaN: not reached within eight times the plotted time, or the
+// loop is unstable.
 struct StepFigures {
   double rise_time_s = 0.0;      // from 10 to 90 %
   double overshoot = 0.0;        // fraction

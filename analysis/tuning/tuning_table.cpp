@@ -26,7 +26,7 @@ Json json_of(const LoopStudy& loop) {
           {"settling_time_s", number_or_null(loop.step.settling_time_s)}};
 }
 
-// Of the given width, with `none` for a number that is not finite.
+// A cell of the given width, with `none` for a number that is not finite.
 std::string cell(double value, int width, int digits, const char* none) {
   return std::isfinite(value) ? fmt::format(" {:{}.{}f}", value, width, digits)
                               : fmt::format(" {:>{}}", none, width);

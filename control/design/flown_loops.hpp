@@ -40,7 +40,7 @@ struct ObservedRotors {
   bool incremental = false;  // DisturbanceLaw::kIncremental
 };
 
-// Of a controller that commands the rotors with these settings.
+// The rotors as a controller with these settings observes them, if it commands them itself.
 ObservedRotors observed_rotors(double rotor_lag_s, const ControlSettings& settings);
 
 constexpr std::array<const char*, 6> kFlownLoopNames = {"roll", "pitch", "yaw", "x", "y", "z"};

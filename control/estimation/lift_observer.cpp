@@ -23,7 +23,7 @@ void LiftObserver::step_on_ground(double dt_s, const Eigen::Vector3d& specific_f
   }
   update(dt_s, -specific_force_frd.z(), lift, kOnset_s);
   const double upward = -(q_ned_from_frd * specific_force_frd).z() - plant::kGravity;
-  // Of white noise the mean keeps the variance part / (2 - part), and the innovation has 2 / (2 - part) of it.
+  // The mean keeps part / (2 - part) of the variance of white noise, and the innovation has 2 / (2 - part) of it.
   // Vibration rises with the lift.
   const double part = dt_s / (kOnset_s + dt_s);
   const double of_noise = dt_s / (ground_s_ + dt_s);

@@ -24,7 +24,7 @@ class SentCommands {
   // counts as obeyed.
   void sample(std::int64_t stamp_ns, double dt_s, const plant::ObeyedCommand& obeyed);
 
-  // Of the command that the vehicle obeyed at the last sample, N; 0: it has obeyed none, or none that is known.
+  // The thrust of the command that the vehicle obeyed at the last sample, N; 0: it obeyed none, or an unknown one.
   double obeyed_thrust_n() const { return obeyed_thrust_n_; }
   // The mean age of the obeyed command, s, which is the delay from a sample to the vehicle that obeys its command; 0: not reported.
   double delay_s() const { return delay_s_; }

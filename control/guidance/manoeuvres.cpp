@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "swiftlet/control/guidance/setpoint_stream.hpp"
+#include "swiftlet/control/guidance/spool_up.hpp"
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/planning/waypoint_path.hpp"
 #include "swiftlet/math/time.hpp"
@@ -13,24 +14,10 @@
 namespace swiftlet::control {
 namespace {
 
-constexpr double kSpoolUp_s = 0.8;
-constexpr double kSpoolUpLift = 0.95;  // of the weight, at the end of the spool-up
-// Where lift-off is observed, thrust rises fast up to a lift below that of any vehicle, then slowly until lift-off.
-constexpr double kFastLift = 0.75;  // of the weight
-constexpr double kFastLift_s = 0.45;
-constexpr double kLiftRate = 3.0;        // of the weight, per second
-constexpr double kMostLift = 1.5;        // of the weight
-constexpr double kMostLead = 0.08;       // of the weight, by which the commanded lift may lead the obeyed one
-constexpr double kAwaitLiftOff_s = 0.8;  // after the greatest lift
-constexpr double kSettle_s = 0.09;  // after the vehicle has answered its lift-off: its thrust is steady again
-constexpr double kRiseSpeed = 0.05;        // m/s, from lift-off until it is clear of the ground
-constexpr double kMostRiseSpeed = 0.2;     // m/s
-constexpr double kClearHeight_m = 0.003;   // above the ground
-constexpr double kLongestSample_s = 0.01;  // between two steps
-constexpr double kFlareHeight_m = 0.08;    // the planned path of a landing ends here, then the vehicle sinks
-constexpr double kSinkSpeed = 0.15;        // m/s
-constexpr double kSink_s = 60.0;           // longest duration
-constexpr double kBlindDepth_m = 0.1;      // below the ground, by dead reckoning
+constexpr double kFlareHeight_m = 0.08;  // the planned path of a landing ends here, then the vehicle sinks
+constexpr double kSinkSpeed = 0.15;      // m/s
+constexpr double kSink_s = 60.0;         // longest duration
+constexpr double kBlindDepth_m = 0.1;    // below the ground, by dead reckoning
 constexpr double kMinMove_s = 0.5;
 constexpr int kJoinAttempts = 16;  // attempts to join a trajectory from motion, each with more time
 constexpr double kJoinStretch = 1.25;
@@ -95,76 +82,6 @@ PolynomialSegment join_inside(const Limits& limits, Reference from, const Eigen:
     const bool straight = from.velocity_ned.isZero(0.0) && from.acceleration_ned.isZero(0.0);
     if (straight || !leaves_fence(limits, segment)) return segment;
   }
-}
-
-// Of the weight, per second. Lift-off is seen, and answered, later by the delay of the commands: the lift must not have risen much
-// until then.
-double lift_rate(const GuidanceContext& context) {
-  return context.command_delay_s * kLiftRate > kMostLead ? kMostLead / context.command_delay_s : kLiftRate;
-}
-
-double longest_spool_up_s(const GuidanceContext& context) {
-  return kFastLift_s + (kMostLift - kFastLift) / lift_rate(context) + kAwaitLiftOff_s;
-}
-
-// A reference that moves up from a place since start_ns.
-void rise_from(const GuidanceContext& context, const Eigen::Vector3d& place_ned, double speed,
-               std::int64_t start_ns) {
-  PolynomialSegment up;
-  up.duration_s = longest_spool_up_s(context);
-  up.x = {place_ned.x()};
-  up.y = {place_ned.y()};
-  up.z = {place_ned.z(), -speed};
-  up.yaw = {context.state.path.at(context.now_ns).yaw_rad};
-  context.state.path.follow(up, start_ns);
-}
-
-void climb_from(const GuidanceContext& context, Eigen::Vector3d top, std::int64_t start_ns) {
-  GuidanceState& state = context.state;
-  state.phase = Phase::kPath;
-  top.z() = state.climb_to_z_ned;
-  start_move(context, top, true, 0.0, state.climb_speed, start_ns);
-}
-
-// The spool-up ends after its time. Where lift-off is observed, the vehicle then rises until it is clear of the
-// ground, and the climb begins with its own motion above the place where it left the ground: wind may have pushed it while
-// its legs carried little. It begins on time, also between two steps, if the vehicle was clear by then: vehicles that start
-// together climb together.
-void advance_spool_up(const GuidanceContext& context) {
-  GuidanceState& state = context.state;
-  const double elapsed = elapsed_s(state.phase_since_ns, context.now_ns);
-  const Eigen::Vector3d& place_ned = context.estimate.position_ned;
-  const bool on_time = elapsed >= kSpoolUp_s;
-  const std::int64_t due_ns = state.phase_since_ns + math::nanoseconds(kSpoolUp_s);
-  if (context.lift_off_ns == 0) {
-    if (on_time) climb_from(context, state.path.at(context.now_ns).position_ned, due_ns);
-    return;
-  }
-  const bool lifted_off = context.lift_off_ns <= context.now_ns;
-  if (lifted_off && !state.path.moving)
-    rise_from(context, state.path.at(context.now_ns).position_ned, kRiseSpeed, context.now_ns);
-  const double clear_z_ned = state.ground_z_ned - kClearHeight_m;
-  const bool settled =
-      lifted_off && elapsed_s(context.lift_off_ns, context.now_ns) >= context.command_delay_s + kSettle_s;
-  if (settled && on_time && place_ned.z() < clear_z_ned) {
-    const double speed = std::clamp(-context.estimate.velocity_ned.z(), 0.0, kMostRiseSpeed);
-    const double late_s = elapsed - kSpoolUp_s;
-    Eigen::Vector3d place_then_ned = place_ned;
-    place_then_ned.z() += late_s * speed;
-    const bool was_clear = late_s < kLongestSample_s && place_then_ned.z() < clear_z_ned;
-    const std::int64_t start_ns = was_clear ? due_ns : context.now_ns;
-    rise_from(context, was_clear ? place_then_ned : place_ned, speed, start_ns);
-    return climb_from(context, place_ned, start_ns);
-  }
-  if (elapsed >= longest_spool_up_s(context))
-    climb_from(context, state.path.at(context.now_ns).position_ned, context.now_ns);
-}
-
-// A vehicle with an arming of its own starts its rotors later than it is told to.
-void await_rotors(const GuidanceContext& context) {
-  const bool on_ground = context.lift_off_ns == 0 || context.lift_off_ns > context.now_ns;
-  if (context.rotors_running || context.state.phase != Phase::kSpoolUp || !on_ground) return;
-  context.state.phase_since_ns = std::max(context.state.phase_since_ns, context.now_ns + 1);
 }
 
 // The planned part of a landing is over: sinks until touchdown is detected.
@@ -339,15 +256,6 @@ BrakingManoeuvre inside_fence(const Limits& limits, const Reference& from, Braki
   return stop;
 }
 
-void start_takeoff(const GuidanceContext& context, double to_z_ned, double speed, std::int64_t start_ns) {
-  GuidanceState& state = context.state;
-  state.phase = Phase::kSpoolUp;
-  state.phase_since_ns = start_ns;
-  state.climb_to_z_ned = to_z_ned;
-  state.climb_speed = speed;
-  state.path.rest(standing_at(context.estimate));
-}
-
 void start_move(const GuidanceContext& context, const Eigen::Vector3d& to_ned, bool yaw_free, double yaw_rad,
                 double speed, std::int64_t start_ns) {
   const Limits& limits = context.limits;
@@ -513,14 +421,6 @@ bool on_landing_item(const GuidanceContext& context) {
 double blind_descent_speed(const GuidanceContext& context) {
   const bool below_ground = context.estimate.position_ned.z() > context.state.ground_z_ned + kBlindDepth_m;
   return (below_ground ? 2.0 : 1.0) * context.failsafe.descent_speed;
-}
-
-double spool_up_lift(const GuidanceContext& context) {
-  const double elapsed = elapsed_s(context.state.phase_since_ns, context.now_ns);
-  if (context.lift_off_ns == 0) return kSpoolUpLift * std::min(1.0, elapsed / kSpoolUp_s);
-  const double slow_s = elapsed - kFastLift_s;
-  return slow_s < 0.0 ? kFastLift * elapsed / kFastLift_s
-                      : std::min(kFastLift + lift_rate(context) * slow_s, kMostLift);
 }
 
 }  // namespace swiftlet::control

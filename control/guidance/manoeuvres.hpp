@@ -1,4 +1,4 @@
-// The manoeuvres: the reference path of each phase of flight (take-off, moves, stops, landings), and the
+// The manoeuvres: the reference path of each phase of flight (moves, stops, landings), and the
 // sequence of a plan's items and segments.
 #pragma once
 
@@ -34,8 +34,6 @@ BrakingManoeuvre brake_vehicle(const Limits& limits, const Reference& from);
 // time that the ascent takes.
 BrakingManoeuvre inside_fence(const Limits& limits, const Reference& from, BrakingManoeuvre stop);
 
-// Idles until start_ns, spools up, then climbs vertically to to_z_ned.
-void start_takeoff(const GuidanceContext& context, double to_z_ned, double speed, std::int64_t start_ns);
 // Moves from the reference at start_ns to a position: straight from rest, by a quintic from motion. The path
 // is nowhere lower than the minimum height, or the lower of its ends if that is lower.
 void start_move(const GuidanceContext& context, const Eigen::Vector3d& to_ned, bool yaw_free, double yaw_rad,
@@ -73,8 +71,5 @@ bool on_landing_item(const GuidanceContext& context);
 // reckoning is below the ground. A vehicle that stands while its thrust carries its weight shows no
 // touchdown; less thrust makes it show.
 double blind_descent_speed(const GuidanceContext& context);
-
-// Thrust during spool-up, as a fraction of the weight.
-double spool_up_lift(const GuidanceContext& context);
 
 }  // namespace swiftlet::control

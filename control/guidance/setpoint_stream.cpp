@@ -20,7 +20,7 @@ constexpr double kStretch = 1.25;
 constexpr double kRoundingError = 1e-5;
 constexpr double kReaction_s = 0.15;    // delay until the thrust acts against the motion
 constexpr double kPastTimeout_s = 0.1;  // coasting outlasts the stream's time-out
-// Of the distance of a blend's yaw rate from its limit, kept free: it may be higher between the looks at it.
+// A blend's yaw rate keeps this share of its distance from the limit free: it may be higher between the looks at it.
 constexpr double kBetweenLooks = 0.05;
 
 // Where in its time a blend's yaw rate is held to the limit, dense at both ends.

@@ -17,7 +17,7 @@ constexpr double kRepresentable =
     2.0;  // of the tolerance: greatest residual of a sufficient fit by least squares
 constexpr double kLeastSmoothing = 1e-12;  // relative to the samples, in the fit by least squares
 constexpr int kMostRefinements = 12;
-// Of the interior-point method.
+// The interior-point method:
 constexpr int kMaxSteps = 60;
 constexpr double kGap = 1e-3;  // relative to the roughness
 constexpr double kViolation = kSmoothingPrecision - 1.0;

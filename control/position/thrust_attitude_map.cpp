@@ -20,6 +20,24 @@ Vector3d unyawed(const Vector3d& v, double cosine, double sine) {
 // e3 x v.
 Vector3d e3_cross(const Vector3d& v) { return {-v.y(), v.x(), 0.0}; }
 
+// b, the specific force of the rotors, and its derivatives in a frame that yaws with the reference.
+struct YawedForce {
+  Vector3d b, b_1, b_2;
+};
+
+YawedForce yawed_force(const Reference& reference, const math::Heading& heading) {
+  const double psi_1 = reference.yaw_rate;
+  const double psi_2 = reference.yaw_acceleration;
+  const Vector3d n0 = Vector3d(0.0, 0.0, plant::kGravity) - reference.acceleration_ned;
+  const Vector3d& jerk = reference.jerk_ned;
+  const Vector3d& snap = reference.snap_ned;
+  const Vector3d n2 =
+      -snap + 2.0 * psi_1 * e3_cross(jerk) - psi_2 * e3_cross(n0) + psi_1 * psi_1 * e3_cross(e3_cross(n0));
+  return {unyawed(n0, heading.cosine, heading.sine),
+          unyawed(-jerk - psi_1 * e3_cross(n0), heading.cosine, heading.sine),
+          unyawed(n2, heading.cosine, heading.sine)};
+}
+
 }  // namespace
 
 ThrustAttitude thrust_attitude(double mass_kg, const Vector3d& acceleration_ned, double max_tilt_tangent) {
@@ -44,16 +62,9 @@ ThrustAttitude thrust_attitude(double mass_kg, const Vector3d& acceleration_ned,
 }
 
 ReferenceMotion reference_motion(double mass_kg, const Reference& reference, const math::Heading& heading) {
-  const double cosine = heading.cosine;
-  const double sine = heading.sine;
   const double psi_1 = reference.yaw_rate;
   const double psi_2 = reference.yaw_acceleration;
-
-  // b and its derivatives in a frame that yaws with the reference.
-  const Vector3d n0 = Vector3d(0.0, 0.0, plant::kGravity) - reference.acceleration_ned;
-  const Vector3d& jerk = reference.jerk_ned;
-  const Vector3d& snap = reference.snap_ned;
-  Vector3d b = unyawed(n0, cosine, sine);
+  auto [b, b_1, b_2] = yawed_force(reference, heading);
 
   ReferenceMotion out;
   if (!(b.z() >= kLeastLift)) {
@@ -61,10 +72,6 @@ ReferenceMotion reference_motion(double mass_kg, const Reference& reference, con
     out.thrust_n = mass_kg * b.norm();
     return out;
   }
-  const Vector3d b_1 = unyawed(-jerk - psi_1 * e3_cross(n0), cosine, sine);
-  const Vector3d b_2 = unyawed(
-      -snap + 2.0 * psi_1 * e3_cross(jerk) - psi_2 * e3_cross(n0) + psi_1 * psi_1 * e3_cross(e3_cross(n0)),
-      cosine, sine);
 
   // theta = atan2(b_x, b_z), with rho its radius.
   const double rho_squared = b.x() * b.x() + b.z() * b.z();

@@ -1,87 +1,59 @@
 #include "swiftlet/control/supervision/events.hpp"
 
+#include <array>
+
 namespace swiftlet::control {
 
+namespace {
+
+// In the order of Event.
+constexpr std::array kEventNames = {
+    "IMU samples unusable",
+    "IMU samples were missing",
+    "tipped over",
+    "vehicle fault",
+    "rotors not running",
+    "impact",
+    "take-off inconsistent",
+    "pose jumped",
+    "pose lost",
+    "pose available",
+    "touchdown detected",
+    "descent timed out",
+    "battery critical",
+    "outside the fence",
+    "battery low",
+    "battery silent",
+    "ground link lost",
+    "setpoints violate the fence",
+    "setpoints stopped",
+    "plan finished",
+    "arm",
+    "disarm",
+    "takeoff",
+    "mission upload",
+    "mission start",
+    "mission pause",
+    "mission resume",
+    "mission skip",
+    "mission clear",
+    "trajectory",
+    "setpoint",
+    "goto",
+    "hold",
+    "land",
+    "stop",
+    "set control",
+    "plan unknown",
+    "engaged in flight",
+};
+static_assert(kEventNames.size() == kEventCount);
+
+}  // namespace
+
 const char* to_string(Event event) {
-  switch (event) {
-    case Event::kImuUnusable:
-      return "IMU samples unusable";
-    case Event::kImuGap:
-      return "IMU samples were missing";
-    case Event::kTippedOver:
-      return "tipped over";
-    case Event::kVehicleFault:
-      return "vehicle fault";
-    case Event::kRotorsNotRunning:
-      return "rotors not running";
-    case Event::kImpact:
-      return "impact";
-    case Event::kTakeoffInconsistent:
-      return "take-off inconsistent";
-    case Event::kPoseJumped:
-      return "pose jumped";
-    case Event::kPoseLost:
-      return "pose lost";
-    case Event::kPoseIsBack:
-      return "pose available";
-    case Event::kTouchdown:
-      return "touchdown detected";
-    case Event::kDescentTimedOut:
-      return "descent timed out";
-    case Event::kBatteryCritical:
-      return "battery critical";
-    case Event::kOutsideFence:
-      return "outside the fence";
-    case Event::kBatteryLow:
-      return "battery low";
-    case Event::kBatterySilent:
-      return "battery silent";
-    case Event::kGroundLinkLost:
-      return "ground link lost";
-    case Event::kSetpointsViolateFence:
-      return "setpoints violate the fence";
-    case Event::kSetpointsStopped:
-      return "setpoints stopped";
-    case Event::kPlanFinished:
-      return "plan finished";
-    case Event::kArm:
-      return "arm";
-    case Event::kDisarm:
-      return "disarm";
-    case Event::kTakeoff:
-      return "takeoff";
-    case Event::kMissionUpload:
-      return "mission upload";
-    case Event::kMissionStart:
-      return "mission start";
-    case Event::kMissionPause:
-      return "mission pause";
-    case Event::kMissionResume:
-      return "mission resume";
-    case Event::kMissionSkip:
-      return "mission skip";
-    case Event::kMissionClear:
-      return "mission clear";
-    case Event::kTrajectory:
-      return "trajectory";
-    case Event::kSetpoint:
-      return "setpoint";
-    case Event::kGoTo:
-      return "goto";
-    case Event::kHold:
-      return "hold";
-    case Event::kLand:
-      return "land";
-    case Event::kStop:
-      return "stop";
-    case Event::kSettings:
-      return "set control";
-    case Event::kPlanUnknown:
-      return "plan unknown";
-    case Event::kEngagedInFlight:
-      return "engaged in flight";
-  }
-  return "unknown";
+  const auto index = static_cast<std::size_t>(event);
+  return index < kEventNames.size() ? kEventNames[index] : "unknown";
 }
 
 bool event_of(RequestKind kind, Event& event) {

@@ -4,6 +4,7 @@
 
 #include "swiftlet/control/guidance/manoeuvres.hpp"
 #include "swiftlet/control/guidance/setpoint_stream.hpp"
+#include "swiftlet/control/guidance/spool_up.hpp"
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/supervision/conditions.hpp"
 #include "swiftlet/control/supervision/request_progress.hpp"

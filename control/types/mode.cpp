@@ -1,6 +1,43 @@
 #include "swiftlet/control/types/mode.hpp"
 
 namespace swiftlet::control {
+namespace {
+
+// In the order of Reason.
+constexpr std::array kReasonNames = {
+    "started",
+    "requested",
+    "take-off completed",
+    "mission completed",
+    "trajectory completed",
+    "landed",
+    "landed without position",
+    "setpoints received",
+    "setpoints stopped",
+    "battery is low",
+    "battery is critical",
+    "no battery voltage",
+    "outside the fence",
+    "no mocap pose",
+    "pose regained",
+    "descent without position timed out",
+    "tipped over",
+    "IMU samples are not usable",
+    "IMU samples were missing",
+    "ground link lost",
+    "impact detected",
+    "poses do not follow the take-off",
+    "position jumped",
+    "mission or trajectory unknown after failover",
+    "engaged in flight",
+    "setpoints violated the fence",
+    "mission paused",
+    "the vehicle reports a fault",
+    "the vehicle does not report rotors_running in vehicle_info",
+};
+static_assert(kReasonNames.size() == kReasonCount);
+
+}  // namespace
 
 const char* to_string(Mode mode) {
   switch (mode) {
@@ -29,67 +66,8 @@ const char* to_string(Mode mode) {
 }
 
 const char* to_string(Reason reason) {
-  switch (reason) {
-    case Reason::kStarted:
-      return "started";
-    case Reason::kRequested:
-      return "requested";
-    case Reason::kTakeOffCompleted:
-      return "take-off completed";
-    case Reason::kMissionCompleted:
-      return "mission completed";
-    case Reason::kTrajectoryCompleted:
-      return "trajectory completed";
-    case Reason::kLanded:
-      return "landed";
-    case Reason::kLandedWithoutPosition:
-      return "landed without position";
-    case Reason::kSetpointsCame:
-      return "setpoints received";
-    case Reason::kSetpointsStopped:
-      return "setpoints stopped";
-    case Reason::kBatteryLow:
-      return "battery is low";
-    case Reason::kBatteryCritical:
-      return "battery is critical";
-    case Reason::kBatterySilent:
-      return "no battery voltage";
-    case Reason::kOutsideFence:
-      return "outside the fence";
-    case Reason::kNoPose:
-      return "no mocap pose";
-    case Reason::kPoseIsBack:
-      return "pose regained";
-    case Reason::kDescentTimedOut:
-      return "descent without position timed out";
-    case Reason::kTippedOver:
-      return "tipped over";
-    case Reason::kImuUnusable:
-      return "IMU samples are not usable";
-    case Reason::kImuGap:
-      return "IMU samples were missing";
-    case Reason::kGroundLinkLost:
-      return "ground link lost";
-    case Reason::kImpact:
-      return "impact detected";
-    case Reason::kTakeoffInconsistent:
-      return "poses do not follow the take-off";
-    case Reason::kPoseJumped:
-      return "position jumped";
-    case Reason::kPlanUnknown:
-      return "mission or trajectory unknown after failover";
-    case Reason::kEngagedInFlight:
-      return "engaged in flight";
-    case Reason::kSetpointsViolatedFence:
-      return "setpoints violated the fence";
-    case Reason::kMissionPaused:
-      return "mission paused";
-    case Reason::kVehicleFault:
-      return "the vehicle reports a fault";
-    case Reason::kRotorsNotRunning:
-      return "the vehicle does not report rotors_running in vehicle_info";
-  }
-  return "unknown";
+  const auto index = static_cast<std::size_t>(reason);
+  return index < kReasonNames.size() ? kReasonNames[index] : "unknown";
 }
 
 }  // namespace swiftlet::control

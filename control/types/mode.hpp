@@ -81,7 +81,7 @@ struct MissionProgress {
   int item_count = 0;
 };
 
-// Of a vehicle that brings an estimate of its own.
+// The estimate that a vehicle brings of its own.
 struct OdometryStatus {
   bool in_force = false;     // the vehicle is flown by it
   double distance_m = -1.0;  // from the estimate of motion capture; -1: one of both is missing

@@ -5,21 +5,16 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "swiftlet/control/design/flown_delay.hpp"
-#include "swiftlet/control/supervision/events.hpp"
-#include "swiftlet/control/supervision/request_status.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
+#include "swiftlet/ground/cli/status_json.hpp"
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/client/controllers.hpp"
 #include "swiftlet/ground/client/silence.hpp"
 #include "swiftlet/ground/terminal/clock_text.hpp"
 #include "swiftlet/ground/terminal/state_lines.hpp"
-#include "swiftlet/math/euler.hpp"
-#include "swiftlet/plant/model/control_level.hpp"
-#include "swiftlet/services/messages/wire.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -28,13 +23,6 @@ constexpr std::chrono::milliseconds kTopicTimeout{1000};
 
 struct StatusOptions : CommandOptions {
   double watch_s = 1.0;
-};
-
-struct TopicRates {
-  double estimate_hz = 0.0;
-  double reference_hz = 0.0;
-  double battery_hz = 0.0;
-  double ground_truth_hz = 0.0;
 };
 
 template <class T>
@@ -46,67 +34,6 @@ TopicRates rates_between(const View& before, const View& after, double time_s) {
   return {rate_hz(before.estimate, after.estimate, time_s),
           rate_hz(before.reference, after.reference, time_s), rate_hz(before.battery, after.battery, time_s),
           rate_hz(before.truth, after.truth, time_s)};
-}
-
-nlohmann::ordered_json to_json(const msg::ControlGains& gains) {
-  return {{"attitude_angle_per_s2", gains.attitude_angle()},
-          {"attitude_rate_per_s", gains.attitude_rate()},
-          {"attitude_acceleration", gains.attitude_acceleration()},
-          {"position_p_per_s2", gains.position_p()},
-          {"position_v_per_s", gains.position_v()},
-          {"position_i_per_s3", gains.position_i()},
-          {"integral_limit_m_s2", gains.integral_limit()},
-          {"disturbance_bandwidth_rad_s", gains.disturbance_bandwidth()},
-          {"disturbance_limit_m_s2", gains.disturbance_limit()}};
-}
-
-nlohmann::ordered_json measured_or_null(double value) {
-  return std::isfinite(value) && value >= 0.0 ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
-}
-
-template <class T>
-nlohmann::ordered_json age_of(const Latest<T>& latest, Clock::time_point now) {
-  if (!latest.seen()) return nullptr;
-  return latest.age_s(now);
-}
-
-// The names of the LEVEL_* of VehicleInfo.
-std::string levels_text(std::uint8_t bits) { return plant::ControlLevels::from_bits(bits).names().data(); }
-
-const char* role_name(const LiveController& controller) { return controller.active ? "active" : "standby"; }
-
-const char* kind_name(const msg::RequestStatus& request) {
-  control::Event event{};
-  return control::event_of(static_cast<control::RequestKind>(request.kind()), event)
-             ? control::to_string(event)
-             : "unknown";
-}
-
-const char* state_name(const msg::RequestStatus& request) {
-  return control::to_string(static_cast<control::RequestState>(request.state()));
-}
-
-// What a controller does not report is null.
-nlohmann::ordered_json controllers_json(const LiveControllers& controllers) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  const nlohmann::ordered_json unknown = {{"number", nullptr},
-                                          {"role", nullptr},
-                                          {"ready", nullptr},
-                                          {"failover_priority", nullptr},
-                                          {"term", nullptr}};
-  for (const LiveController& controller : controllers.known) {
-    nlohmann::ordered_json entry = unknown;
-    entry["number"] = controller.number;
-    entry["role"] = role_name(controller);
-    if (controller.state) {
-      entry["ready"] = controller.state->ready();
-      entry["failover_priority"] = controller.state->failover_priority();
-      entry["term"] = controller.state->term();
-    }
-    list.push_back(entry);
-  }
-  list.insert(list.end(), static_cast<std::size_t>(controllers.others), unknown);
-  return list;
 }
 
 void print(const LiveControllers& controllers) {
@@ -121,121 +48,6 @@ void print(const LiveControllers& controllers) {
   }
   if (controllers.others > 0)
     std::printf("  controller %d more found, which report no state\n", controllers.others);
-}
-
-nlohmann::ordered_json to_json(const View& view, const TopicRates& rates, const CommandOptions& options) {
-  const auto now = Clock::now();
-  const auto& control = view.control.message;
-  const auto& mission = view.mission.message;
-  nlohmann::ordered_json json;
-  json["vehicle"] = options.network.vehicle;
-  json["domain"] = options.network.domain;
-  json["silent"] = to_json(silences_of(view, now));
-  json["source_conflict"] = control.source_conflict().c_str();
-  json["mode"] = mode_name(control.mode());
-  json["reason"] = control.reason().c_str();
-  json["airborne"] = control.airborne();
-  json["has_pose"] = control.has_pose();
-  json["pose_age_s"] = pose_age_s(view, now);
-  json["odometry"] = nullptr;
-  if (!odometry_text(control).empty())
-    json["odometry"] = {
-        {"in_force", control.estimate_source() == msg::ControlStatus_Constants::ESTIMATE_OF_VEHICLE},
-        {"distance_m", control.odometry_distance_m()},
-        {"angle_rad", control.odometry_angle_rad()},
-        {"resets", control.odometry_resets()}};
-  json["position_ned_m"] = nullptr;
-  json["velocity_ned_m_s"] = nullptr;
-  json["attitude_rad"] = nullptr;
-  if (view.estimate.seen()) {
-    json["position_ned_m"] = view.estimate.message.position_ned();
-    json["velocity_ned_m_s"] = view.estimate.message.velocity_ned();
-    const math::EulerAngles attitude =
-        math::euler_angles(messages::wire::quaternion(view.estimate.message.q_ned_from_frd()));
-    json["attitude_rad"] = {
-        {"roll", attitude.roll_rad}, {"pitch", attitude.pitch_rad}, {"yaw", attitude.heading.yaw_rad}};
-    json["poses"] = {{"fault", pose_fault_name(view.estimate.message.pose_fault())},
-                     {"accepted", view.estimate.message.poses_accepted()},
-                     {"refused", view.estimate.message.poses_refused()},
-                     {"resets", view.estimate.message.resets()}};
-  }
-  json["battery"] = nullptr;
-  if (view.battery.seen()) {
-    const auto& battery = view.battery.message;
-    json["battery"] = {{"voltage_v", battery.voltage_v()},
-                       {"current_a", battery.current_a()},
-                       {"charge", battery.state_of_charge()}};
-  }
-  json["mission"] = {
-      {"id", mission.mission_id()},
-      {"state", mission_state_name(mission.state())},
-      {"item", mission.state() == msg::MissionStatus_Constants::NONE ? 0 : mission.item_index() + 1},
-      {"items", mission.item_count()},
-      {"reason", mission.reason().c_str()}};
-  json["request"] = nullptr;
-  if (control.request().state() != msg::RequestStatus_Constants::UNKNOWN) {
-    json["request"] = {{"kind", kind_name(control.request())},
-                       {"state", state_name(control.request())},
-                       {"progress", control.request().progress()},
-                       {"result", control.request().result().c_str()}};
-  }
-  json["control"] = {{"level", levels_text(control.control_level())},
-                     {"rate_hz", control.rate_hz()},
-                     {"cycles", control.cycles()},
-                     {"deadline_misses", control.deadline_misses()},
-                     {"step_time_max_us", control.step_time_max_us()},
-                     {"realtime_scheduling", control.realtime_scheduling()}};
-  json["loop_delay_s"] = {{"p50", measured_or_null(control.loop_delay_p50_s())},
-                          {"p95", measured_or_null(control.loop_delay_p95_s())},
-                          {"margin", measured_or_null(control.delay_margin_s())},
-                          {"near_margin", control.delay_near_margin()}};
-  json["clock"] = nullptr;
-  if (view.clock.seen()) {
-    const msg::ClockStatus& clock = view.clock.message;
-    json["clock"] = {{"known", clock.known()},
-                     {"offset_s", 1e-9 * static_cast<double>(clock.offset_ns())},
-                     {"uncertainty_s", 1e-9 * clock.uncertainty_ns()},
-                     {"drift", clock.drift()},
-                     {"drift_uncertainty", clock.drift_uncertainty()},
-                     {"round_trip_s", 1e-9 * clock.round_trip_ns()},
-                     {"steps", clock.steps()}};
-  }
-  json["settings"] = {{"name", control.settings().c_str()},
-                      {"progress", control.gains_progress()},
-                      {"gains", to_json(control.gains())}};
-  json["controllers"] = controllers_json(controllers_of(view, now));
-  json["vehicle_info"] = nullptr;
-  if (view.vehicle.seen()) {
-    const auto& info = view.vehicle.message;
-    json["vehicle_info"] = {{"name", info.name().c_str()},
-                            {"simulated", info.simulated()},
-                            {"autopilot", info.autopilot().c_str()},
-                            {"imu_rate_hz", info.imu_rate_hz()},
-                            {"control_levels", levels_text(info.control_levels())},
-                            {"rotors_running", info.rotors_running()},
-                            {"fault", info.fault().c_str()},
-                            {"sense_to_actuate_us",
-                             {{"p50", info.sense_to_actuate_p50_us()},
-                              {"p99", info.sense_to_actuate_p99_us()},
-                              {"max", info.sense_to_actuate_max_us()}}}};
-  }
-  json["rates_hz"] = {{"estimate", rates.estimate_hz},
-                      {"reference", rates.reference_hz},
-                      {"battery", rates.battery_hz},
-                      {"ground_truth", rates.ground_truth_hz}};
-  json["ages_s"] = {
-      {"control_status", age_of(view.control, now)}, {"vehicle_info", age_of(view.vehicle, now)},
-      {"estimate", age_of(view.estimate, now)},      {"reference", age_of(view.reference, now)},
-      {"battery", age_of(view.battery, now)},        {"ground_truth", age_of(view.truth, now)}};
-  nlohmann::ordered_json peers = nlohmann::ordered_json::object();
-  for (const auto& [name, count] : view.peers) peers[name] = count > 0;
-  json["peers_alive"] = peers;
-  if (!view.control.seen()) {  // an autopilot flies in place of control
-    for (const char* of_control : {"source_conflict", "mode", "reason", "airborne", "has_pose", "mission",
-                                   "request", "control", "loop_delay_s", "settings"})
-      json[of_control] = nullptr;
-  }
-  return json;
 }
 
 // "p50 2 ms, p95 2 ms, unstable from 52 ms on".
@@ -270,19 +82,8 @@ void print_vehicle(const msg::VehicleInfo& info) {
       info.fault().size() > 0 ? "; FAULT: " : "", info.fault().c_str());
 }
 
-void print(const View& view, const TopicRates& rates, const CommandOptions& options) {
-  const auto now = Clock::now();
+void print_motion(const View& view, Clock::time_point now) {
   const auto& control = view.control.message;
-  const auto& mission = view.mission.message;
-  const std::vector<Silence> silences = silences_of(view, now);
-  for (const Silence& silence : silences)
-    print_alarm(stdout, to_string(silence, std::chrono::system_clock::now()));
-  if (control.source_conflict().size() > 0) print_alarm(stdout, control.source_conflict().c_str());
-  if (control.delay_near_margin())
-    print_alarm(stdout, "the delay of the loop is near what makes it unstable");
-  std::printf("%s in domain %d: %s%s (%s), %s\n", options.network.vehicle.c_str(), options.network.domain,
-              control_is_silent(silences) ? "last known: " : "", mode_name(control.mode()),
-              control.reason().c_str(), control.airborne() ? "airborne" : "on the ground");
   if (view.estimate.seen()) {
     const auto& p = view.estimate.message.position_ned();
     const auto& v = view.estimate.message.velocity_ned();
@@ -304,7 +105,9 @@ void print(const View& view, const TopicRates& rates, const CommandOptions& opti
   std::printf("\n");
   const std::string odometry = odometry_text(control);
   if (!odometry.empty()) std::printf("  odometry  %s\n", odometry.c_str());
-  print_battery(view);
+}
+
+void print_plan(const msg::ControlStatus& control, const msg::MissionStatus& mission) {
   if (mission.state() != msg::MissionStatus_Constants::NONE) {
     std::printf("  mission   %s, item %u of %u\n", mission_state_name(mission.state()),
                 mission.item_index() + 1, mission.item_count());
@@ -314,6 +117,10 @@ void print(const View& view, const TopicRates& rates, const CommandOptions& opti
     const char* const result = request.result().size() > 0 ? request.result().c_str() : state_name(request);
     std::printf("  request   %s: %s, %.0f %%\n", kind_name(request), result, 100.0 * request.progress());
   }
+}
+
+void print_control(const View& view) {
+  const auto& control = view.control.message;
   std::printf(
       "  control   level %s, %.1f Hz since the rotors started, %llu of %llu steps late, longest step %.0f "
       "us%s\n",
@@ -333,6 +140,24 @@ void print(const View& view, const TopicRates& rates, const CommandOptions& opti
       std::printf(", the gains change to it: %.0f %%", 100.0 * control.gains_progress());
     std::printf("\n");
   }
+}
+
+void print(const View& view, const TopicRates& rates, const CommandOptions& options) {
+  const auto now = Clock::now();
+  const auto& control = view.control.message;
+  const std::vector<Silence> silences = silences_of(view, now);
+  for (const Silence& silence : silences)
+    print_alarm(stdout, to_string(silence, std::chrono::system_clock::now()));
+  if (control.source_conflict().size() > 0) print_alarm(stdout, control.source_conflict().c_str());
+  if (control.delay_near_margin())
+    print_alarm(stdout, "the delay of the loop is near what makes it unstable");
+  std::printf("%s in domain %d: %s%s (%s), %s\n", options.network.vehicle.c_str(), options.network.domain,
+              control_is_silent(silences) ? "last known: " : "", mode_name(control.mode()),
+              control.reason().c_str(), control.airborne() ? "airborne" : "on the ground");
+  print_motion(view, now);
+  print_battery(view);
+  print_plan(control, view.mission.message);
+  print_control(view);
   print(controllers_of(view, now));
   if (view.vehicle.seen()) print_vehicle(view.vehicle.message);
   std::printf("  rates     estimate %.0f Hz, reference %.0f Hz, battery %.0f Hz, ground truth %.0f Hz\n",
@@ -342,7 +167,7 @@ void print(const View& view, const TopicRates& rates, const CommandOptions& opti
               age_text(view.estimate, now).c_str(), age_text(view.battery, now).c_str());
 }
 
-// Of a vehicle that an autopilot flies in place of control.
+// True if an autopilot flies the vehicle in place of control.
 bool is_flown_by_autopilot(const View& view) {
   return !view.control.seen() && view.vehicle.seen() && view.vehicle.message.autopilot().size() > 0;
 }
@@ -387,7 +212,7 @@ int show_status(const StatusOptions& options) {
   const View after = client.view();
   const TopicRates rates = rates_between(before, after, options.watch_s);
   if (options.json) {
-    std::printf("%s\n", to_json(after, rates, options).dump(2).c_str());
+    std::printf("%s\n", status_json(after, rates, options).dump(2).c_str());
   } else if (is_flown_by_autopilot(after)) {
     print_flown_by_autopilot(after, rates, options);
   } else {

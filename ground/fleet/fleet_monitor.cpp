@@ -20,7 +20,7 @@ constexpr double kSpare_s = 4.0 * RightOfWay::kCell_s;  // one that stands goes 
 constexpr double kAside = 1.5;       // a vehicle steps aside to this clearance of the column
 constexpr double kMargin = 1.1;      // clearance to which others keep away from a column
 constexpr double kBackMargin = 1.3;  // clearance of a way back that is begun; kMargin of one that is gone on
-// The same of those that stand. Between the places on their paths is more than 1 (right_of_way.hpp).
+// The same clearances for vehicles that stand. Between the places on their paths it is above 1 (right_of_way.hpp).
 constexpr double kStandingBackMargin = 1.02, kStandingMargin = 1.0;
 constexpr double kBackSpeed = 0.3;   // m/s, the least on the way back to the path, at its end stop_s more
 constexpr double kWayStep_m = 0.05;  // between the places of a way
@@ -125,7 +125,7 @@ FleetMonitor::Status FleetMonitor::status_of(std::size_t i, const VehicleNews& n
   return news.flies_plan && is_near && !news.rotors_off ? Status::kOnPath : Status::kOffPath;
 }
 
-// Where a vehicle that was sent aside may have left its path.
+// The places at which vehicle i, which was sent aside, may have left its path.
 FleetMonitor::Places FleetMonitor::left_places(std::size_t i) const {
   const FlightPath& path = vehicles_[i].path;
   Places places = {path.at(left_s_[i])};
@@ -136,7 +136,7 @@ FleetMonitor::Places FleetMonitor::left_places(std::size_t i) const {
   return places;
 }
 
-// From a place straight to where it has left its path.
+// The places on the straight way back of vehicle i from a place to its path.
 FleetMonitor::Places FleetMonitor::way_back(std::size_t i, const Eigen::Vector3d& from_ned) const {
   Places way;
   for (const Eigen::Vector3d& left_ned : left_places(i)) add_way(from_ned, left_ned, way);
@@ -178,14 +178,14 @@ bool FleetMonitor::is_near(std::size_t i, const Eigen::Vector3d& place_ned, std:
   return clearance(vehicles_[i].around, vehicles_[of].around, at_ned - place_ned) < share;
 }
 
-// The same, of one that is at top_ned or sinks from there.
+// The same for a vehicle `of` that is at top_ned or sinks from there.
 bool FleetMonitor::in_column(std::size_t i, const Eigen::Vector3d& place_ned, std::size_t of,
                              const Eigen::Vector3d& top_ned, double share) const {
   const Eigen::Vector3d nearest(top_ned.x(), top_ned.y(), std::max(place_ned.z(), top_ned.z()));
   return is_near(i, place_ned, of, nearest, share);
 }
 
-// The same, of one that may sink from there, or not.
+// The same for a vehicle `of` at at_ned that sinks from there, if it may sink in this scene.
 bool FleetMonitor::touches(std::size_t i, const Eigen::Vector3d& place_ned, std::size_t of,
                            const Eigen::Vector3d& at_ned, double share, const Scene& scene) const {
   return may_sink(of, scene) ? in_column(i, place_ned, of, at_ned, share)
@@ -230,7 +230,8 @@ Eigen::Vector3d FleetMonitor::place_aside(std::size_t i, const Eigen::Vector3d& 
   return beside(0, 1.0);
 }
 
-// Of two off their paths, one that the monitor has sent there yields to one that is there of its own accord.
+// True if vehicle i yields to vehicle `of`. If both are off their paths, one that the monitor has sent there yields to one
+// that is there of its own accord.
 bool FleetMonitor::yields(std::size_t i, std::size_t of, const Scene& scene) const {
   if (scene.status[i] == Status::kOnPath || scene.status[of] == Status::kLost) return true;
   const bool is_sent = way_[i] != Way::kPath;
@@ -239,7 +240,7 @@ bool FleetMonitor::yields(std::size_t i, std::size_t of, const Scene& scene) con
   return i > of;
 }
 
-// From one that is off its path.
+// The others keep away from vehicle `of`, which is off its path.
 void FleetMonitor::keep_away(std::size_t of, const Scene& scene, std::vector<Order>& orders) const {
   for (std::size_t i = 0; i < vehicles_.size(); ++i) {
     const Status status = scene.status[i];
@@ -278,8 +279,8 @@ void FleetMonitor::wait_for_late(const Scene& scene, std::vector<Order>& orders)
   }
 }
 
-// Who is on a way of vehicle i, above it, or comes there meanwhile: nobody, if it may go. Where it is already nearer to another
-// one, it may go away from that.
+// The vehicle that is on a way of vehicle i, above it, or comes there meanwhile; nullopt if vehicle i may go. Where it is
+// already nearer to another one, it may go away from that.
 std::optional<std::size_t> FleetMonitor::blocker(std::size_t i, const Places& way, bool has_begun,
                                                  const Scene& scene, const std::vector<Order>& orders) const {
   const Eigen::Vector3d& here = scene.news[i].position_ned;
@@ -340,7 +341,7 @@ std::optional<Eigen::Vector3d> FleetMonitor::place_beside(std::size_t i, std::si
   return best;
 }
 
-// To the next one that is aside. Each searches in its turn, which bounds the work of a step.
+// The turn passes to the next vehicle that is aside. Each searches in its turn, which bounds the work of a step.
 void FleetMonitor::pass_turn() {
   for (std::size_t k = 0; k < vehicles_.size(); ++k) {
     turn_ = (turn_ + 1) % vehicles_.size();
@@ -348,7 +349,7 @@ void FleetMonitor::pass_turn() {
   }
 }
 
-// Of a vehicle that the monitor has sent aside.
+// Vehicle i, which the monitor has sent aside, returns to its path when nobody is in its way.
 void FleetMonitor::send_back(std::size_t i, const Scene& scene, std::vector<Order>& orders) {
   const Eigen::Vector3d& here = scene.news[i].position_ned;
   const std::optional<std::size_t> in_the_way =
@@ -372,7 +373,7 @@ void FleetMonitor::send_back(std::size_t i, const Scene& scene, std::vector<Orde
   }
 }
 
-// Of a vehicle that waits aside: one that was sent aside to its way back, and waits too, goes elsewhere.
+// Vehicle i waits aside. Another one that was sent aside to its way back, and waits too, goes elsewhere.
 void FleetMonitor::make_way_back(std::size_t i, const Scene& scene, std::vector<Order>& orders) {
   const std::size_t j = orders[i].because_of;
   const bool both_wait = orders[j].kind == Order::Kind::kPause && stands(i, scene) && stands(j, scene);

@@ -20,7 +20,7 @@ class FlightPath {
     double end_s() const { return start_s + segment.duration_s; }
   };
 
-  // Of pieces without gaps, the first at 0 s; at least one.
+  // pieces: at least one, without gaps between them, the first at 0 s.
   explicit FlightPath(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {}
 
   // start_ned: m, where the vehicle stands on the ground, z = 0, until its first leg. lands: the mission's last item is a

@@ -43,7 +43,7 @@ double longest_skew_s(const std::vector<FormationVehicle>& vehicles,
                       const std::vector<Eigen::Vector3d>& targets_ned, FormationMove move,
                       const Ellipsoid& safety, double longest_s);
 
-// Of each vehicle: another one on whose place it would come down if it landed straight, that stands there or flies lower.
+// For each vehicle another one on whose place it would come down if it landed straight, that stands there or flies lower.
 std::vector<std::optional<std::size_t>> landing_obstacles(const std::vector<FormationVehicle>& vehicles,
                                                           const Ellipsoid& safety);
 

@@ -61,7 +61,7 @@ RightOfWay::RightOfWay(const std::vector<Vehicle>& vehicles)
         }
         awaited[k] = std::max(m, -1);
       }
-      // What it would meet while it lands, it waits for before.
+      // A vehicle cannot wait while it lands: it waits before its landing for every vehicle that it would meet there.
       const auto landing = awaited.begin() + static_cast<std::ptrdiff_t>(
                                                  std::min(cell_of(vehicles[i].lands_s), awaited.size() - 1));
       *landing = *std::max_element(landing, awaited.end());

@@ -21,7 +21,7 @@ class TopicPublishers {
   bool publish(const std::string& name, mcap::ByteView payload);
   // True if each topic has a reader.
   bool matched() const;
-  // Of a reliable topic: waits until all matched readers have all samples. Returns false after the timeout.
+  // Waits until all matched readers of a reliable topic have all samples. Returns false after the timeout.
   bool wait_until_received(const std::string& name, std::chrono::milliseconds timeout);
 
  private:

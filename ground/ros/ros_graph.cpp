@@ -43,7 +43,7 @@ struct Process {
   fastdds::DataWriter* announcer = nullptr;
 };
 
-// Of a node: the numbers of its endpoints.
+// The numbers of the endpoints of a node.
 struct Endpoints {
   std::vector<GUID_t> readers, writers;
 };

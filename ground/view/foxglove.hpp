@@ -16,7 +16,7 @@
 
 namespace swiftlet::ground::foxglove {
 
-// Of which a client must offer one. The first is the newer name of the same protocol.
+// A client must offer one of these. The first is the newer name of the same protocol.
 constexpr std::array<const char*, 2> kSubprotocols = {"foxglove.sdk.v1", "foxglove.websocket.v1"};
 
 struct Channel {

@@ -3,13 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
-#include <optional>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
-#include "swiftlet/identification/flight/command_model.hpp"
+#include "swiftlet/identification/flight/command_fit.hpp"
 #include "swiftlet/identification/flight/command_prediction.hpp"
 #include "swiftlet/identification/flight/flight_results.hpp"
 
@@ -17,7 +13,6 @@ namespace swiftlet::identification {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t kCurvePoints = 41;
@@ -29,103 +24,6 @@ constexpr double kAtOdds = 1.5;         // Birge's ratio of the lags above which
 constexpr double kBatteryKnown = 0.5;
 constexpr double kOneRate = 0.1;      // relative difference of the sample periods of logs
 constexpr double kOfLittleUse = 0.1;  // weight of the commands in a forecast that is reported
-
-struct CommandFit {
-  std::unique_ptr<CommandModel> model;
-  SeriesFit fit;
-
-  const VectorXd& x() const { return fit.parameters; }
-};
-
-CommandFit fit_responses(const std::vector<FlightSeries>& flights, const plant::Vehicle& base,
-                         std::vector<Response> responses, std::optional<KnownThrust> known,
-                         const std::vector<const CommandFit*>& before,
-                         const std::function<void()>& progress) {
-  CommandFit out;
-  out.model = std::make_unique<CommandModel>(flights, base, std::move(responses), std::move(known));
-  SeriesProblem problem = out.model->problem(progress);
-  for (const CommandFit* const fit : before)
-    problem.start = started_from(*fit->model, fit->x(), *out.model, problem.start);
-  out.fit = fit_series(problem);
-  return out;
-}
-
-KnownThrust thrust_of(const CommandFit& fit) {
-  KnownThrust out{fit.model->curve(fit.x()), {}};
-  for (std::size_t flight = 0; flight < fit.model->flights().size(); ++flight)
-    out.drift.push_back(fit.model->drift(fit.x(), flight));
-  return out;
-}
-
-// Fits specific force, roll and pitch alone. Yaw does not determine the lag: the rotors' own inertia has a
-// similar effect there.
-std::vector<CommandFit> fit_alone(const std::vector<FlightSeries>& flights, const plant::Vehicle& base,
-                                  const std::function<void()>& progress) {
-  std::vector<CommandFit> out;
-  out.push_back(fit_responses(flights, base, {Response::kForce}, std::nullopt, {}, progress));
-  const KnownThrust thrust = thrust_of(out[0]);
-  for (const Response response : {Response::kRoll, Response::kPitch})
-    out.push_back(fit_responses(flights, base, {response}, thrust, {}, progress));
-  return out;
-}
-
-// Adds the information of a fit to that of all parameters, for those of the same name.
-void add_information(const CommandFit& from, const CommandModel& to, MatrixXd& information,
-                     VectorXd& weighted) {
-  const std::vector<FlightParameter>& theirs = from.model->layout().parameters;
-  const std::vector<FlightParameter>& ours = to.layout().parameters;
-  const MatrixXd own = from.fit.covariance.ldlt().solve(MatrixXd::Identity(from.x().size(), from.x().size()));
-  MatrixXd names = MatrixXd::Zero(static_cast<Index>(theirs.size()), static_cast<Index>(ours.size()));
-  for (std::size_t i = 0; i < theirs.size(); ++i) {
-    for (std::size_t j = 0; j < ours.size(); ++j) {
-      if (theirs[i].name == ours[j].name) names(static_cast<Index>(i), static_cast<Index>(j)) = 1.0;
-    }
-  }
-  information += names.transpose() * own * names;
-  weighted += names.transpose() * own * from.x();
-}
-
-// The fits of force and of moments as one of all responses: the lag, which both have, is their weighted mean, and what is
-// correlated with it follows. The thrust over the command is that of the force alone: in the moments, feedback and effects
-// that the model omits would pass for a slope of it. The gains are inverse to the slope: they follow where the common lag moves
-// it, and its uncertainty is added to theirs.
-CommandFit combined(const std::vector<FlightSeries>& flights, const plant::Vehicle& base,
-                    const CommandFit& force, const CommandFit& moments) {
-  CommandFit out;
-  out.model = std::make_unique<CommandModel>(
-      flights, base, std::vector<Response>{kAllResponses.begin(), kAllResponses.end()}, std::nullopt);
-  const CommandLayout& l = out.model->layout();
-  const auto count = static_cast<Index>(l.parameters.size());
-  MatrixXd information = MatrixXd::Zero(count, count);
-  VectorXd weighted = VectorXd::Zero(count);
-  add_information(force, *out.model, information, weighted);
-  add_information(moments, *out.model, information, weighted);
-  // Scaled: the parameters have units of very different sizes.
-  const VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LDLT<MatrixXd> solver(scale.asDiagonal() * information * scale.asDiagonal());
-  out.fit.covariance =
-      scale.asDiagonal() * solver.solve(MatrixXd::Identity(count, count)) * scale.asDiagonal();
-  out.fit.parameters = out.fit.covariance * weighted;
-  // The noise stays as it was fitted: a step along its covariance can leave the range in which its filter is stable.
-  const auto noise = count - static_cast<Index>(out.model->physical_parameters().size());
-  out.fit.parameters.tail(noise) =
-      started_from(*force.model, force.x(), *out.model,
-                   started_from(*moments.model, moments.x(), *out.model, out.fit.parameters))
-          .tail(noise);
-  const double slope = out.fit.parameters[l.curve + 1];
-  const ThrustCurve of_moments = force.model->curve(force.x());
-  MatrixXd follows = MatrixXd::Identity(count, count);
-  for (int axis = 0; axis < 3; ++axis) {
-    out.fit.parameters[l.gain[axis]] *= of_moments.slope / slope;
-    out.fit.parameters[l.trim[axis]] *= of_moments.value / out.fit.parameters[l.curve];
-    follows(l.gain[axis], l.curve + 1) = -out.fit.parameters[l.gain[axis]] / slope;
-    follows(l.trim[axis], l.curve) = -out.fit.parameters[l.trim[axis]] / plant::kGravity;
-  }
-  out.fit.covariance = (follows * out.fit.covariance * follows.transpose()).eval();
-  out.fit.degrees_of_freedom = std::min(force.fit.degrees_of_freedom, moments.fit.degrees_of_freedom);
-  out.fit.converged = force.fit.converged && moments.fit.converged;
-  return out;
-}
 
 ParameterEstimate lag_of(const CommandFit& alone) {
   const Index lag = alone.model->layout().lag;
@@ -434,7 +332,7 @@ void identify_commands(FlightIdentification& out, const std::vector<FlightSeries
   for (const CommandFit& fit : alone) reject_negative_gains(fit.model->layout().gain, base, fit.fit);
   const CommandFit moments = fit_responses(flights, base, {Response::kRoll, Response::kPitch, Response::kYaw},
                                            thrust_of(alone[0]), {&alone[2], &alone[1]}, progress);
-  CommandFit all = combined(flights, base, alone[0], moments);
+  CommandFit all = combined_fit(flights, base, alone[0], moments);
   for (const CommandFit& fit : alone) out.lags.push_back(lag_of(fit));
   const Agreement lags = agreement(out.lags);
   if (lags.ratio > 1.0) widen(all.fit, all.model->layout().lag, lags.standard_error);

@@ -60,7 +60,7 @@ struct ThrustCurve {
   double slope_at(double command) const { return slope + 2.0 * (command - middle) * curvature; }
 };
 
-// Of a log: as the supply voltage falls, the thrust is that of the curve times 1 + per_s (t - middle_s).
+// The thrust over a log drifts as the supply voltage falls: it is that of the curve times 1 + per_s (t - middle_s).
 struct ThrustDrift {
   double per_s = 0.0;
   double middle_s = 0.0;

@@ -103,10 +103,53 @@ double combined(const Eigen::Vector3d& weights, const Start& start) {
   return weights[0] + weights[1] * (start.by_commands - start.now) + weights[2] * start.now;
 }
 
+// The errors of predictions from one block to the next.
+struct OneStepErrors {
+  Squares fitted;       // on the estimation set
+  Squares by_commands;  // on the validation set
+  Squares persistence;
+};
+
+OneStepErrors one_step_errors(const CommandModel& model, const std::vector<Forecast>& forecasts) {
+  OneStepErrors out;
+  const std::size_t between = blocks_of(kBetweenStartsS, model.sample_s());
+  for (std::size_t flight = 0; flight < forecasts.size(); ++flight) {
+    const std::vector<double>& measured = forecasts[flight].measured();
+    for (std::size_t block = between; block < model.blocks()[flight].estimation_set; ++block)
+      out.fitted.add(forecasts[flight].one_step_error(block));
+    for (std::size_t block = model.blocks()[flight].estimation_set; block < measured.size(); ++block) {
+      out.by_commands.add(forecasts[flight].one_step_error(block));
+      out.persistence.add(measured[block] - measured[block - 1]);
+    }
+  }
+  return out;
+}
+
+// Predictions over one horizon, of all flights.
+struct HorizonStarts {
+  std::vector<Start> estimation_set;
+  std::vector<Start> validation_set;
+};
+
+HorizonStarts horizon_starts(const CommandModel& model, const std::vector<Forecast>& forecasts,
+                             double horizon_s) {
+  const std::size_t ahead = blocks_of(horizon_s, model.sample_s());
+  const std::size_t between = blocks_of(kBetweenStartsS, model.sample_s());
+  HorizonStarts out;
+  for (std::size_t flight = 0; flight < forecasts.size(); ++flight) {
+    const BlockedFlight& blocks = model.blocks()[flight];
+    const std::vector<Start> before =
+        starts(forecasts[flight], between, blocks.estimation_set, ahead, between);
+    const std::vector<Start> after =
+        starts(forecasts[flight], blocks.estimation_set, blocks.size(), ahead, between);
+    out.estimation_set.insert(out.estimation_set.end(), before.begin(), before.end());
+    out.validation_set.insert(out.validation_set.end(), after.begin(), after.end());
+  }
+  return out;
+}
+
 void predict(const CommandModel& model, const VectorXd& x, std::size_t quantity, CommandPredictions& out) {
   const Response response = kQuantityOrder[quantity];
-  const double sample_s = model.sample_s();
-  const std::size_t between = blocks_of(kBetweenStartsS, sample_s);
   std::vector<Forecast> forecasts;
   for (std::size_t flight = 0; flight < model.flights().size(); ++flight)
     forecasts.emplace_back(model, x, flight, response);
@@ -114,44 +157,22 @@ void predict(const CommandModel& model, const VectorXd& x, std::size_t quantity,
   PredictionError error;
   error.quantity = kQuantities[quantity];
   error.unit = response == Response::kForce ? "m/s^2" : "rad/s";
-  Squares one_step;
-  Squares persistence_one_step;
-  Squares fitted_one_step;
-  for (std::size_t flight = 0; flight < forecasts.size(); ++flight) {
-    const std::vector<double>& measured = forecasts[flight].measured();
-    for (std::size_t block = between; block < model.blocks()[flight].estimation_set; ++block)
-      fitted_one_step.add(forecasts[flight].one_step_error(block));
-    for (std::size_t block = model.blocks()[flight].estimation_set; block < measured.size(); ++block) {
-      one_step.add(forecasts[flight].one_step_error(block));
-      persistence_one_step.add(measured[block] - measured[block - 1]);
-    }
-  }
-  error.one_step = one_step.rms();
-  error.persistence_one_step = persistence_one_step.rms();
+  const OneStepErrors one_step = one_step_errors(model, forecasts);
+  error.one_step = one_step.by_commands.rms();
+  error.persistence_one_step = one_step.persistence.rms();
 
   for (const double horizon_s : kHorizonsS) {
-    const std::size_t ahead = blocks_of(horizon_s, sample_s);
+    const HorizonStarts starts = horizon_starts(model, forecasts, horizon_s);
+    if (horizon_s == kAheadS && response != Response::kForce) {
+      Squares change;
+      for (const Start& start : starts.estimation_set) change.add(start.then - start.now);
+      out.excitations[quantity] = {error.quantity, change.rms(), one_step.fitted.rms()};
+    }
+    const Eigen::Vector3d weights = best_weights(starts.estimation_set);
     Squares by_commands;
     Squares persistence;
     Squares best;
-    std::vector<Start> estimation_set;
-    std::vector<Start> validation_set;
-    for (std::size_t flight = 0; flight < forecasts.size(); ++flight) {
-      const BlockedFlight& blocks = model.blocks()[flight];
-      const std::vector<Start> before =
-          starts(forecasts[flight], between, blocks.estimation_set, ahead, between);
-      const std::vector<Start> after =
-          starts(forecasts[flight], blocks.estimation_set, blocks.size(), ahead, between);
-      estimation_set.insert(estimation_set.end(), before.begin(), before.end());
-      validation_set.insert(validation_set.end(), after.begin(), after.end());
-    }
-    if (horizon_s == kAheadS && response != Response::kForce) {
-      Squares change;
-      for (const Start& start : estimation_set) change.add(start.then - start.now);
-      out.excitations[quantity] = {error.quantity, change.rms(), fitted_one_step.rms()};
-    }
-    const Eigen::Vector3d weights = best_weights(estimation_set);
-    for (const Start& start : validation_set) {
+    for (const Start& start : starts.validation_set) {
       by_commands.add(start.then - start.by_commands);
       persistence.add(start.then - start.now);
       best.add(start.then - combined(weights, start));

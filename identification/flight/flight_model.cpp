@@ -196,90 +196,97 @@ SeriesProblem FlightModel::problem(const std::function<void()>& on_iteration) co
   return out;
 }
 
+// The residuals of a segment's rows, averaged over its blocks: specific force, rates, and with measured rotor speeds those of
+// each rotor. Returns the error of the mean speed of all rotors, rad/s; 0 without measured speeds.
+double FlightModel::segment_residuals(const VectorXd& x, std::size_t f, const Rows& segment,
+                                      const Prediction& by_model, Blocks blocks, VectorXd& out) const {
+  const FlightLog& log = *flights_[f].log;
+  const Index rotors = by_model.speeds.empty() ? 0 : base_.rotor_count();
+  Vector3d predicted = Vector3d::Zero();
+  Vector3d before = Vector3d::Zero();
+  double mean_error = 0.0;
+  for (std::size_t row = segment.first; row < segment.last; ++row) {
+    const std::size_t i = row - by_model.first_row;
+    const std::size_t block = (row - segment.first) / block_[f];
+    const std::size_t in_block = std::min(block_[f], segment.size() - block * block_[f]);
+    const double share = 1.0 / static_cast<double>(in_block);
+    const Index at = blocks.begin + static_cast<Index>(block);
+    const Vector3d force = log.specific_force_frd[row] - by_model.drive.specific_force[i] - by_model.bias;
+    const Vector3d slope =
+        rate_derivative(by_model.inertia, by_model.drive.acceleration[i], log.body_rates_frd[row]);
+    if (row > segment.first) predicted += 0.5 * (log.time_s[row] - log.time_s[row - 1]) * (before + slope);
+    before = slope;
+    const Vector3d rate = log.body_rates_frd[row] - predicted;
+    for (Index axis = 0; axis < 3; ++axis) {
+      out[axis * blocks.of_all + at] += share * force[axis];
+      out[(3 + axis) * blocks.of_all + at] += share * rate[axis];
+    }
+    if (rotors == 0) continue;
+    // The supply voltage sags with every change of thrust, faster than it is sampled. This error is
+    // common to all rotors: the residuals of single rotors omit their mean.
+    const plant::PerRotor error =
+        speed_errors(log.rotor_speeds[row], by_model.speeds[i], x[layout_.speed_scale], base_.rotor_count());
+    const double common = std::accumulate(error.begin(), error.end(), 0.0) / base_.rotor_count();
+    for (Index rotor = 0; rotor < rotors; ++rotor)
+      out[(6 + rotor) * blocks.of_all + at] += share * (error[static_cast<std::size_t>(rotor)] - common);
+    mean_error += common / static_cast<double>(segment.size());
+  }
+  return mean_error;
+}
+
+// Vertical part of dv/dt = R (f - b) + g, averaged over each segment.
+void FlightModel::vertical_residuals(const VectorXd& x, std::size_t f, Index& next, VectorXd& out) const {
+  const FlightSeries& flight = flights_[f];
+  const FlightLog& log = *flight.log;
+  const Vector3d bias = offset(x, f);
+  const auto vertical = [&](std::size_t row) {
+    return (flight.attitude[row] * (log.specific_force_frd[row] - bias)).z() + plant::kGravity;
+  };
+  for (const Rows& segment : flight.segments) {
+    double gained = 0.0;
+    for (std::size_t row = segment.first + 1; row < segment.last; ++row)
+      gained += 0.5 * (log.time_s[row] - log.time_s[row - 1]) * (vertical(row) + vertical(row - 1));
+    const double length_s = log.time_s[segment.last - 1] - log.time_s[segment.first];
+    const double flown = flight.velocity_ned[segment.last - 1].z() - flight.velocity_ned[segment.first].z();
+    out[next++] = (flown - gained) / length_s;
+  }
+}
+
 void FlightModel::residuals(const VectorXd& x, VectorXd& out) const {
-  Index rows = 0;  // number of blocks of all flights
+  Blocks blocks;
   for (std::size_t f = 0; f < flights_.size(); ++f) {
     for (const Rows& segment : flights_[f].segments)
-      rows += static_cast<Index>(blocks_in(segment, block_[f]));
+      blocks.of_all += static_cast<Index>(blocks_in(segment, block_[f]));
   }
   const bool with_speeds = source() == SpeedSource::kMeasured;
-  const Index rotors = with_speeds ? base_.rotor_count() : 0;
-  Index begin = 0;  // first block of the segment
-  Index next = (6 + rotors) * rows;
-  const Vector3d moments_of_inertia = inertia(x);
+  Index next = (6 + (with_speeds ? base_.rotor_count() : 0)) * blocks.of_all;
   out.head(next).setZero();
 
   for (std::size_t f = 0; f < flights_.size(); ++f) {
     const FlightSeries& flight = flights_[f];
-    const FlightLog& log = *flight.log;
     if (flight.segments.empty()) continue;
     const Rows all{flight.segments.front().first, flight.segments.back().last};
-    const Drive by_model = drive(x, f, all);
-    const Vector3d bias = offset(x, f);
-    std::vector<plant::PerRotor> modelled;
+    Prediction by_model{all.first, drive(x, f, all), inertia(x), offset(x, f), {}};
     if (with_speeds)
-      modelled = lagged_speeds(log, flight.steady_speeds, all, x[layout_.lag], x[layout_.motor_delay]);
+      by_model.speeds =
+          lagged_speeds(*flight.log, flight.steady_speeds, all, x[layout_.lag], x[layout_.motor_delay]);
 
     for (const Rows& segment : flight.segments) {
-      const auto blocks = static_cast<Index>(blocks_in(segment, block_[f]));
-      Vector3d predicted = Vector3d::Zero();
-      Vector3d before = Vector3d::Zero();
-      double mean_error = 0.0;  // rad/s, of the mean speed of all rotors
-      for (std::size_t row = segment.first; row < segment.last; ++row) {
-        const std::size_t i = row - all.first;
-        const std::size_t block = (row - segment.first) / block_[f];
-        const std::size_t in_block = std::min(block_[f], segment.size() - block * block_[f]);
-        const double share = 1.0 / static_cast<double>(in_block);
-        const Index at = begin + static_cast<Index>(block);
-        const Vector3d force = log.specific_force_frd[row] - by_model.specific_force[i] - bias;
-        const Vector3d slope =
-            rate_derivative(moments_of_inertia, by_model.acceleration[i], log.body_rates_frd[row]);
-        if (row > segment.first)
-          predicted += 0.5 * (log.time_s[row] - log.time_s[row - 1]) * (before + slope);
-        before = slope;
-        const Vector3d rate = log.body_rates_frd[row] - predicted;
-        for (Index axis = 0; axis < 3; ++axis) {
-          out[axis * rows + at] += share * force[axis];
-          out[(3 + axis) * rows + at] += share * rate[axis];
-        }
-        if (!with_speeds) continue;
-        // The supply voltage sags with every change of thrust, faster than it is sampled. This error is
-        // common to all rotors: the residuals of single rotors omit their mean.
-        const plant::PerRotor error =
-            speed_errors(log.rotor_speeds[row], modelled[i], x[layout_.speed_scale], base_.rotor_count());
-        const double common = std::accumulate(error.begin(), error.end(), 0.0) / base_.rotor_count();
-        for (Index rotor = 0; rotor < rotors; ++rotor)
-          out[(6 + rotor) * rows + at] += share * (error[static_cast<std::size_t>(rotor)] - common);
-        mean_error += common / static_cast<double>(segment.size());
-      }
+      const auto count = static_cast<Index>(blocks_in(segment, block_[f]));
+      const double mean_error = segment_residuals(x, f, segment, by_model, blocks, out);
       if (with_speeds) out[next++] = mean_error;
       const auto window = static_cast<Index>(kBlocksInWindow);
-      for (Index from = 0; from < blocks; from += window) {
+      for (Index from = 0; from < count; from += window) {
         for (Index axis = 0; axis < 3; ++axis) {
-          auto rates = out.segment((3 + axis) * rows + begin + from, std::min(window, blocks - from));
+          auto rates =
+              out.segment((3 + axis) * blocks.of_all + blocks.begin + from, std::min(window, count - from));
           rates.array() -= rates.mean();
         }
       }
-      begin += blocks;
+      blocks.begin += count;
     }
   }
-  // Vertical part of dv/dt = R (f - b) + g, averaged over each segment.
-  for (std::size_t f = 0; f < flights_.size(); ++f) {
-    const FlightSeries& flight = flights_[f];
-    const FlightLog& log = *flight.log;
-    const Vector3d bias = offset(x, f);
-    const auto vertical = [&](std::size_t row) {
-      return (flight.attitude[row] * (log.specific_force_frd[row] - bias)).z() + plant::kGravity;
-    };
-    for (const Rows& segment : flight.segments) {
-      double gained = 0.0;
-      for (std::size_t row = segment.first + 1; row < segment.last; ++row)
-        gained += 0.5 * (log.time_s[row] - log.time_s[row - 1]) * (vertical(row) + vertical(row - 1));
-      const double length_s = log.time_s[segment.last - 1] - log.time_s[segment.first];
-      const double flown = flight.velocity_ned[segment.last - 1].z() - flight.velocity_ned[segment.first].z();
-      out[next++] = (flown - gained) / length_s;
-    }
-  }
+  for (std::size_t f = 0; f < flights_.size(); ++f) vertical_residuals(x, f, next, out);
 }
 
 }  // namespace swiftlet::identification

@@ -93,6 +93,22 @@ class FlightModel {
   Wrenches wrenches_of(const std::vector<plant::PerRotor>& speeds) const;
   Drive drive_by(const Eigen::VectorXd& parameters, std::size_t flight, const Rows& rows,
                  const Wrenches& for_force, const Wrenches& for_rates) const;
+  // What the model says of the rows of a flight.
+  struct Prediction {
+    std::size_t first_row;
+    Drive drive;
+    Eigen::Vector3d inertia;
+    Eigen::Vector3d bias;                 // of the accelerometer
+    std::vector<plant::PerRotor> speeds;  // with measured rotor speeds only
+  };
+  struct Blocks {
+    Eigen::Index begin = 0;   // first block of the segment
+    Eigen::Index of_all = 0;  // number of blocks of all flights
+  };
+  double segment_residuals(const Eigen::VectorXd& parameters, std::size_t f, const Rows& segment,
+                           const Prediction& by_model, Blocks blocks, Eigen::VectorXd& out) const;
+  void vertical_residuals(const Eigen::VectorXd& parameters, std::size_t f, Eigen::Index& next,
+                          Eigen::VectorXd& out) const;
   void residuals(const Eigen::VectorXd& parameters, Eigen::VectorXd& out) const;
 
   std::vector<FlightSeries> flights_;

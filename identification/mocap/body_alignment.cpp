@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <fmt/core.h>
 
+#include "swiftlet/identification/mocap/alignment_motion.hpp"
 #include "swiftlet/identification/mocap/motion_recording.hpp"
 #include "swiftlet/math/rotation_vector.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
@@ -16,29 +17,8 @@
 namespace swiftlet::identification {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Quaterniond;
 using Eigen::Vector3d;
-
-// Errors of a motion state, at the time of each pose, and of the parameters; index of the first component of each.
-constexpr int kMotion = 15;
-constexpr int kPosition = 0;
-constexpr int kVelocity = 3;
-constexpr int kAttitude = 6;  // rotation vector in body axes
-constexpr int kForceBias = 9;
-constexpr int kRateBias = 12;
-constexpr int kParameters = 9;
-constexpr int kMisalignment = 0;
-constexpr int kLeverArm = 3;
-constexpr int kVertical = 6;
-constexpr int kDelay = 8;
-
-using Motion = Eigen::Matrix<double, kMotion, 1>;
-using MotionMatrix = Eigen::Matrix<double, kMotion, kMotion>;
-using MotionParameters = Eigen::Matrix<double, kMotion, kParameters>;
-using Parameters = Eigen::Matrix<double, kParameters, 1>;
-using ParameterMatrix = Eigen::Matrix<double, kParameters, kParameters>;
-using Residual = Eigen::Matrix<double, 6, 1>;
+using namespace alignment;
 
 constexpr int kFirstIterations = 3;  // with the noise assumed at first
 constexpr int kConverged = 11;       // before, residuals of the IMU are those of the start
@@ -47,176 +27,18 @@ constexpr double kShortestStep = 1e-3;  // of the full one
 constexpr double kCorrelation_s = 0.5;  // longest that errors of poses are alike
 constexpr double kGate = 45.0;  // of squares of normalised residuals, 6 degrees of freedom: 1 of 1e7 poses
 constexpr double kMostRefused = 0.05;
-constexpr double kMostPositionNoise_m = 5e-3;  // of a pose
+constexpr double kLeastPositionNoise_m = 2e-5;  // of a pose
+constexpr double kMostPositionNoise_m = 5e-3;
+constexpr double kLeastOrientationNoise_rad = 1e-4;
 constexpr double kMostOrientationNoise_rad = 30e-3;
 constexpr double kMostForceNoise = 0.04;  // m/s^2/sqrt(Hz)
 constexpr double kMostRateNoise = 5e-3;   // rad/s/sqrt(Hz)
 constexpr double kTurning_rad_s = 0.05;   // least RMS of the rates at which they tell the delay of the poses
 constexpr double kKnownDelay_s = 1e-5;
 constexpr std::size_t kLeastPoses = 50;
-// Of the deviations: the derivatives are those at a motion that is itself estimated, whose noise passes for motion. With it,
-// the intervals of simulated flights hold the true values.
+// The deviations are larger by this factor: the derivatives are those at a motion that is itself estimated, and its noise
+// passes for motion. With it, the intervals of simulated flights hold the true values.
 constexpr double kAllowance = 1.25;
-
-// Least noise: that of usual sensors. That of the force is four times as large: it allows for vibration, and for noise of the
-// attitude that would pass for tilt.
-constexpr double kForceNoise = 1.6e-2;   // m/s^2/sqrt(Hz)
-constexpr double kRateNoise = 2e-4;      // rad/s/sqrt(Hz)
-constexpr double kForceBiasWalk = 1e-3;  // m/s^2/sqrt(s)
-constexpr double kRateBiasWalk = 1e-4;   // rad/s/sqrt(s)
-constexpr double kPositionNoise_m = 2e-5;
-constexpr double kOrientationNoise_rad = 1e-4;
-
-struct Noise {
-  double force = kForceNoise;  // density
-  double rate = kRateNoise;    // density
-  double position_m = 2e-4;    // of a pose, each axis
-  double orientation_rad = 1e-3;
-  double position_growth = 1.0;  // of variances, because errors of neighbouring poses are alike
-  double orientation_growth = 1.0;
-
-  Residual variances() const {
-    Residual out;
-    out << Vector3d::Constant(position_m * position_m * position_growth),
-        Vector3d::Constant(orientation_rad * orientation_rad * orientation_growth);
-    return out;
-  }
-};
-
-Matrix3d hat(const Vector3d& v) {
-  Matrix3d matrix;
-  matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return matrix;
-}
-
-struct State {
-  Vector3d position = Vector3d::Zero();
-  Vector3d velocity = Vector3d::Zero();
-  Quaterniond attitude = Quaterniond::Identity();
-  Vector3d force_bias = Vector3d::Zero();
-  Vector3d rate_bias = Vector3d::Zero();
-  Vector3d force = Vector3d::Zero();  // reading at the time, with bias
-  Vector3d rates = Vector3d::Zero();
-
-  Motion minus(const State& other) const {
-    Motion out;
-    out << position - other.position, velocity - other.velocity,
-        math::rotation_vector(other.attitude.conjugate() * attitude), force_bias - other.force_bias,
-        rate_bias - other.rate_bias;
-    return out;
-  }
-  void add(const Motion& error) {
-    position += error.segment<3>(kPosition);
-    velocity += error.segment<3>(kVelocity);
-    attitude = (attitude * math::rotation(error.segment<3>(kAttitude))).normalized();
-    force_bias += error.segment<3>(kForceBias);
-    rate_bias += error.segment<3>(kRateBias);
-  }
-};
-
-struct Sought {
-  Quaterniond misalignment = Quaterniond::Identity();  // vehicle attitude = pose attitude * misalignment
-  Vector3d lever_arm = Vector3d::Zero();
-  Eigen::Vector2d vertical = Eigen::Vector2d::Zero();
-  double delay_s = 0.0;
-
-  Vector3d gravity() const { return plant::kGravity * Vector3d(vertical.x(), vertical.y(), 1.0); }
-  Parameters vector() const {
-    Parameters out;
-    out << math::rotation_vector(misalignment), lever_arm, vertical, delay_s;
-    return out;
-  }
-  void add(const Parameters& error) {
-    misalignment = (misalignment * math::rotation(error.segment<3>(kMisalignment))).normalized();
-    lever_arm += error.segment<3>(kLeverArm);
-    vertical += error.segment<2>(kVertical);
-    delay_s += error[kDelay];
-  }
-};
-
-// The state after an interval, with the derivatives of its errors and their variances.
-struct Propagation {
-  State state;
-  MotionMatrix transition = MotionMatrix::Identity();
-  Eigen::Matrix<double, kMotion, 2> by_vertical = Eigen::Matrix<double, kMotion, 2>::Zero();
-  Motion variance = Motion::Zero();
-};
-
-Propagation propagate(const State& from, const MotionRecording::Interval& interval, const Sought& sought,
-                      const Noise& noise) {
-  Propagation out;
-  out.state = from;
-  const double dt = interval.duration_s;
-  out.variance.segment<3>(kForceBias).setConstant(kForceBiasWalk * kForceBiasWalk * dt);
-  out.variance.segment<3>(kRateBias).setConstant(kRateBiasWalk * kRateBiasWalk * dt);
-  if (interval.is_gap) {
-    out.variance.segment<3>(kPosition).setConstant(100.0);
-    out.variance.segment<3>(kVelocity).setConstant(100.0);
-    out.variance.segment<3>(kAttitude).setConstant(10.0);
-    return out;
-  }
-  Vector3d velocity_change = Vector3d::Zero();  // by specific force
-  for (const MotionRecording::Reading& reading : interval.readings) {
-    const Vector3d turn = reading.dt * (reading.rates - from.rate_bias);
-    const Vector3d force =
-        out.state.attitude * math::rotation(0.5 * turn) * (reading.force - from.force_bias);
-    const Vector3d acceleration = force + sought.gravity();
-    out.state.position += reading.dt * (out.state.velocity + 0.5 * reading.dt * acceleration);
-    out.state.velocity += reading.dt * acceleration;
-    out.state.attitude = out.state.attitude * math::rotation(turn);
-    velocity_change += reading.dt * force;
-  }
-  out.state.attitude.normalize();
-  const Matrix3d from_body = from.attitude.toRotationMatrix();
-  MotionMatrix& F = out.transition;
-  F.block<3, 3>(kVelocity, kAttitude) = -hat(velocity_change) * from_body;
-  F.block<3, 3>(kVelocity, kForceBias) = -dt * from_body;
-  F.block<3, 3>(kPosition, kVelocity) = dt * Matrix3d::Identity();
-  F.block<3, 3>(kPosition, kAttitude) = 0.5 * dt * F.block<3, 3>(kVelocity, kAttitude);
-  F.block<3, 3>(kPosition, kForceBias) = 0.5 * dt * F.block<3, 3>(kVelocity, kForceBias);
-  F.block<3, 3>(kAttitude, kAttitude) = (out.state.attitude.conjugate() * from.attitude).toRotationMatrix();
-  F.block<3, 3>(kAttitude, kRateBias) = -dt * Matrix3d::Identity();
-  out.by_vertical.block<2, 2>(kVelocity, 0) = dt * plant::kGravity * Eigen::Matrix2d::Identity();
-  out.by_vertical.block<2, 2>(kPosition, 0) = 0.5 * dt * dt * plant::kGravity * Eigen::Matrix2d::Identity();
-  const double force_variance = noise.force * noise.force * dt;
-  out.variance.segment<3>(kPosition).setConstant(force_variance * dt * dt / 3.0 + 1e-12);
-  out.variance.segment<3>(kVelocity).setConstant(force_variance);
-  out.variance.segment<3>(kAttitude).setConstant(noise.rate * noise.rate * dt);
-  return out;
-}
-
-// A pose minus that of the state, with the derivatives of the latter.
-struct Observation {
-  Residual residual;
-  Eigen::Matrix<double, 6, kMotion> by_motion = Eigen::Matrix<double, 6, kMotion>::Zero();
-  Eigen::Matrix<double, 6, kParameters> by_parameters = Eigen::Matrix<double, 6, kParameters>::Zero();
-};
-
-Observation observe(const FlightPose& pose, const State& state, const Sought& sought) {
-  const double delay_s = sought.delay_s;
-  const Vector3d rates = state.rates - state.rate_bias;
-  const Vector3d acceleration = state.attitude * (state.force - state.force_bias) + sought.gravity();
-  const Quaterniond ahead = math::rotation(delay_s * rates);
-  const Quaterniond attitude = state.attitude * ahead.conjugate();
-  const Vector3d position =
-      state.position - delay_s * state.velocity + 0.5 * delay_s * delay_s * acceleration;
-  Observation out;
-  out.residual << pose.position_ned - (position - attitude * sought.lever_arm),
-      math::rotation_vector(sought.misalignment * attitude.conjugate() * pose.q_ned_from_frd);
-  const Matrix3d from_vehicle = attitude.toRotationMatrix();
-  const Matrix3d swing = from_vehicle * hat(sought.lever_arm);
-  const Matrix3d turn = ahead.toRotationMatrix();
-  const Matrix3d body_from_vehicle = sought.misalignment.toRotationMatrix();
-  out.by_motion.block<3, 3>(0, kPosition).setIdentity();
-  out.by_motion.block<3, 3>(0, kVelocity) = -delay_s * Matrix3d::Identity();
-  out.by_motion.block<3, 3>(0, kAttitude) = swing * turn;
-  out.by_motion.block<3, 3>(3, kAttitude) = body_from_vehicle * turn;
-  out.by_parameters.block<3, 3>(0, kLeverArm) = -from_vehicle;
-  out.by_parameters.block<3, 1>(0, kDelay) = -state.velocity + delay_s * acceleration - swing * rates;
-  out.by_parameters.block<3, 3>(3, kMisalignment) = -body_from_vehicle;
-  out.by_parameters.block<3, 1>(3, kDelay) = -body_from_vehicle * rates;
-  return out;
-}
 
 // Least squares over all motion states and the parameters by Gauss-Newton. The normal equations are block-tridiagonal with the
 // parameters as a border; the states are eliminated one after the other.
@@ -289,15 +111,15 @@ class AlignmentFit {
     }
     if (residuals.size() < kLeastPoses) return;
     const auto count = 3.0 * static_cast<double>(residuals.size());
-    noise_.position_m = std::max(kPositionNoise_m, std::sqrt(squares.head<3>().sum() / count));
-    noise_.orientation_rad = std::max(kOrientationNoise_rad, std::sqrt(squares.tail<3>().sum() / count));
+    noise_.position_m = std::max(kLeastPositionNoise_m, std::sqrt(squares.head<3>().sum() / count));
+    noise_.orientation_rad = std::max(kLeastOrientationNoise_rad, std::sqrt(squares.tail<3>().sum() / count));
     const double period_s = (recording_.poses.back().time_s - recording_.poses.front().time_s) /
                             static_cast<double>(states_.size() - 1);
     noise_.position_growth = growth(residuals, 0, period_s);
     noise_.orientation_growth = growth(residuals, 3, period_s);
   }
 
-  // From the residuals alone: at least what was assumed at first.
+  // The noise of the IMU from the residuals alone, at least as much as was assumed at first.
   void learn_imu_noise() {
     double force = 0.0;
     double rate = 0.0;

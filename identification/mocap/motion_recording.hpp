@@ -34,7 +34,8 @@ struct MotionRecording {
   double rms_rates() const;
 };
 
-// Of the poses in the air, if the log has a take-off or a landing. The log has at least two samples of the IMU.
+// The recording of a log, which has at least two samples of the IMU. If the log has a take-off or a landing, only the poses
+// in the air count.
 MotionRecording recording_of(const FlightLog& log);
 
 // Density of white noise, in units of the values per square root of Hz, from second differences: the motion has next to none.

@@ -53,7 +53,8 @@ struct SystemTime {
   }
 };
 
-// Of PARAM_SET and PARAM_VALUE: whole numbers and reals of 32 bits. PX4 puts the bytes of a whole number into the float.
+// Types in PARAM_SET and PARAM_VALUE: whole numbers and reals of 32 bits. PX4 puts the bytes of a whole number into the
+// float.
 constexpr std::uint8_t kParamInt32 = 6;
 constexpr std::uint8_t kParamReal32 = 9;
 using ParamId = std::array<char, 16>;  // ends with NUL, unless it has 16 letters
@@ -173,7 +174,7 @@ struct HilSensor {
   static constexpr const char* kName = "HIL_SENSOR";
   static constexpr std::uint32_t kId = 107;
   static constexpr std::uint8_t kCrcExtra = 108;
-  // Of fields_updated: the fields that hold a new measurement.
+  // Bits of fields_updated: the fields that hold a new measurement.
   static constexpr std::uint32_t kAccelerometer = 0x7;
   static constexpr std::uint32_t kGyro = 0x38;
   static constexpr std::uint32_t kMagnetometer = 0x1c0;

@@ -163,7 +163,7 @@ class CrazyflieReader {
       if (!reader_.ok()) fail(fmt::format("ends within event {}", number));
       if (id != wanted) continue;
       if (!first) first = stamp;
-      // Of the difference, which a double holds.
+      // A double holds the difference exactly.
       const auto ticks = static_cast<double>(static_cast<std::int64_t>(stamp - *first));
       Event event{ticks * (version_ == 1 ? 1e-3 : 1e-6), {}};
       for (const Variable& variable : type->second.variables)

@@ -25,7 +25,7 @@ struct FileOptions {
   double time_scale = 1.0;  // > 0: the file is flown so many times as slow
   std::string columns =
       {};  // of a table, in place of its header: names in order, between commas; empty: none
-  // Of samples: only those from and until this time, s from the first row.
+  // Only the samples from and until this time are flown, s from the first row.
   std::optional<double> from_s = {}, until_s = {};
   Placement placement = {};
   std::optional<Fence> fence = {};  // inside that of the control settings, in place of the file's own

@@ -20,7 +20,7 @@ inline const char* frame_title(MissionFrame frame) {
   return frame == MissionFrame::kNed ? "NED" : frame == MissionFrame::kEnu ? "ENU" : "NWU";
 }
 
-// Of a position, velocity or acceleration.
+// Turns a position, velocity or acceleration.
 inline Eigen::Vector3d ned_from(MissionFrame frame, const Eigen::Vector3d& vector) {
   switch (frame) {
     case MissionFrame::kEnu:
@@ -33,7 +33,7 @@ inline Eigen::Vector3d ned_from(MissionFrame frame, const Eigen::Vector3d& vecto
   return vector;
 }
 
-// Not wrapped: turns of a continuous yaw are kept.
+// The yaw is not wrapped: turns of a continuous yaw are kept.
 inline double ned_yaw_from(MissionFrame frame, double yaw_rad) {
   switch (frame) {
     case MissionFrame::kEnu:

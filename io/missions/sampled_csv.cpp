@@ -24,7 +24,7 @@ using control::SplineSample;
 // tells a tenth of a micrometre.
 constexpr double kLeastTolerance_m = 1e-7, kMostTolerance_m = 5e-4;
 constexpr double kLeastTolerance_rad = 1e-6, kMostTolerance_rad = 1e-2;
-// Of velocities and accelerations, which often were differenced from the positions.
+// Velocities and accelerations were often differenced from the positions: their tolerances are wider.
 constexpr double kLeastTolerance_m_s = 1e-3, kLeastTolerance_m_s2 = 1e-2;
 // Positions at this rate determine the motion. Below, the path also follows velocities and accelerations.
 constexpr double kSlowSamples_hz = 20.0;
@@ -52,7 +52,7 @@ Given given_in(const MotionColumns& columns, const std::string& file_name) {
   return {columns.has(Motion::kVx), columns.has(Motion::kAx), columns.has(Motion::kYaw)};
 }
 
-// In NED, one entry per row.
+// The samples in NED, one entry per row.
 struct Samples {
   SampleTimes times;
   std::vector<PositionYaw> places;

@@ -106,7 +106,7 @@ void skip_skeleton(ByteReader& in) {
   in.skip(kBodyBytes * read_count(in, kBodyBytes));
 }
 
-// Of a force plate or a device.
+// Skips the data of a force plate or a device.
 void skip_analog_data(ByteReader& in) {
   in.skip(4);  // number
   const std::size_t channels = read_count(in, 4);

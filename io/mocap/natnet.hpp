@@ -41,7 +41,7 @@ struct Version {
   int major = 0;
   int minor = 0;
 
-  // Of the layouts, not of a server: any 4.x after 4.1 only adds to what has a size in front.
+  // The layouts of versions 3 and 4 are supported: any 4.x after 4.1 only adds to what has a size in front.
   bool is_supported() const { return major == 3 || major == 4; }
   bool has_sizes() const { return major > 4 || (major == 4 && minor >= 1); }
   std::string to_string() const;

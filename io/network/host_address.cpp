@@ -19,7 +19,7 @@ bool is_host(const std::string& text) {
     return std::isalnum(c) != 0 || c == '.' || c == '-' || c == '_';
   });
   if (text.empty() || !has_name_characters) return false;
-  // Of digits and dots only: an address, complete.
+  // A text of only digits and dots must be a complete address.
   in_addr address{};
   return text.find_first_not_of("0123456789.") != std::string::npos ||
          ::inet_pton(AF_INET, text.c_str(), &address) == 1;

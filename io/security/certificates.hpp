@@ -7,7 +7,7 @@
 
 namespace swiftlet::io {
 
-// Both in PEM.
+// A certificate and its key, both in PEM.
 struct Credential {
   std::string certificate;
   std::string private_key;
@@ -30,7 +30,7 @@ bool is_revoked(const std::string& certificate, const std::string& revocation_li
 
 // Why a certificate is not valid now, such as "has expired on 2026-11-01"; empty if it is.
 std::string fault_of_authority(const std::string& certificate);
-// Of an authority that is valid, and its list.
+// Why a certificate is not valid now. The authority and its list are valid.
 std::string fault_of_certificate(const std::string& certificate, const std::string& authority_certificate,
                                  const std::string& revocation_list);
 

@@ -77,7 +77,7 @@ double value_at(std::string_view message, char letter, std::size_t offset) {
   }
 }
 
-// Of an array: "[4]". 0: it is no such text, or longer than a message.
+// The number of elements of an array, "[4]". 0: the text is none, or the array is longer than a message.
 std::size_t count_of(std::string_view brackets) {
   if (brackets.size() < 3 || brackets.back() != ']') return 0;
   std::size_t count = 0;

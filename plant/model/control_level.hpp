@@ -57,7 +57,7 @@ class ControlLevels {
   std::uint8_t bits_ = 0;
 };
 
-// Of a list such as "rates,attitude"; nullopt: it holds a name of no level, or none.
+// The levels in a list such as "rates,attitude"; nullopt: it holds a name of no level, or none.
 std::optional<ControlLevels> control_levels_from(std::string_view list);
 
 }  // namespace swiftlet::plant

@@ -53,7 +53,7 @@ class Numbers {
 };
 using Number = Numbers<1>;
 
-// One without which the messages say nothing. Throws ConfigError if they do not have it.
+// A member without which the messages say nothing. Throws ConfigError if they do not have it.
 template <std::size_t N>
 class Required : public Numbers<N> {
  public:
@@ -82,7 +82,7 @@ template <class Row>
 bool rises(const std::vector<Row>& rows, std::int64_t stamp_ns) {
   return rows.empty() || stamp_ns > rows.back().stamp_ns;
 }
-// Of messages that are sent again when they change.
+// True unless the last row is newer: for messages that are sent again when they change.
 template <class Row>
 bool is_not_older(const std::vector<Row>& rows, std::int64_t stamp_ns) {
   return rows.empty() || stamp_ns >= rows.back().stamp_ns;

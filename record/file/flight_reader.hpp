@@ -35,7 +35,7 @@ std::string recorded_vehicle(const mcap::Reader& file, const std::string& name);
 // not have is kNotGiven, or empty. Leaves out repeated samples (of a stamp that does not rise), and rows of motion with numbers that are not
 // finite. Throws ConfigError if a message does not fit its schema, or a member is of another type.
 std::map<std::string, Flight> read_flights(const mcap::Reader& file);
-// That of one of them.
+// The flight of one vehicle in the file.
 Flight read_flight(const mcap::Reader& file, const std::string& vehicle);
 
 // The values of the first metadata of this name; empty if there is none.

@@ -18,11 +18,11 @@ struct ProcessLogLine {
   std::string text;
 };
 
-// Those of the logs in a folder. A line holds only its time of day, in the zone of this computer: its day is the one that brings
-// it nearest to near_ns, since 1970. Lines of another form are left out. Throws ConfigError if a log cannot be read.
+// The lines of the logs in a folder. A line holds only its time of day, in the zone of this computer: its day is the one that
+// brings it nearest to near_ns, since 1970. Lines of another form are left out. Throws ConfigError if a log cannot be read.
 std::vector<ProcessLogLine> process_log_lines(const std::filesystem::path& folder, std::int64_t near_ns);
 
-// On topic /log.
+// The message for topic /log.
 StandardMessage log_message(const ProcessLogLine& line);
 
 }  // namespace swiftlet::record

@@ -104,7 +104,7 @@ void put_covariance(CdrWriter& out, double first) {
   for (int i = 0; i < kOthers; ++i) out.put(0.0);
 }
 
-// Of six independent quantities: the diagonal of a matrix of 6 x 6.
+// The covariance of six independent quantities: their variances on the diagonal of a matrix of 6 x 6.
 void put_variances(CdrWriter& out, const std::array<double, 6>& variances) {
   for (std::size_t row = 0; row < variances.size(); ++row) {
     for (std::size_t column = 0; column < variances.size(); ++column)

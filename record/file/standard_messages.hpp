@@ -24,7 +24,7 @@ Eigen::Vector3d enu_from_ned(const Eigen::Vector3d& v_ned);
 Eigen::Vector3d flu_from_frd(const Eigen::Vector3d& v_frd);
 Eigen::Quaterniond q_enu_from_flu(const Eigen::Quaterniond& q_ned_from_frd);
 
-// Of one vehicle:
+// The messages of one vehicle:
 //   estimate   -> pose (geometry_msgs/PoseStamped), /tf (tf2_msgs/TFMessage: map to the vehicle's name), odometry
 //                 (nav_msgs/Odometry), and each second path (nav_msgs/Path: its last half minute)
 //   reference  -> reference_pose (geometry_msgs/PoseStamped)

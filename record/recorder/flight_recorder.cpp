@@ -52,7 +52,7 @@ struct FlightRecorder::Vehicle {
   std::atomic<std::int64_t> newest_stamp_ns{0};
   std::atomic<std::int64_t> motion_ns{-1};  // stamp of the newest sample of IMU or odometry
   std::atomic<std::int64_t> info_ns{-1};    // and of vehicle_info
-  // Of an IMU sample: its arrival by the wall clock minus its stamp, the least of all.
+  // The least age of an IMU sample: its arrival by the wall clock minus its stamp.
   std::atomic<std::int64_t> least_age_ns{std::numeric_limits<std::int64_t>::max()};
   std::vector<dds::Subscription> subscriptions;  // last: their callbacks use all members above
 };

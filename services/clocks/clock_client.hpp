@@ -41,7 +41,7 @@ class ClockClient {
     bool is_certain = false;
   };
 
-  // In the thread that receives.
+  // Called by the thread that receives.
   void take(const messages::msg::ClockReply& reply);
   void log_changes(bool is_known, const ClockEstimate& clock, std::int64_t now_ns);
   void publish_status(bool is_known, const ClockEstimate& clock, std::int64_t now_ns);
@@ -50,12 +50,12 @@ class ClockClient {
   const std::uint64_t id_;
   runtime::LatestValue<Knowledge> latest_;
 
-  // Of the thread that asks.
+  // Only the thread that asks uses these.
   Knowledge known_;
   std::atomic<std::uint64_t> requests_sent_{0};  // read by the other thread
   Time due_;
 
-  // Of the thread that receives.
+  // Only the thread that receives uses these.
   ClockFilter filter_;
   std::uint64_t last_answered_ = 0;
   bool was_known_ = false;

@@ -85,7 +85,7 @@ void ClockFilter::keep(const Measurement& measurement) {
   size_ = std::min(size_ + 1, kWindow);
 }
 
-// Of the offsets with the shortest round trips: half of the spread of the shortest.
+// The shortest round trip, and the uncertainty of its offset: half of the spread of the shortest ones.
 ClockFilter::RoundTrips ClockFilter::round_trips() const {
   std::array<double, kWindow> sorted{};
   for (std::size_t i = 0; i < size_; ++i) sorted[i] = window_[i].round_trip_ns;

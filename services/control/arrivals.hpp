@@ -8,7 +8,7 @@
 
 namespace swiftlet::services {
 
-// Of one stream. note() is called by one thread, the other methods by any.
+// The newest sample of one stream. note() is called by one thread, the other methods by any.
 class Arrivals {
  public:
   // stamp_ns: of the sample, on the vehicle's clock. now_ns: monotonic.

@@ -63,7 +63,7 @@ ControlService::ControlService(const plant::Vehicle& vehicle, const control::Con
   subscribe(node, clock);
 }
 
-void ControlService::subscribe(dds::Node& node, runtime::Clock clock) {
+void ControlService::subscribe_sensors(dds::Node& node, runtime::Clock clock) {
   using Stream = LockstepGate::Stream;
   std::function<void(const msg::MocapPose&)> take_pose;
   std::function<void(const msg::Battery&)> take_battery;
@@ -108,6 +108,10 @@ void ControlService::subscribe(dds::Node& node, runtime::Clock clock) {
                                             take_rotor_speeds(message);
                                           },
                                           delivery, dds::kSourceSilence)});
+}
+
+void ControlService::subscribe(dds::Node& node, runtime::Clock clock) {
+  subscribe_sensors(node, clock);
   subscriptions_.push_back(node.subscribe<msg::VehicleInfo>(
       topics::kVehicleInfo, [this](const auto& message) { on_vehicle_info(message); }));
   subscriptions_.push_back(node.subscribe<msg::Setpoint>(
@@ -335,8 +339,8 @@ void ControlService::on_vehicle_info(const msg::VehicleInfo& message) {
   telemetry_.set_vehicle_fault(fault.data());
 }
 
-// It cannot be armed until a vehicle_info of this version comes, and a flight goes on. In lockstep its samples are answered, so that
-// requests are.
+// The vehicle cannot be armed until a vehicle_info of this version comes; a flight goes on. In lockstep its samples are
+// answered, so that requests are.
 void ControlService::refuse_vehicle(const std::string& why) {
   if (reported_levels_.load(std::memory_order_relaxed) != 0)
     return;  // known: this is another process's message

@@ -61,6 +61,7 @@ class ControlService {
 
  private:
   void subscribe(dds::Node& node, runtime::Clock clock);
+  void subscribe_sensors(dds::Node& node, runtime::Clock clock);
   template <class Message>
   void subscribe_motion(dds::Node& node, const messages::Topic<Message>& topic, const char* samples,
                         AnsweredSamples::Kind kind);

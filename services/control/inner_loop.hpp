@@ -114,7 +114,7 @@ class InnerLoop {
   bool report_due() const { return report_due_; }
   void report(messages::ControllerReport& report) const;
 
-  // Of the last command. Call from any thread.
+  // The level of the last command. Call from any thread.
   plant::ControlLevel level() const { return level_.load(std::memory_order_relaxed); }
 
   // The number of the newest FailoverState that was adopted: its plans may be in use. Call from any thread.

@@ -12,7 +12,7 @@ namespace swiftlet::services {
 // period. No other clock is needed. A controller that falls silent does not count. Pure; does not allocate.
 class LoopDelay {
  public:
-  // Of the last whole window with commands; -1: not known, or none has come for a window more.
+  // Delays in the last whole window with commands; -1: not known, or none has come for a window more.
   struct Figures {
     std::int64_t p50_ns = -1;
     std::int64_t p95_ns = -1;

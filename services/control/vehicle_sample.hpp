@@ -30,8 +30,8 @@ struct VehicleSample {
 VehicleSample vehicle_sample(const messages::msg::Imu& message);
 VehicleSample vehicle_sample(const messages::msg::VehicleOdometry& message);
 
-// Of a vehicle that sends IMU samples and estimates of its own, only those that were heard first are answered, until they have
-// been silent for kSilenceNs. Call from any thread.
+// The kind of samples that is answered, if a vehicle sends IMU samples and estimates of its own: the one that was heard first,
+// until it has been silent for kSilenceNs. Call from any thread.
 class AnsweredSamples {
  public:
   enum class Kind : std::uint8_t { kImu = 1, kOdometry = 2 };

@@ -15,9 +15,9 @@ struct DdsProfile {
   eprosima::fastdds::rtps::UDPv4TransportDescriptor udp;
 };
 
-// Of the participant profile of a file, the first one, or that with is_default_profile="true": its allocation, properties, sizes of
-// socket buffers, and its first transport, which must be UDPv4. Swiftlet sets the rest itself. Throws io::ConfigError with file
-// and line; what Fast DDS refuses, it says on stderr. Not thread-safe.
+// Reads the participant profile of a file, the first one or that with is_default_profile="true". Takes its allocation,
+// properties, sizes of socket buffers, and its first transport, which must be UDPv4. Swiftlet sets the rest itself. Throws
+// io::ConfigError with file and line. Fast DDS says on stderr what it refuses. Not thread-safe.
 DdsProfile load_dds_profile(const std::string& file);
 
 }  // namespace swiftlet::dds

@@ -138,7 +138,7 @@ class DdsWriter final : public Writer, private Endpoint {
     writer->clear_history(nullptr);
     session.publisher->delete_datawriter(writer);
   }
-  // By another participant.
+  // True if another participant reads the topic.
   bool is_heard(fastdds::DataWriter& writer) const {
     fastdds::PublicationMatchedStatus status;
     writer.get_publication_matched_status(status);
@@ -169,7 +169,7 @@ class DdsReader final : public Reader, private Endpoint, private fastdds::DataRe
   using Callback = std::function<void(const T&)>;
   using RawCallback = std::function<void(const RawSample&)>;
 
-  // Of the two callbacks, one is given.
+  // One of the two callbacks is given.
   DdsReader(std::shared_ptr<Impl> node, std::string vehicle, const messages::Topic<T>& topic,
             Callback callback, RawCallback raw_callback, Delivery delivery,
             std::optional<std::chrono::milliseconds> source_silence,

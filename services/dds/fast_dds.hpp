@@ -197,7 +197,7 @@ inline void add_discovery_server(fastrtps::DiscoverySettings& discovery, int num
 #endif
 }
 
-// Of a reliable writer: period of its heartbeats, and delay of its answer to a request for lost samples.
+// Sets the period of a reliable writer's heartbeats, and the delay of its answer to a request for lost samples.
 inline void set_repair_times(eprosima::fastdds::dds::DataWriterQos& qos, const Duration& heartbeat_period,
                              const Duration& answer_delay) {
   auto& times = qos.reliable_writer_qos().times;
@@ -210,7 +210,7 @@ inline void set_repair_times(eprosima::fastdds::dds::DataWriterQos& qos, const D
 #endif
 }
 
-// Of a reliable reader: delay of its answer to a heartbeat, and of its first request.
+// Sets the delay of a reliable reader's answer to a heartbeat, and of its first request.
 inline void set_repair_times(eprosima::fastdds::dds::DataReaderQos& qos, const Duration& answer_delay,
                              const Duration& first_request_delay) {
   auto& times = qos.reliable_reader_qos().times;

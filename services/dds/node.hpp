@@ -150,7 +150,7 @@ class Publisher {
   explicit Publisher(std::unique_ptr<detail::Writer> writer) : writer_(std::move(writer)) {}
   // Returns false if the sample was not sent (no resources, or time-out of a reliable writer).
   bool publish(const T& sample) { return writer_->write(&sample); }
-  // Of a reliable topic: waits until all matched readers have received all samples. A reader drops what arrives
+  // Waits until all matched readers of a reliable topic have received all samples. A reader drops what arrives
   // after it has heard that the writer is gone: wait before the writer of an important last sample ends.
   // Returns false after the timeout.
   bool wait_until_received(std::chrono::milliseconds timeout) {
@@ -171,7 +171,7 @@ class Subscription {
   Subscription() = default;
   explicit Subscription(std::unique_ptr<detail::Reader> reader) : reader_(std::move(reader)) {}
   int matched() const { return reader_->matched(); }  // number of matched writers
-  // Of a subscription with one source: set while samples of another process arrive and are ignored.
+  // Set while a subscription with one source ignores samples that arrive from another process.
   std::optional<SourceConflict> source_conflict() const { return reader_->source_conflict(); }
 
  private:
@@ -192,7 +192,7 @@ class Participant {
   std::vector<std::string> topics_seen() const;
   // The other processes of the domain that are known now, of any vehicle.
   std::vector<ProcessIdentity> processes_seen() const;
-  // Of the other processes that are known now: a sentence for each two that do not receive each other's topic,
+  // A sentence for each two of the other known processes that do not receive each other's topic,
   // "rt/kl1/imu: control (...) does not receive from plant (...): reliability (...)".
   std::vector<std::string> qos_conflicts_seen() const;
 

@@ -55,7 +55,7 @@ struct Participant::Impl final : public DiscoveryListener {
   // node: key of the callback; an empty callback removes it. Calls it at once for known peers of the vehicle.
   void listen(const Node* node, const std::string& vehicle, std::function<void(const PeerEvent&)> callback);
 
-  // Of a thread that is about to take locks of the middleware, or those of this class.
+  // Raises the priority of a thread that is about to take locks of the middleware, or those of this class.
   runtime::RealtimeScope realtime() const { return runtime::RealtimeScope(settings.realtime_priority); }
 
   const NodeSettings settings;

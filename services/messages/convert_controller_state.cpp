@@ -109,17 +109,7 @@ static_assert(static_cast<std::uint8_t>(control::MissionPause::kAway) ==
 static_assert(static_cast<std::uint8_t>(control::MissionPause::kReturning) ==
               msg::ControllerState_Constants::PAUSE_RETURNING);
 
-}  // namespace
-
-std::uint8_t kind_of_end(const control::RequestStatus& request) {
-  using namespace msg::RequestStatus_Constants;
-  if (request.state != control::RequestState::kCanceled) return KIND_NONE;
-  if (request.ended_by == control::Event::kSetpoint) return KIND_SETPOINT;
-  const auto kind = control::kind_of(request.ended_by);
-  return kind ? static_cast<std::uint8_t>(*kind) : KIND_NONE;
-}
-
-Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
+Check check_controller_state(const msg::ControllerState& in) {
   using namespace msg;
   Check check;
   check.time(in.stamp_ns())
@@ -164,54 +154,40 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
   }
   check_gains("gains_from", in.gains_from(), check);
   check_gains("gains_to", in.gains_to(), check);
-  if (!check.ok()) return check.fault();
-  out.stamp_ns = in.stamp_ns();
-  out.sequence = in.sequence_number();
-  out.controller = in.controller();
-  out.failover_priority = static_cast<int>(in.failover_priority());
-  out.term = in.term();
-  out.active = in.role() == ControllerState_Constants::ACTIVE;
-  out.ready = in.ready();
+  return check;
+}
 
-  control::SupervisorState& state = out.flight.supervisor;
-  state.mode = static_cast<control::Mode>(in.mode());
-  state.reason = static_cast<control::Reason>(in.reason());
-  state.guidance.phase = static_cast<control::Phase>(in.phase());
-  state.guidance.airborne = in.airborne();
-  state.now_ns = in.stamp_ns();
-  state.mode_since_ns = in.mode_since_ns();
-  state.guidance.phase_since_ns = in.phase_since_ns();
-  state.guidance.path.moving = in.path_moving();
-  state.guidance.path.segment = {in.path_duration_s(), doubles(in.path_x()), doubles(in.path_y()),
-                                 doubles(in.path_z()), doubles(in.path_yaw())};
-  state.guidance.path.start_ns = in.path_start_ns();
-  state.guidance.path.end_ns = in.path_end_ns();
-  state.guidance.path.clock = {in.clock_runs(), in.clock_change_ns(), in.clock_from_ns(), in.clock_change_s(),
-                               doubles(in.clock_rate())};
-  state.guidance.climb_to_z_ned = in.climb_to_z_ned();
-  state.guidance.climb_speed = in.climb_speed();
-  state.guidance.ground_z_ned = in.ground_z_ned();
-  state.guidance.mission = {in.mission_id(), static_cast<control::MissionState>(in.mission_state()),
-                            static_cast<int>(in.item_index()), static_cast<int>(in.item_count())};
-  state.guidance.item_end_ns = in.item_end_ns();
-  state.guidance.pause = static_cast<control::MissionPause>(in.pause());
-  state.guidance.paused_path = {
-      {in.paused_path_duration_s(), doubles(in.paused_path_x()), doubles(in.paused_path_y()),
-       doubles(in.paused_path_z()), doubles(in.paused_path_yaw())},
-      in.paused_path_start_ns(),
-      in.paused_path_end_ns(),
-      in.paused_path_at_ns()};
-  state.guidance.trajectory_id = in.trajectory_id();
-  state.guidance.next_segment = in.next_segment();
-  state.guidance.setpoint_ns = in.setpoint_ns();
-  state.guidance.setpoint_kind = static_cast<control::SetpointKind>(in.setpoint_kind());
-  state.guidance.direct = {in.setpoint_attitude(), in.setpoint_body_rates(), in.setpoint_specific_thrust()};
-  state.contact_since_ns = in.contact_since_ns();
-  state.low_battery_since_ns = in.low_battery_since_ns();
-  state.critical_battery_since_ns = in.critical_battery_since_ns();
-  state.land_on_return = in.land_on_return();
-  for (std::size_t i = 0; i < state.ground_links.size(); ++i)
-    state.ground_links[i] = {in.ground_link_clients()[i], in.ground_link_heard_ns()[i]};
+void read_guidance(const msg::ControllerState& in, control::GuidanceState& state) {
+  state.phase = static_cast<control::Phase>(in.phase());
+  state.airborne = in.airborne();
+  state.phase_since_ns = in.phase_since_ns();
+  state.path.moving = in.path_moving();
+  state.path.segment = {in.path_duration_s(), doubles(in.path_x()), doubles(in.path_y()),
+                        doubles(in.path_z()), doubles(in.path_yaw())};
+  state.path.start_ns = in.path_start_ns();
+  state.path.end_ns = in.path_end_ns();
+  state.path.clock = {in.clock_runs(), in.clock_change_ns(), in.clock_from_ns(), in.clock_change_s(),
+                      doubles(in.clock_rate())};
+  state.climb_to_z_ned = in.climb_to_z_ned();
+  state.climb_speed = in.climb_speed();
+  state.ground_z_ned = in.ground_z_ned();
+  state.mission = {in.mission_id(), static_cast<control::MissionState>(in.mission_state()),
+                   static_cast<int>(in.item_index()), static_cast<int>(in.item_count())};
+  state.item_end_ns = in.item_end_ns();
+  state.pause = static_cast<control::MissionPause>(in.pause());
+  state.paused_path = {{in.paused_path_duration_s(), doubles(in.paused_path_x()), doubles(in.paused_path_y()),
+                        doubles(in.paused_path_z()), doubles(in.paused_path_yaw())},
+                       in.paused_path_start_ns(),
+                       in.paused_path_end_ns(),
+                       in.paused_path_at_ns()};
+  state.trajectory_id = in.trajectory_id();
+  state.next_segment = in.next_segment();
+  state.setpoint_ns = in.setpoint_ns();
+  state.setpoint_kind = static_cast<control::SetpointKind>(in.setpoint_kind());
+  state.direct = {in.setpoint_attitude(), in.setpoint_body_rates(), in.setpoint_specific_thrust()};
+}
+
+void read_requests(const msg::ControllerState& in, control::SupervisorState& state) {
   for (std::size_t i = 0; i < state.requests.size(); ++i) {
     state.requests[i] = {{in.request_clients()[i], in.request_ids()[i]},
                          static_cast<control::RequestKind>(in.request_kinds()[i]),
@@ -220,14 +196,128 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
                          static_cast<control::Reason>(in.request_reasons()[i]),
                          in.request_progress()[i]};
   }
-  out.flight.position_integral = vector(in.position_integral_ned());
-  out.flight.lift_ratio = in.lift_ratio();
-  out.flight.gains.from = from_message(in.gains_from());
-  out.flight.gains.to = from_message(in.gains_to());
-  std::copy_n(in.settings_name().begin(), control::kMaxSettingsName, out.flight.gains.name.begin());
-  out.flight.gains.start_ns = in.gains_start_ns();
-  out.flight.gains.duration_s = in.gains_duration_s();
-  out.flight.rotor_state = static_cast<plant::RotorState>(in.rotor_state());
+}
+
+void read_supervisor(const msg::ControllerState& in, control::SupervisorState& state) {
+  state.mode = static_cast<control::Mode>(in.mode());
+  state.reason = static_cast<control::Reason>(in.reason());
+  state.now_ns = in.stamp_ns();
+  state.mode_since_ns = in.mode_since_ns();
+  read_guidance(in, state.guidance);
+  state.contact_since_ns = in.contact_since_ns();
+  state.low_battery_since_ns = in.low_battery_since_ns();
+  state.critical_battery_since_ns = in.critical_battery_since_ns();
+  state.land_on_return = in.land_on_return();
+  for (std::size_t i = 0; i < state.ground_links.size(); ++i)
+    state.ground_links[i] = {in.ground_link_clients()[i], in.ground_link_heard_ns()[i]};
+  read_requests(in, state);
+}
+
+void read_flight(const msg::ControllerState& in, control::FlightState& out) {
+  read_supervisor(in, out.supervisor);
+  out.position_integral = vector(in.position_integral_ned());
+  out.lift_ratio = in.lift_ratio();
+  out.gains.from = from_message(in.gains_from());
+  out.gains.to = from_message(in.gains_to());
+  std::copy_n(in.settings_name().begin(), control::kMaxSettingsName, out.gains.name.begin());
+  out.gains.start_ns = in.gains_start_ns();
+  out.gains.duration_s = in.gains_duration_s();
+  out.rotor_state = static_cast<plant::RotorState>(in.rotor_state());
+}
+
+void write(const control::GuidanceState& state, msg::ControllerState& out) {
+  out.phase(static_cast<std::uint8_t>(state.phase));
+  out.airborne(state.airborne);
+  out.phase_since_ns(state.phase_since_ns);
+  out.path_moving(state.path.moving);
+  out.path_start_ns(state.path.start_ns);
+  out.path_end_ns(state.path.end_ns);
+  out.path_duration_s(state.path.segment.duration_s);
+  out.path_x(floats(state.path.segment.x));
+  out.path_y(floats(state.path.segment.y));
+  out.path_z(floats(state.path.segment.z));
+  out.path_yaw(floats(state.path.segment.yaw));
+  out.clock_runs(state.path.clock.runs);
+  out.clock_change_ns(state.path.clock.change_ns);
+  out.clock_from_ns(state.path.clock.from_ns);
+  out.clock_change_s(state.path.clock.change_s);
+  out.clock_rate(floats(state.path.clock.rate));
+  out.climb_to_z_ned(state.climb_to_z_ned);
+  out.climb_speed(state.climb_speed);
+  out.ground_z_ned(state.ground_z_ned);
+  out.mission_id(state.mission.id);
+  out.mission_state(static_cast<std::uint8_t>(state.mission.state));
+  out.item_index(static_cast<std::uint32_t>(state.mission.item_index));
+  out.item_count(static_cast<std::uint32_t>(state.mission.item_count));
+  out.item_end_ns(state.item_end_ns);
+  out.pause(static_cast<std::uint8_t>(state.pause));
+  out.paused_path_start_ns(state.paused_path.start_ns);
+  out.paused_path_end_ns(state.paused_path.end_ns);
+  out.paused_path_at_ns(state.paused_path.at_ns);
+  out.paused_path_duration_s(state.paused_path.segment.duration_s);
+  out.paused_path_x(floats(state.paused_path.segment.x));
+  out.paused_path_y(floats(state.paused_path.segment.y));
+  out.paused_path_z(floats(state.paused_path.segment.z));
+  out.paused_path_yaw(floats(state.paused_path.segment.yaw));
+  out.trajectory_id(state.trajectory_id);
+  out.next_segment(state.next_segment);
+  out.setpoint_ns(state.setpoint_ns);
+  out.setpoint_kind(static_cast<std::uint8_t>(state.setpoint_kind));
+  out.setpoint_attitude(state.direct.q_ned_from_frd);
+  out.setpoint_body_rates(state.direct.body_rates_frd);
+  out.setpoint_specific_thrust(state.direct.specific_thrust);
+}
+
+void write(const control::RequestStatuses& requests, msg::ControllerState& out) {
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    const control::RequestStatus& request = requests[i];
+    out.request_clients()[i] = request.key.client;
+    out.request_ids()[i] = request.key.id;
+    out.request_kinds()[i] = static_cast<std::uint8_t>(request.kind);
+    out.request_states()[i] = static_cast<std::uint8_t>(request.state);
+    out.request_ended_by()[i] = kind_of_end(request);
+    out.request_reasons()[i] = static_cast<std::uint8_t>(request.reason);
+    out.request_progress()[i] = static_cast<float>(request.progress);
+  }
+}
+
+void write(const control::SupervisorState& state, msg::ControllerState& out) {
+  out.mode(static_cast<std::uint8_t>(state.mode));
+  out.reason(static_cast<std::uint8_t>(state.reason));
+  out.mode_since_ns(state.mode_since_ns);
+  write(state.guidance, out);
+  out.contact_since_ns(state.contact_since_ns);
+  out.low_battery_since_ns(state.low_battery_since_ns);
+  out.critical_battery_since_ns(state.critical_battery_since_ns);
+  out.land_on_return(state.land_on_return);
+  for (std::size_t i = 0; i < state.ground_links.size(); ++i) {
+    out.ground_link_clients()[i] = state.ground_links[i].client;
+    out.ground_link_heard_ns()[i] = state.ground_links[i].heard_ns;
+  }
+  write(state.requests, out);
+}
+
+}  // namespace
+
+std::uint8_t kind_of_end(const control::RequestStatus& request) {
+  using namespace msg::RequestStatus_Constants;
+  if (request.state != control::RequestState::kCanceled) return KIND_NONE;
+  if (request.ended_by == control::Event::kSetpoint) return KIND_SETPOINT;
+  const auto kind = control::kind_of(request.ended_by);
+  return kind ? static_cast<std::uint8_t>(*kind) : KIND_NONE;
+}
+
+Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
+  const Check check = check_controller_state(in);
+  if (!check.ok()) return check.fault();
+  out.stamp_ns = in.stamp_ns();
+  out.sequence = in.sequence_number();
+  out.controller = in.controller();
+  out.failover_priority = static_cast<int>(in.failover_priority());
+  out.term = in.term();
+  out.active = in.role() == msg::ControllerState_Constants::ACTIVE;
+  out.ready = in.ready();
+  read_flight(in, out.flight);
   out.rotor_count = in.rotor_count();
   copy_rotors(out.rotor_count, in.throttle(), out.flight.throttle);
   return {};
@@ -240,7 +330,6 @@ static_assert(sizeof(control::GainChange) == kReplicatedGainsBytes,
               "controller_state does not carry all of GainChange");
 
 msg::ControllerState to_message(const ControllerReport& in) {
-  const control::SupervisorState& state = in.flight.supervisor;
   msg::ControllerState out;
   out.stamp_ns(in.stamp_ns);
   out.sequence_number(in.sequence);
@@ -249,57 +338,7 @@ msg::ControllerState to_message(const ControllerReport& in) {
   out.term(in.term);
   out.role(in.active ? msg::ControllerState_Constants::ACTIVE : msg::ControllerState_Constants::STANDBY);
   out.ready(in.ready);
-  out.mode(static_cast<std::uint8_t>(state.mode));
-  out.reason(static_cast<std::uint8_t>(state.reason));
-  out.phase(static_cast<std::uint8_t>(state.guidance.phase));
-  out.airborne(state.guidance.airborne);
-  out.mode_since_ns(state.mode_since_ns);
-  out.phase_since_ns(state.guidance.phase_since_ns);
-  out.path_moving(state.guidance.path.moving);
-  out.path_start_ns(state.guidance.path.start_ns);
-  out.path_end_ns(state.guidance.path.end_ns);
-  out.path_duration_s(state.guidance.path.segment.duration_s);
-  out.path_x(floats(state.guidance.path.segment.x));
-  out.path_y(floats(state.guidance.path.segment.y));
-  out.path_z(floats(state.guidance.path.segment.z));
-  out.path_yaw(floats(state.guidance.path.segment.yaw));
-  out.clock_runs(state.guidance.path.clock.runs);
-  out.clock_change_ns(state.guidance.path.clock.change_ns);
-  out.clock_from_ns(state.guidance.path.clock.from_ns);
-  out.clock_change_s(state.guidance.path.clock.change_s);
-  out.clock_rate(floats(state.guidance.path.clock.rate));
-  out.climb_to_z_ned(state.guidance.climb_to_z_ned);
-  out.climb_speed(state.guidance.climb_speed);
-  out.ground_z_ned(state.guidance.ground_z_ned);
-  out.mission_id(state.guidance.mission.id);
-  out.mission_state(static_cast<std::uint8_t>(state.guidance.mission.state));
-  out.item_index(static_cast<std::uint32_t>(state.guidance.mission.item_index));
-  out.item_count(static_cast<std::uint32_t>(state.guidance.mission.item_count));
-  out.item_end_ns(state.guidance.item_end_ns);
-  out.pause(static_cast<std::uint8_t>(state.guidance.pause));
-  out.paused_path_start_ns(state.guidance.paused_path.start_ns);
-  out.paused_path_end_ns(state.guidance.paused_path.end_ns);
-  out.paused_path_at_ns(state.guidance.paused_path.at_ns);
-  out.paused_path_duration_s(state.guidance.paused_path.segment.duration_s);
-  out.paused_path_x(floats(state.guidance.paused_path.segment.x));
-  out.paused_path_y(floats(state.guidance.paused_path.segment.y));
-  out.paused_path_z(floats(state.guidance.paused_path.segment.z));
-  out.paused_path_yaw(floats(state.guidance.paused_path.segment.yaw));
-  out.trajectory_id(state.guidance.trajectory_id);
-  out.next_segment(state.guidance.next_segment);
-  out.setpoint_ns(state.guidance.setpoint_ns);
-  out.setpoint_kind(static_cast<std::uint8_t>(state.guidance.setpoint_kind));
-  out.setpoint_attitude(state.guidance.direct.q_ned_from_frd);
-  out.setpoint_body_rates(state.guidance.direct.body_rates_frd);
-  out.setpoint_specific_thrust(state.guidance.direct.specific_thrust);
-  out.contact_since_ns(state.contact_since_ns);
-  out.low_battery_since_ns(state.low_battery_since_ns);
-  out.critical_battery_since_ns(state.critical_battery_since_ns);
-  out.land_on_return(state.land_on_return);
-  for (std::size_t i = 0; i < state.ground_links.size(); ++i) {
-    out.ground_link_clients()[i] = state.ground_links[i].client;
-    out.ground_link_heard_ns()[i] = state.ground_links[i].heard_ns;
-  }
+  write(in.flight.supervisor, out);
   out.position_integral_ned(array(in.flight.position_integral));
   out.lift_ratio(in.flight.lift_ratio);
   out.gains_from(to_message(in.flight.gains.from));
@@ -310,16 +349,6 @@ msg::ControllerState to_message(const ControllerReport& in) {
   out.rotor_state(static_cast<std::uint8_t>(in.flight.rotor_state));
   out.rotor_count(static_cast<std::uint8_t>(in.rotor_count));
   out.throttle(in.flight.throttle);
-  for (std::size_t i = 0; i < state.requests.size(); ++i) {
-    const control::RequestStatus& request = state.requests[i];
-    out.request_clients()[i] = request.key.client;
-    out.request_ids()[i] = request.key.id;
-    out.request_kinds()[i] = static_cast<std::uint8_t>(request.kind);
-    out.request_states()[i] = static_cast<std::uint8_t>(request.state);
-    out.request_ended_by()[i] = kind_of_end(request);
-    out.request_reasons()[i] = static_cast<std::uint8_t>(request.reason);
-    out.request_progress()[i] = static_cast<float>(request.progress);
-  }
   return out;
 }
 

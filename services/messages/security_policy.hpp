@@ -10,8 +10,8 @@ namespace swiftlet::messages {
 // participants find each other, and their handshakes.
 std::string governance_document();
 
-// Of a role of topic_roles.hpp: it writes its topics of these vehicles, and reads all topics. subject: of its certificate.
-// Valid for ten years from now: the certificate ends earlier.
+// The permissions of a role of topic_roles.hpp: it writes its topics of these vehicles, and reads all topics. subject: of its
+// certificate. Valid for ten years from now: the certificate ends earlier.
 std::string permissions_document(const std::string& role, const std::string& subject,
                                  const std::vector<std::string>& vehicles);
 

@@ -20,7 +20,8 @@ template <class Message>
 struct StatesWireVersion<Message, std::void_t<decltype(std::declval<const Message&>().wire_version())>>
     : std::true_type {};
 
-// Of a payload in CDR, with its encapsulation header, of a message that begins with wire_version. nullopt: it is too short.
+// The version in a payload in CDR, with its encapsulation header, of a message that begins with wire_version. nullopt: the
+// payload is too short.
 inline std::optional<std::uint32_t> wire_version_of(const std::uint8_t* payload, std::size_t size) {
   constexpr std::size_t kHeader = 4;
   if (size < kHeader + sizeof(std::uint32_t)) return std::nullopt;

@@ -42,7 +42,7 @@ class FrameThread {
   // Call both when every taker has been added, and after the last has been removed.
   void start();
   void stop();
-  // Of the source; only before start() and after stop().
+  // Call only before start() and after stop().
   const mocap::Source& source() const { return *source_; }
 
  private:

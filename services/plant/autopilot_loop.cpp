@@ -202,7 +202,7 @@ void AutopilotLoop::publish() {
   if (simulation.stamp_ns() > 0) autopilot_.send(samples);
 }
 
-// Of another process that is the vehicle, the truth is known at the time by its clock at which the present sample was due.
+// If another process is the vehicle, its truth is known at the time by its clock at which the present sample was due.
 void AutopilotLoop::publish_samples(bool truth_needed) {
   const std::int64_t pace_ns =
       std::llround(static_cast<double>(vehicle_.simulation().stamp_ns()) / settings_.speed);

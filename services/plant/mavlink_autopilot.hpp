@@ -70,7 +70,7 @@ class MavlinkAutopilot {
   std::vector<std::uint8_t> message_bytes_;
   std::uint8_t sequence_ = 0;
 
-  // Of this connection.
+  // The state of this connection:
   std::optional<std::uint8_t> system_id_;  // of the autopilot, once known
   bool introduced_ = false;
   bool heard_ = false;

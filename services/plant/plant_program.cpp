@@ -121,14 +121,7 @@ std::string fault_of_levels(const std::string& list) {
   return "'" + list + "' is not a list of the levels actuators, rates, attitude and trajectory";
 }
 
-void add_options(runtime::CommandLine app, Options& options) {
-  app.add_option("--vehicle", options.vehicle, "Vehicle file, or the name of one in config/vehicles")
-      .show_default();
-  app.add_option("--simulation", options.simulation, "Simulation file").show_default();
-  app.add_option("--seed", options.seed,
-                 "Random seed of noise, biases and gusts; of several vehicles each has the next number")
-      .range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max())
-      .show_default();
+void add_place_options(runtime::CommandLine app, Options& options) {
   app.add_option(
          "--start", options.start,
          "Initial position on the ground, m north and m east of the origin; of several vehicles that of "
@@ -141,6 +134,49 @@ void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--per-row", options.per_row,
                  "Number of vehicles in a row; further rows stand to the north; default: all in one row")
       .range(1, 1000);
+}
+
+void add_radio_options(runtime::CommandLine app, Options& options) {
+  app.add_option("--radio-delay", options.radio_delay_s,
+                 "Radio between vehicle and control: delay one way, s; default: as in the simulation file")
+      .range(0.0, 0.2);
+  app.add_option("--radio-jitter", options.radio_jitter_s,
+                 "Radio: additional delay, uniform from 0 to this, s; default: as in the simulation file")
+      .range(0.0, 0.2);
+  app.add_option("--radio-loss", options.radio_loss,
+                 "Radio: share of the packets that are lost; default: as in the simulation file")
+      .range(0.0, 0.9);
+}
+
+void add_time_options(runtime::CommandLine app, Options& options) {
+  runtime::add_clock_option(app, options.clock);
+  app.add_option("--speed", options.speed,
+                 "Simulation speed factor (1 = real time). In lockstep an upper limit; default: as fast as "
+                 "answers arrive")
+      .range(0.01, 100.0);
+  app.add_option("--patience", options.patience_s,
+                 "Lockstep: longest time without an answer of motion capture, control or the ground that has "
+                 "answered before, s; then the flight ends; default: 2, with --security 10")
+      .range(0.1, 3600.0);
+  app.add_flag("--go-on", options.lockstep.goes_on,
+               "Lockstep: after --patience simulated time goes on without motion capture or control, without "
+               "control at a quarter of the pace of real time, until it answers again");
+  app.add_flag("--paused", options.lockstep.paused, "Lockstep: advance time only up to simulation_clock");
+  app.add_option(
+      "--trace", options.lockstep.trace,
+      "Lockstep: write every sample and command of the flight to this CSV file, without rounding; in the "
+      "path, {} stands for the name of the vehicle");
+}
+
+void add_options(runtime::CommandLine app, Options& options) {
+  app.add_option("--vehicle", options.vehicle, "Vehicle file, or the name of one in config/vehicles")
+      .show_default();
+  app.add_option("--simulation", options.simulation, "Simulation file").show_default();
+  app.add_option("--seed", options.seed,
+                 "Random seed of noise, biases and gusts; of several vehicles each has the next number")
+      .range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max())
+      .show_default();
+  add_place_options(app, options);
   app.add_option(
          "--level", options.levels,
          "Levels at which the vehicle accepts commands, separated by commas: actuators, rates, attitude, "
@@ -160,32 +196,8 @@ void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--rotor-speed-rate", options.rotor_speed_rate_hz,
                  "Rate of rotor speed samples, Hz; 0: none; default: as in the simulation file")
       .range(0.0, 1000.0);
-  app.add_option("--radio-delay", options.radio_delay_s,
-                 "Radio between vehicle and control: delay one way, s; default: as in the simulation file")
-      .range(0.0, 0.2);
-  app.add_option("--radio-jitter", options.radio_jitter_s,
-                 "Radio: additional delay, uniform from 0 to this, s; default: as in the simulation file")
-      .range(0.0, 0.2);
-  app.add_option("--radio-loss", options.radio_loss,
-                 "Radio: share of the packets that are lost; default: as in the simulation file")
-      .range(0.0, 0.9);
-  runtime::add_clock_option(app, options.clock);
-  app.add_option("--speed", options.speed,
-                 "Simulation speed factor (1 = real time). In lockstep an upper limit; default: as fast as "
-                 "answers arrive")
-      .range(0.01, 100.0);
-  app.add_option("--patience", options.patience_s,
-                 "Lockstep: longest time without an answer of motion capture, control or the ground that has "
-                 "answered before, s; then the flight ends; default: 2, with --security 10")
-      .range(0.1, 3600.0);
-  app.add_flag("--go-on", options.lockstep.goes_on,
-               "Lockstep: after --patience simulated time goes on without motion capture or control, without "
-               "control at a quarter of the pace of real time, until it answers again");
-  app.add_flag("--paused", options.lockstep.paused, "Lockstep: advance time only up to simulation_clock");
-  app.add_option(
-      "--trace", options.lockstep.trace,
-      "Lockstep: write every sample and command of the flight to this CSV file, without rounding; in the "
-      "path, {} stands for the name of the vehicle");
+  add_radio_options(app, options);
+  add_time_options(app, options);
   add_autopilot_options(app, options);
   options.node.name = "plant";
   dds::add_service_options(app, options.node);

@@ -87,7 +87,7 @@ class SimulatedVehicle {
   void publish_samples_in_order(std::uint64_t mocap_sequence, bool truth_needed);
   // Lockstep: the IMU sample that was published at this stamp and waits for its answer.
   const std::optional<std::uint64_t>& awaited() const { return awaited_; }
-  // It is answered. Over a radio, publishes the next one that has arrived at this stamp.
+  // The awaited sample is answered. Over a radio, publishes the next one that has arrived at this stamp.
   void go_on_in_order();
   void publish_imu_again();
   void publish_again();  // the newest sample of each topic

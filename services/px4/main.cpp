@@ -48,6 +48,38 @@ struct Options {
 constexpr int kPx4Port = 14580;
 constexpr int kOwnPort = 14540;
 
+void add_vision_options(runtime::CommandLine app, VisionSettings& vision) {
+  app.add_option(
+         "--vision-rate", vision.rate_hz,
+         "Most poses of motion capture sent to PX4, Hz, 10 to 200; 0: none, to PX4 with sensors of its own")
+      .range(0.0, 200.0)
+      .show_default();
+  app.add_choice(
+         "--vision-stamps", vision.stamps, {{"now", VisionStamps::kNow}, {"agent", VisionStamps::kAgent}},
+         "Stamps of these poses: now, PX4 takes their arrival, or agent: the time of their exposure by the "
+         "system clock, for an agent on this host")
+      .show_default("now");
+  app.add_option("--vision-position-deviation", vision.deviation.position_m,
+                 "Standard deviation of their position, m")
+      .range(1e-4, 1.0)
+      .show_default();
+  app.add_option("--vision-attitude-deviation", vision.deviation.attitude_rad,
+                 "Standard deviation of their attitude, rad")
+      .range(1e-4, 1.0)
+      .show_default();
+}
+
+void add_parameter_options(runtime::CommandLine app, Options& options) {
+  app.add_flag("--check-parameters", options.check_parameters,
+               "List the parameters of PX4 that flights with Swiftlet need, read over MAVLink from UDP port "
+               "14580 + N, and "
+               "end; exit code 1 if one differs");
+  app.add_flag("--set-parameters", options.set_parameters, "The same, and set those that differ");
+  app.add_flag("--remote-control", options.has_remote_control,
+               "With these: a pilot has a remote control, whose absence stays a failsafe");
+  app.add_option("--mavlink-host", options.mavlink_host, "With these: IPv4 address of PX4").show_default();
+}
+
 void add_options(runtime::CommandLine app, Options& options) {
   BridgeSettings& bridge = options.bridge;
   app.add_option("--vehicle", options.vehicle, "Vehicle file, or the name of one in config/vehicles")
@@ -84,33 +116,8 @@ void add_options(runtime::CommandLine app, Options& options) {
                  "Time without a command of control after which PX4 is told to land, s")
       .range(0.1, 1.0)
       .show_default();
-  app.add_option(
-         "--vision-rate", bridge.vision.rate_hz,
-         "Most poses of motion capture sent to PX4, Hz, 10 to 200; 0: none, to PX4 with sensors of its own")
-      .range(0.0, 200.0)
-      .show_default();
-  app.add_choice(
-         "--vision-stamps", bridge.vision.stamps,
-         {{"now", VisionStamps::kNow}, {"agent", VisionStamps::kAgent}},
-         "Stamps of these poses: now, PX4 takes their arrival, or agent: the time of their exposure by the "
-         "system clock, for an agent on this host")
-      .show_default("now");
-  app.add_option("--vision-position-deviation", bridge.vision.deviation.position_m,
-                 "Standard deviation of their position, m")
-      .range(1e-4, 1.0)
-      .show_default();
-  app.add_option("--vision-attitude-deviation", bridge.vision.deviation.attitude_rad,
-                 "Standard deviation of their attitude, rad")
-      .range(1e-4, 1.0)
-      .show_default();
-  app.add_flag("--check-parameters", options.check_parameters,
-               "List the parameters of PX4 that flights with Swiftlet need, read over MAVLink from UDP port "
-               "14580 + N, and "
-               "end; exit code 1 if one differs");
-  app.add_flag("--set-parameters", options.set_parameters, "The same, and set those that differ");
-  app.add_flag("--remote-control", options.has_remote_control,
-               "With these: a pilot has a remote control, whose absence stays a failsafe");
-  app.add_option("--mavlink-host", options.mavlink_host, "With these: IPv4 address of PX4").show_default();
+  add_vision_options(app, bridge.vision);
+  add_parameter_options(app, options);
   options.node.name = "px4";
   dds::add_service_options(app, options.node);
   runtime::add_process_options(app, options.process);

@@ -64,7 +64,7 @@ class OffboardSession {
   // Setpoints of control are passed on to PX4, each once.
   bool streams() const;
   bool rotors_running() const { return armed_; }
-  // Of vehicle_info: what PX4 or its link does that is not flying on command; empty in ordinary operation.
+  // The fault in vehicle_info: what PX4 or its link does other than to fly on command; empty in ordinary operation.
   const std::string& fault() const { return fault_; }
 
  private:
@@ -89,7 +89,7 @@ class OffboardSession {
   bool armed_ = false;
   bool offboard_ = false;
   std::uint8_t system_ = 1;
-  // Of the command under way.
+  // The command under way:
   std::uint32_t command_ = 0;
   int sent_ = 0;
   std::int64_t sent_ns_ = 0;

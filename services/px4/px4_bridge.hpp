@@ -42,7 +42,7 @@ class Px4Bridge final : public runtime::HostedVehicle {
 
  private:
   void subscribe();
-  // Each in the thread that receives.
+  // Each is called by the thread that receives the topic.
   void on_sensors(const msg::SensorCombined& message);
   void on_odometry(const msg::VehicleOdometry& message);
   void on_battery(const msg::BatteryStatus& message);
@@ -66,7 +66,7 @@ class Px4Bridge final : public runtime::HostedVehicle {
   dds::ThrottledWarning odometry_faults_{"vehicle_odometry"};
   runtime::RealtimeThread sensor_thread_, odometry_thread_, command_thread_, pose_thread_;
 
-  // Of the main thread.
+  // Only the main thread uses these.
   Phase logged_phase_ = Phase::kDisconnected;
   std::string logged_fault_;
   std::uint64_t logged_refused_ = 0;

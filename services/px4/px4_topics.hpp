@@ -23,7 +23,7 @@ namespace swiftlet::px4 {
 
 namespace msg = px4_msgs::msg;
 
-// Of the first instance, 0, "/fmu"; of instance N "/px4_N/fmu", as PX4's simulation names them.
+// The folder of the first instance, 0, is "/fmu", that of instance N "/px4_N/fmu", as PX4's simulation names them.
 std::string topic_folder(int instance);
 
 // A topic of PX4 whose name this object keeps. The name begins with "/": it is outside the namespace of a vehicle.
@@ -42,14 +42,14 @@ struct Px4Topics {
   explicit Px4Topics(int instance) : folder(topic_folder(instance)) {}
 
   std::string folder;
-  // To PX4.
+  // Topics that PX4 reads.
   Px4Topic<msg::OffboardControlMode> offboard_control_mode{folder, "/in/offboard_control_mode"};
   Px4Topic<msg::TrajectorySetpoint> trajectory_setpoint{folder, "/in/trajectory_setpoint"};
   Px4Topic<msg::VehicleAttitudeSetpoint> attitude_setpoint{folder, "/in/vehicle_attitude_setpoint"};
   Px4Topic<msg::VehicleRatesSetpoint> rates_setpoint{folder, "/in/vehicle_rates_setpoint"};
   Px4Topic<msg::VehicleOdometry> visual_odometry{folder, "/in/vehicle_visual_odometry"};
   Px4Topic<msg::VehicleCommand> command{folder, "/in/vehicle_command"};
-  // From PX4.
+  // Topics that PX4 publishes.
   Px4Topic<msg::SensorCombined> sensors{folder, "/out/sensor_combined"};
   Px4Topic<msg::VehicleOdometry> odometry{folder, "/out/vehicle_odometry"};
   Px4Topic<msg::BatteryStatus> battery{folder, "/out/battery_status"};

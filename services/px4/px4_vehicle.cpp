@@ -55,7 +55,7 @@ std::optional<messages::msg::VehicleOdometry> Px4Vehicle::on_odometry(const msg:
   if (settings_.samples != Samples::kOdometry || version_.state == VersionState::kUnknown)
     return std::nullopt;
   sampled_ns_ = now_ns;
-  // Of the IMU sample that it was propagated to; message.timestamp() is when it was published.
+  // The stamp is that of the IMU sample that the estimate was propagated to; message.timestamp() is when it was published.
   estimate_.stamp_ns = clock_.to_host(message.timestamp_sample(), now_ns);
   estimate_.sequence = ++samples_;
   estimate_.fuses_mocap = vision_.passed() > 0;

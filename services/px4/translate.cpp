@@ -19,7 +19,7 @@ using messages::wire::Check;
 constexpr float kUnused = std::numeric_limits<float>::quiet_NaN();
 constexpr std::array<float, 3> kUnusedVector{kUnused, kUnused, kUnused};
 
-// Of commands: what ground stations use, so that PX4 sees them as external.
+// The source of commands is the one that ground stations use, so that PX4 sees them as external.
 constexpr std::uint8_t kOurSystem = 255;
 constexpr std::uint16_t kOurComponent = 191;  // MAV_COMP_ID_ONBOARD_COMPUTER
 

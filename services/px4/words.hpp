@@ -10,14 +10,14 @@ namespace swiftlet::px4 {
 
 constexpr std::uint8_t kAutopilotComponent = 1;  // of MAVLink: the flight controller
 
-// Of VehicleStatus.
+// VehicleStatus:
 constexpr std::uint8_t kArmingStateArmed = 2;
 constexpr std::uint8_t kNavStateOffboard = 14;
 constexpr std::uint8_t kNavStateLand = 18;
 constexpr std::uint8_t kNavStateDescend = 12;
 constexpr std::uint8_t kNavStateTermination = 13;
 
-// Of VehicleCommand and VehicleCommandAck.
+// VehicleCommand and VehicleCommandAck:
 constexpr std::uint32_t kCommandLand = 21;
 constexpr std::uint32_t kCommandSetMode = 176;
 constexpr std::uint32_t kCommandArmDisarm = 400;

@@ -26,17 +26,17 @@ std::vector<std::uint8_t> to_user_data(const Announcement& announcement);
 // Keys that are missing or malformed leave their field empty.
 Announcement from_user_data(const std::vector<std::uint8_t>& user_data);
 
-// Of two processes: none of them serves a vehicle of the other, and both say that they need not know of each other.
-// Each of them then ignores the other. Both are user data, or only its keys "vehicle" and "hears".
+// True if neither of two processes serves a vehicle of the other, and both say that they need not know of each other.
+// Each of them then ignores the other. own, other: user data, or only its keys "vehicle" and "hears".
 bool are_apart(std::string_view own, std::string_view other);
 
 // True if a list of names, "kl1,kl2", contains the name.
 bool lists(const std::string& names, const std::string& name);
 std::vector<std::string> split_names(const std::string& names);
 
-// Of two processes that are to be the only source of a topic, decides whether `own` yields to `other`. The one
-// that is not established yields to the established one. Otherwise the one that joined later yields, so that
-// exactly one of them stays; host and process number decide between equal times.
+// Decides whether `own` yields to `other`, if both are to be the only source of a topic. The one that is not
+// established yields to the established one. Otherwise the one that joined later yields, so that exactly one of
+// them stays; host and process number decide between equal times.
 bool yields(const Announcement& own, const Announcement& other);
 
 }  // namespace swiftlet::rtps

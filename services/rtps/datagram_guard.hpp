@@ -59,7 +59,7 @@ class DatagramGuard {
   std::size_t participants_heard(const Now& now);
   std::vector<Joined> participants_joined(const Now& now);
 
-  // As they say themselves.
+  // The name that a participant says itself.
   std::string name_of(const GuidPrefix& participant);
 
   bool seals() const { return sealer_.has_value(); }
@@ -71,11 +71,11 @@ class DatagramGuard {
 
   RefusalLog& refusals() { return refusals_; }
 
-  // Where others are reached now.
+  // The addresses at which other hosts are reached now.
   bool has_moved_hosts() const { return moved_hosts_.any(); }
   Ipv4 now_at(Ipv4 announced);
   MovedHosts::News take_moves();
-  // Those of this host, with an address.
+  // own: the interfaces of this host that have an address.
   void set_own_interfaces(const std::vector<io::Interface>& own);
 
   // Held while the middleware takes in what a discovery server sent, and while its participant announces a change: Fast DDS

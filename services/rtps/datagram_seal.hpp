@@ -13,7 +13,8 @@
 
 namespace swiftlet::rtps {
 
-// Of the trailer. It replaces the statistics submessage of Fast DDS, which has the same size: the datagram does not grow.
+// The size of the trailer. It replaces the statistics submessage of Fast DDS, which has the same size: the datagram does not
+// grow.
 constexpr std::size_t kSealBytes = 60;
 // How much the clocks of two hosts may differ. A process that never heard a participant accepts a recording of it for this
 // long.

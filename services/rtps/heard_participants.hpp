@@ -35,9 +35,9 @@ class HeardParticipants {
 
   // Participants that have announced themselves within the last seconds.
   std::size_t heard_lately(std::int64_t now_ns) const;
-  // Those of them that have joined.
+  // The participants heard lately that have joined.
   std::vector<Joined> joined(std::int64_t now_ns) const;
-  // What it said last, shortened if it is long; empty if it is not known. Nothing proves it.
+  // The name that a participant said last, shortened if it is long; empty if it is not known. Nothing proves the name.
   std::string name_of(const GuidPrefix& participant) const;
 
  private:

@@ -37,7 +37,7 @@ struct Announced {
   boost::container::static_vector<Ipv4, 8> addresses;
 };
 
-// Of the DATA that holds the list.
+// The DATA submessage that holds the list.
 struct ListContext {
   const std::uint8_t* datagram = nullptr;
   GuidPrefix source{};  // of the datagram
@@ -50,12 +50,12 @@ struct ListContext {
 
 // Leaves `body` behind the list. names_key: set to true if it holds a key of the topic.
 const char* check_inline_qos(ByteReader& body, const ListContext& context, bool& names_key);
-// Of the topics kParticipant and kEndpoint. key_only: the payload names what is gone, and holds no more.
+// Checks a payload of the topics kParticipant and kEndpoint. key_only: it names what is gone, and holds no more.
 const char* check_discovery_payload(ByteReader payload, const ListContext& context, bool key_only,
                                     PlacesToChange& places, Announced& announced);
-// Of the topic kLiveliness.
+// Checks a payload of the topic kLiveliness.
 const char* check_liveliness_payload(ByteReader payload, const ListContext& context);
-// Of the topic kHandshake: ParticipantGenericMessage of DDS Security 1.1, 7.4.4.
+// Checks a payload of the topic kHandshake, a ParticipantGenericMessage of DDS Security 1.1, 7.4.4.
 const char* check_handshake_payload(ByteReader payload);
 
 }  // namespace swiftlet::rtps

@@ -25,7 +25,7 @@ enum SubmessageKind : std::uint8_t {
   kHeartbeatFrag = 0x13,
   kData = 0x15,
   kDataFrag = 0x16,
-  // Of DDS Security (7.3.6.2):
+  // DDS Security, 7.3.6.2:
   kSecureBody = 0x30,
   kSecurePrefix = 0x31,
   kSecurePostfix = 0x32,

@@ -17,7 +17,7 @@ struct ProcessOptions {
 
 void add_log_options(CommandLine app, LogSettings& log);  // --log-level, --log-file
 
-// Those of add_log_options(), --no-realtime, --priority, --cpu. The priority in options is the default.
+// Adds the options of add_log_options(), --no-realtime, --priority, --cpu. The priority in options is the default.
 void add_process_options(CommandLine app, ProcessOptions& options);
 
 // Locks memory and checks that make_this_thread_realtime() will succeed. Logs one warning with what the

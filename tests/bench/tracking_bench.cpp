@@ -6,11 +6,9 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -21,30 +19,27 @@
 #include "swiftlet/ground/mission/pace.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/configuration.hpp"
-#include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
-#include "swiftlet/io/text_file.hpp"
 #include "swiftlet/record/evaluation.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
 #include "swiftlet/record/mcap/reader.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 #include "swiftlet/simulation/closed_loop.hpp"
 #include "tests/bench/rough_air.hpp"
+#include "tests/bench/tracking_paths.hpp"
 #include "tests/support/paths.hpp"
 
 namespace swiftlet {
 namespace {
 
-using control::PolynomialSegment;
-using Eigen::Vector2d;
+using bench::Path;
 using Eigen::Vector3d;
 
-constexpr double kHeight = 1.0;  // m
-constexpr double kHover = 5.0;   // s before a path
-constexpr double kJoin = 0.5;    // s, join to a trajectory that starts at the current position
-constexpr double kJump = 1e-4;   // m, step between segments with rounded coefficients
+constexpr double kHover = 5.0;  // s before a path
+constexpr double kJoin = 0.5;   // s, join to a trajectory that starts at the current position
+constexpr double kJump = 1e-4;  // m, step between segments with rounded coefficients
 
 struct Options {
   std::string figure_of_eight = tests::in_source("tests/data/crazyswarm_figure8.csv");
@@ -54,179 +49,6 @@ struct Options {
   bool rough = false;
   int flights = 200;
 };
-
-// A path: desired positions, and the trajectory commanded for it.
-struct Path {
-  std::string name;
-  std::function<Vector3d(double)> position_ned;  // at a time from the trajectory's start, s
-  control::Trajectory trajectory;
-  double score_from_s = 0.0;
-  double score_to_s = 0.0;
-};
-
-// Position, velocity, acceleration and jerk in the plane.
-struct Knot {
-  Vector2d p = Vector2d::Zero();
-  Vector2d v = Vector2d::Zero();
-  Vector2d a = Vector2d::Zero();
-  Vector2d j = Vector2d::Zero();
-};
-
-// The polynomial of degree 7 between two knots.
-PolynomialSegment join(const Knot& from, const Knot& to, double duration_s) {
-  Eigen::Matrix4d powers;  // of position, velocity, acceleration and jerk at the end, from t^4 on
-  const double t = duration_s;
-  for (int k = 0; k < 4; ++k) {
-    const double n = k + 4;
-    powers(0, k) = std::pow(t, n);
-    powers(1, k) = n * std::pow(t, n - 1);
-    powers(2, k) = n * (n - 1) * std::pow(t, n - 2);
-    powers(3, k) = n * (n - 1) * (n - 2) * std::pow(t, n - 3);
-  }
-  const auto axis = [&](int i) {
-    control::Polynomial c{from.p[i], from.v[i], from.a[i] / 2.0, from.j[i] / 6.0};
-    Eigen::Vector4d rest;
-    rest << to.p[i] - (c[0] + t * (c[1] + t * (c[2] + t * c[3]))),
-        to.v[i] - (c[1] + t * (2.0 * c[2] + t * 3.0 * c[3])), to.a[i] - (2.0 * c[2] + t * 6.0 * c[3]),
-        to.j[i] - 6.0 * c[3];
-    const Eigen::Vector4d high = powers.partialPivLu().solve(rest);
-    for (std::size_t k = 0; k < 4; ++k) c[k + 4] = high[static_cast<Eigen::Index>(k)];
-    return c;
-  };
-  PolynomialSegment segment;
-  segment.duration_s = duration_s;
-  segment.x = axis(0);
-  segment.y = axis(1);
-  segment.z[0] = -kHeight;
-  return segment;
-}
-
-Vector3d at_height(const Vector2d& p) { return {p.x(), p.y(), -kHeight}; }
-
-constexpr double kHold = 4.0;  // s before and after a square
-constexpr double kSide = 8.0;  // s
-
-std::array<Vector2d, 5> corners(double length) {
-  return {Vector2d{0, 0}, Vector2d{length, 0}, Vector2d{length, length}, Vector2d{0, length}, Vector2d{0, 0}};
-}
-
-// Sides at constant speed with velocity steps at the corners. The trajectory smooths each step within kBlend
-// before and after it, since a vehicle cannot follow a step.
-Path square(const std::string& name, double length) {
-  constexpr double kBlend = 0.22;  // s
-  const auto at = corners(length);
-  const auto knot = [at](double t) {
-    const double u = std::clamp((t - kHold) / kSide, 0.0, 4.0);
-    const auto side = static_cast<std::size_t>(std::min(std::floor(u), 3.0));
-    const bool moves = t > kHold && t < kHold + 4.0 * kSide;
-    const Vector2d along = at[side + 1] - at[side];
-    return Knot{at[side] + (u - static_cast<double>(side)) * along,
-                moves ? Vector2d(along / kSide) : Vector2d::Zero()};
-  };
-  Path path{name, [knot](double t) { return at_height(knot(t).p); }, {}, 0.0, 2.0 * kHold + 4.0 * kSide};
-  double from = 0.0;
-  for (int corner = 0; corner <= 4; ++corner) {
-    const double t = kHold + kSide * corner;
-    for (const double to : {t - kBlend, t + kBlend}) {
-      path.trajectory.segments.push_back(join(knot(from), knot(to), to - from));
-      from = to;
-    }
-  }
-  path.trajectory.segments.push_back(join(knot(from), knot(path.score_to_s), path.score_to_s - from));
-  return path;
-}
-
-Path minimum_jerk_square() {
-  const auto at = corners(2.0);
-  const auto hold = [](const Vector2d& p) { return join({p}, {p}, kHold); };
-  control::Trajectory trajectory;
-  trajectory.segments.push_back(hold(at[0]));
-  for (std::size_t i = 0; i < 4; ++i) {
-    trajectory.segments.push_back(
-        control::minimum_jerk(at_height(at[i]), 0.0, at_height(at[i + 1]), 0.0, kSide));
-  }
-  trajectory.segments.push_back(hold(at[4]));
-  return {"sq2j", {}, trajectory, 0.0, 2.0 * kHold + 4.0 * kSide};
-}
-
-// Laps of a Crazyswarm trajectory file: duration, then eight coefficients each of x, y, z and yaw, in ENU.
-Path figure_of_eight(const std::string& file, int laps) {
-  std::vector<std::string> columns{"duration"};
-  for (const char* axis : {"x", "y", "z", "yaw"}) {
-    for (int power = 0; power < control::kPolynomialCoefficients; ++power)
-      columns.push_back(std::string(axis) + "^" + std::to_string(power));
-  }
-  const io::CsvTable table = io::parse_csv(io::read_text_file(file), file, columns, 1, {true, true});
-  Path path{"fig8", {}, {}, 0.0, 0.0};
-  for (int lap = 0; lap < laps; ++lap) {
-    for (std::size_t row = 0; row < table.row_count(); ++row) {
-      PolynomialSegment segment;
-      segment.duration_s = table.number(row, 0);
-      for (std::size_t k = 0; k < segment.x.size(); ++k) {
-        segment.y[k] = table.number(row, 1 + k);
-        segment.x[k] = table.number(row, 9 + k);
-        segment.z[k] = -table.number(row, 17 + k);
-      }
-      segment.z[0] -= kHeight;
-      path.trajectory.segments.push_back(segment);
-      path.score_to_s += segment.duration_s;
-    }
-  }
-  return path;
-}
-
-// x = 2 sin(w t), y = sin(2 w t), 10 s per lap, as polynomials of degree 7 over 0.5 s, after 10 s of
-// acceleration from rest.
-Path lemniscate() {
-  constexpr double kLap = 10.0;
-  constexpr double kPiece = 0.5;
-  constexpr int kPieces = 100;
-  constexpr double kEnd = kPieces * kPiece;
-  constexpr double kW = 2.0 * M_PI / kLap;
-  const auto point = [](double phase) { return Vector2d(2.0 * std::sin(phase), std::sin(2.0 * phase)); };
-  // Its rate rises from 0 to w as 10 s^3 - 15 s^4 + 6 s^5 does to 1.
-  const auto phase = [](double t) {
-    if (t >= kLap) return kW * (t - kLap / 2.0);
-    const double s = t / kLap;
-    return kW * kLap * s * s * s * s * (2.5 - 3.0 * s + s * s);
-  };
-  const auto knot = [&](double t) {
-    // Derivatives by central differences of step h, exact to h^4.
-    constexpr double kH = 2e-3;
-    const auto f = [&](int n) { return point(phase(t + n * kH)); };
-    const Vector2d v = (f(-2) - 8.0 * f(-1) + 8.0 * f(1) - f(2)) / (12.0 * kH);
-    const Vector2d a = (-f(-2) + 16.0 * f(-1) - 30.0 * f(0) + 16.0 * f(1) - f(2)) / (12.0 * kH * kH);
-    const Vector2d j = (-f(-2) + 2.0 * f(-1) - 2.0 * f(1) + f(2)) / (-2.0 * kH * kH * kH);
-    return Knot{f(0), v, a, j};
-  };
-  Path path{"lem", [phase, point](double t) { return at_height(point(phase(t))); }, {}, kLap, kEnd};
-  Knot from{point(0.0)};
-  for (int piece = 1; piece <= kPieces; ++piece) {
-    const Knot to = knot(kPiece * piece);
-    path.trajectory.segments.push_back(join(from, to, kPiece));
-    from = to;
-  }
-  return path;
-}
-
-Path faster(const Path& path, double factor) {
-  Path out = path;
-  if (path.position_ned)
-    out.position_ned = [path, factor](double t) { return path.position_ned(factor * t); };
-  for (PolynomialSegment& segment : out.trajectory.segments)
-    segment = control::stretched(segment, 1.0 / factor);
-  out.score_from_s /= factor;
-  out.score_to_s /= factor;
-  return out;
-}
-
-Vector3d reference_at(const control::Trajectory& trajectory, double t) {
-  for (const PolynomialSegment& segment : trajectory.segments) {
-    if (t <= segment.duration_s) return control::evaluate(segment, t).position_ned;
-    t -= segment.duration_s;
-  }
-  return control::evaluate(trajectory.segments.back(), trajectory.segments.back().duration_s).position_ned;
-}
 
 struct Score {
   double rms_m = 0.0;
@@ -253,7 +75,7 @@ Score fly(const Path& path, const plant::SimulationSettings& simulation,
   loop.step_until([&] { return loop.time_s() >= 1.0; }, 2.0);
   send_request(loop, request(control::RequestKind::kArm));
   control::Request takeoff = request(control::RequestKind::kTakeoff);
-  takeoff.position_ned.z() = -kHeight;
+  takeoff.position_ned.z() = -bench::kHeight;
   send_request(loop, takeoff);
   if (!loop.step_until([&] { return loop.controller.status().mode == control::Mode::kHolding; }, 20.0))
     throw std::runtime_error("did not take off");
@@ -271,7 +93,7 @@ Score fly(const Path& path, const plant::SimulationSettings& simulation,
     loop.step();
     const double t = loop.time_s() - start_s;
     if (t < path.score_from_s) continue;
-    const Vector3d commanded = reference_at(path.trajectory, t);
+    const Vector3d commanded = bench::reference_at(path.trajectory, t);
     if ((loop.controller.reference().position_ned - commanded).norm() > kJump)
       throw std::runtime_error(path.name + ": the controller does not follow the trajectory of this time");
     const Vector3d desired = path.position_ned ? path.position_ned(t) : commanded;
@@ -330,7 +152,7 @@ FastFlight fly_fast(const Path& path, double speed, const plant::SimulationSetti
                     const plant::SimulationSettings& real, const control::ControlSettings& settings,
                     std::uint64_t seed) {
   const plant::Vehicle vehicle = io::load_vehicle(io::find_config("vehicles/kaylion.yaml"));
-  const Path fast = faster(path, speed);
+  const Path fast = bench::faster(path, speed);
   FastFlight out{path.name, speed, {}, {}, {}, ""};
   out.demands = control::worst_demands(vehicle, settings.limits, settings.failsafe.low_battery_voltage,
                                        fast.trajectory.segments);
@@ -391,6 +213,38 @@ std::string limit_of(const Path& path, const control::ControlSettings& settings)
                      1.0 / pace.time_scale, pace.limit);
 }
 
+using Scores = std::array<Score, 5>;
+
+void print_scores(const std::vector<Path>& paths, const Scores& with_perfect, const Scores& with_sensors) {
+  std::printf("%-42s", "3-D error against truth, RMS in mm");
+  for (const Path& path : paths) std::printf("%8s", path.name.c_str());
+  std::printf("\n");
+  const auto print = [](const char* name, const auto& values) {
+    std::printf("%-42s", name);
+    for (const double value : values) std::printf("%8.2f", value * 1e3);
+    std::printf("\n");
+  };
+  const auto of = [](const Scores& scores, double Score::*what) {
+    std::array<double, 5> values{};
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = scores[i].*what;
+    return values;
+  };
+  print("Swiftlet, perfect state feedback, 1 kHz", of(with_perfect, &Score::rms_m));
+  print("  peak", of(with_perfect, &Score::peak_m));
+  print("Swiftlet, all sensor models, 500 Hz", of(with_sensors, &Score::rms_m));
+  print("  peak", of(with_sensors, &Score::peak_m));
+  for (const Peer& peer : kPeers) print(peer.name, peer.rms_m);
+  std::printf(
+      "\nsq2: 2 m square at 1 m, 4 s hold, sides of 8 s at constant speed, 4 s hold; sq4: 4 m; sq2j: "
+      "minimum-jerk sides;\n"
+      "fig8: 5 laps of crazyswarm's figure8.csv; lem: x = 2 sin(wt), y = sin(2wt), 10 s a lap, from the "
+      "second lap.\n"
+      "Swiftlet is commanded sq2 and sq4 with corners that polynomials round off; scored against the path "
+      "with its corners.\n"
+      "All sensor models: IMU noise and bias, mocap at 100 Hz with 0.1 mm and 10 ms of latency, the battery "
+      "sagging.\n");
+}
+
 void run(const Options& options) {
   control::ControlSettings settings = io::load_control_settings(io::find_config("control/motor_lag.yaml"));
   settings.limits.fence_min_ned = {-5.0, -5.0, -2.5};  // sq4 exceeds the default fence
@@ -399,13 +253,14 @@ void run(const Options& options) {
   perfect.imu.rate_hz = perfect.mocap.rate_hz = perfect.rotor_speed_rate_hz = 1000.0;
   const plant::SimulationSettings real =
       io::load_simulation_settings(io::find_config("simulation/default.yaml"));
-  const std::vector<Path> paths = {square("sq2", 2.0), square("sq4", 4.0), minimum_jerk_square(),
-                                   figure_of_eight(options.figure_of_eight, 5), lemniscate()};
+  const std::vector<Path> paths = {bench::square("sq2", 2.0), bench::square("sq4", 4.0),
+                                   bench::minimum_jerk_square(),
+                                   bench::figure_of_eight(options.figure_of_eight, 5), bench::lemniscate()};
 
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   const auto add = [&](const std::string& name, const plant::SimulationSettings& simulation) {
     nlohmann::ordered_json row{{"name", name}};
-    std::array<Score, 5> scores;
+    Scores scores;
     for (std::size_t i = 0; i < paths.size(); ++i) {
       scores[i] = fly(paths[i], simulation, settings, options.seed);
       row[paths[i].name] = {{"rms_m", scores[i].rms_m}, {"peak_m", scores[i].peak_m}};
@@ -426,33 +281,7 @@ void run(const Options& options) {
     std::printf("%s\n", rows.dump().c_str());
     return;
   }
-  std::printf("%-42s", "3-D error against truth, RMS in mm");
-  for (const Path& path : paths) std::printf("%8s", path.name.c_str());
-  std::printf("\n");
-  const auto print = [](const char* name, const auto& values) {
-    std::printf("%-42s", name);
-    for (const double value : values) std::printf("%8.2f", value * 1e3);
-    std::printf("\n");
-  };
-  const auto of = [](const std::array<Score, 5>& scores, double Score::*what) {
-    std::array<double, 5> values{};
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = scores[i].*what;
-    return values;
-  };
-  print("Swiftlet, perfect state feedback, 1 kHz", of(with_perfect, &Score::rms_m));
-  print("  peak", of(with_perfect, &Score::peak_m));
-  print("Swiftlet, all sensor models, 500 Hz", of(with_sensors, &Score::rms_m));
-  print("  peak", of(with_sensors, &Score::peak_m));
-  for (const Peer& peer : kPeers) print(peer.name, peer.rms_m);
-  std::printf(
-      "\nsq2: 2 m square at 1 m, 4 s hold, sides of 8 s at constant speed, 4 s hold; sq4: 4 m; sq2j: "
-      "minimum-jerk sides;\n"
-      "fig8: 5 laps of crazyswarm's figure8.csv; lem: x = 2 sin(wt), y = sin(2wt), 10 s a lap, from the "
-      "second lap.\n"
-      "Swiftlet is commanded sq2 and sq4 with corners that polynomials round off; scored against the path "
-      "with its corners.\n"
-      "All sensor models: IMU noise and bias, mocap at 100 Hz with 0.1 mm and 10 ms of latency, the battery "
-      "sagging.\n");
+  print_scores(paths, with_perfect, with_sensors);
   print_fast(fast);
   for (const std::size_t path : {std::size_t{3}, std::size_t{4}})
     std::printf("%s\n", limit_of(paths[path], up_to_the_rotors).c_str());

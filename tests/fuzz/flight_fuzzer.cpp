@@ -233,7 +233,7 @@ class Flight {
     if (pose.position_ned.allFinite()) loop_.controller.on_pose(pose);
   }
 
-  // Of unit length, as in an accepted message.
+  // An attitude of unit length, as in an accepted message.
   Eigen::Quaterniond attitude() {
     const Eigen::Vector3d axis = input_.vector();
     const Eigen::Vector4d wxyz(input_.number(), axis.x(), axis.y(), axis.z());

@@ -27,7 +27,8 @@ void write(const std::filesystem::path& folder, const char* name,
   file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
-// Of a type that no process converts, and so none fuzzes: for the comparison of what goes over the wire.
+// Writes a message of a type that no process converts, and so none fuzzes. It serves the comparison of what goes over the
+// wire.
 template <class PubSub>
 void write_sent(const std::filesystem::path& folder, const char* name) {
   const auto bytes = swiftlet::tests::serialized<PubSub>(example<typename PubSub::type>());

@@ -1,11 +1,7 @@
-// Recorded messages from end to end: `swiftlet record` beside a flying vehicle, and `swiftlet log`.
-#include <algorithm>
+// Recorded messages from end to end: `swiftlet record` beside a flying vehicle.
 #include <csignal>
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <memory>
-#include <sstream>
 #include <string>
 #include <sys/mount.h>
 #include <vector>
@@ -15,14 +11,11 @@
 
 #include "swiftlet/io/mocap/room.hpp"
 #include "swiftlet/math/time.hpp"
-#include "swiftlet/record/mcap/message_decoder.hpp"
 #include "swiftlet/record/mcap/reader.hpp"
-#include "swiftlet/services/dds/discovery/domain_lock.hpp"
+#include "tests/integration/recorded_log.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/hop_mission.hpp"
-#include "tests/support/paths.hpp"
 #include "tests/support/program.hpp"
-#include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::tests {
 namespace {
@@ -30,37 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using nlohmann::json;
-
-class Log : public testing::Test {
- protected:
-  std::vector<std::string> on_this_domain(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.end(), {"--domain", std::to_string(lock_.domain()), "--localhost-only"});
-    return arguments;
-  }
-  std::unique_ptr<Program> start(const std::string& program, std::vector<std::string> arguments = {}) const {
-    return std::make_unique<Program>(program, on_this_domain(std::move(arguments)), folder_.path());
-  }
-  std::string path(const std::string& name) const { return folder_.path() / name; }
-  // The vehicle alone, four times as fast as real time: 2000 IMU samples a second.
-  void start_vehicle() { vehicle_ = start("swiftlet-plant", {"--speed", "4"}); }
-  bool grows_to(const std::string& file, std::uintmax_t bytes) const {
-    return eventually([&] { return fs::exists(file) && fs::file_size(file) >= bytes; });
-  }
-
-  dds::DomainLock lock_;
-  TemporaryFolder folder_;
-  std::unique_ptr<Program> vehicle_;
-};
-
-std::map<std::string, std::vector<mcap::Message>> heads_of(const mcap::Reader& file) {
-  std::map<std::string, std::vector<mcap::Message>> heads;
-  mcap::Messages messages(file, {});
-  while (messages.next()) {
-    heads[messages.channel().topic].push_back(messages.message());
-    heads[messages.channel().topic].back().payload = {};
-  }
-  return heads;
-}
 
 std::size_t gaps_in(const std::vector<mcap::Message>& messages) {
   std::size_t gaps = 0;
@@ -139,14 +101,7 @@ TEST_F(Log, HoldsEveryMessageOfAFlight) {
   }
 }
 
-TEST_F(Log, IsPartOfTheRecordOfAFlight) {
-  const ProgramResult flight =
-      run_program("swiftlet",
-                  {"fly", folder_.write("hop.yaml", kHopMission), "--clock", "lockstep", "--seed", "5",
-                   "--domain", std::to_string(lock_.domain()), "--record", path("record"), "--json"},
-                  folder_.path(), kStuck);
-  ASSERT_EQ(flight.exit_code, 0) << flight.errors;
-  const mcap::Reader recorded(path("record/flight.mcap"), mcap::Access::kScanned);
+void expect_describes_the_flight(const mcap::Reader& recorded) {
   EXPECT_TRUE(recorded.finished());
   EXPECT_TRUE(recorded.damages().empty());
   std::map<std::string, std::map<std::string, std::string>> metadata;
@@ -157,24 +112,62 @@ TEST_F(Log, IsPartOfTheRecordOfAFlight) {
   EXPECT_EQ(about.at("control"), "motor_lag");
   EXPECT_EQ(metadata.at("swiftlet/recorder").at("time"), "vehicle");
   EXPECT_EQ(recorded.attachments().size(), 4U);
+}
+
+class RecordOfAFlight : public Log {
+ protected:
+  // Its results are those of the flight, without the report beside it.
+  void expect_results(const json& flight) const {
+    fs::copy_file(path("record/flight.mcap"), path("alone.mcap"));
+    const ProgramResult report =
+        run_program("swiftlet", {"report", path("alone.mcap"), "--json"}, folder_.path());
+    ASSERT_EQ(report.exit_code, 0) << report.errors;
+    const json reported = json::parse(report.output).at("flights").at(0);
+    EXPECT_EQ(reported.at("report").at("completed"), true);
+    EXPECT_EQ(reported.at("report").at("mission"), "hop");
+    for (const char* figure : {"rms_3d_m", "peak_3d_m", "duration_s"}) {
+      EXPECT_EQ(reported.at("report").at(figure), flight.at(figure)) << figure;
+    }
+    EXPECT_TRUE(reported.at("settings").contains("control.position.x.omega_n"));
+  }
+  // The same flight in one process has the same messages.
+  void expect_same_messages_in_one_process() const {
+    const ProgramResult simulated = run_program(
+        "swiftlet", {"sim", "fly", folder_.path() / "hop.yaml", "--seed", "5", "--record", path("sim")},
+        folder_.path(), kStuck);
+    ASSERT_EQ(simulated.exit_code, 0) << simulated.errors;
+    std::vector<std::string> diff = {"log", "diff", path("sim/flight.mcap"), path("record/flight.mcap"),
+                                     "--json"};
+    for (const char* topic : {"actuator_command", "mocap_pose", "ground_truth", "estimate", "reference",
+                              "battery", "rotor_speeds", "imu"})
+      diff.insert(diff.end(), {"--topic", std::string("/kl1/") + topic});
+    const ProgramResult difference = run_program("swiftlet", diff, folder_.path());
+    ASSERT_EQ(difference.exit_code, 0) << difference.errors;
+    for (const json& topic : json::parse(difference.output).at("topics")) {
+      EXPECT_GT(topic.at("compared"), 10) << topic;
+      for (const auto& [name, signal] : topic.at("signals").items())
+        EXPECT_EQ(signal.at("max"), 0.0) << topic.at("topic") << " " << name;
+    }
+    EXPECT_GT(heads_of(mcap::Reader(path("sim/flight.mcap"))).at("/kl1/log").size(), 5U);
+  }
+};
+
+TEST_F(RecordOfAFlight, HoldsItsMessages) {
+  const ProgramResult flight =
+      run_program("swiftlet",
+                  {"fly", folder_.write("hop.yaml", kHopMission), "--clock", "lockstep", "--seed", "5",
+                   "--domain", std::to_string(lock_.domain()), "--record", path("record"), "--json"},
+                  folder_.path(), kStuck);
+  ASSERT_EQ(flight.exit_code, 0) << flight.errors;
+  const mcap::Reader recorded(path("record/flight.mcap"), mcap::Access::kScanned);
+  expect_describes_the_flight(recorded);
   // In simulated time.
   const auto heads = heads_of(recorded);
   const double simulated_s = json::parse(flight.output).at("simulated_s");
   EXPECT_NEAR(static_cast<double>(recorded.statistics().end_ns) * 1e-9, simulated_s, 1.0);
   EXPECT_GT(heads.at("/kl1/imu").size(), 1000U);
   EXPECT_EQ(heads.count("/kl1/mission"), 1U);
-  // Its results are those of the flight, without the report beside it.
-  fs::copy_file(path("record/flight.mcap"), path("alone.mcap"));
-  const ProgramResult report =
-      run_program("swiftlet", {"report", path("alone.mcap"), "--json"}, folder_.path());
-  ASSERT_EQ(report.exit_code, 0) << report.errors;
-  const json reported = json::parse(report.output).at("flights").at(0);
-  EXPECT_EQ(reported.at("report").at("completed"), true);
-  EXPECT_EQ(reported.at("report").at("mission"), "hop");
-  for (const char* figure : {"rms_3d_m", "peak_3d_m", "duration_s"}) {
-    EXPECT_EQ(reported.at("report").at(figure), json::parse(flight.output).at(figure)) << figure;
-  }
-  EXPECT_TRUE(reported.at("settings").contains("control.position.x.omega_n"));
+  expect_results(json::parse(flight.output));
   // The same controller does the same with its sensors, another one does not.
   const auto replay = [&](std::vector<std::string> more) {
     more.insert(more.begin(), {"log", "replay", path("record/flight.mcap"), "--into-control", "--json"});
@@ -188,24 +181,7 @@ TEST_F(Log, IsPartOfTheRecordOfAFlight) {
   EXPECT_EQ(compared.at("requests"), 3);
   EXPECT_GT(compared.at("compared"), 1000);
   EXPECT_EQ(compared.at("signals").at("throttle").at("max"), 0.0);
-  // The same flight in one process has the same messages.
-  const ProgramResult simulated = run_program(
-      "swiftlet", {"sim", "fly", folder_.path() / "hop.yaml", "--seed", "5", "--record", path("sim")},
-      folder_.path(), kStuck);
-  ASSERT_EQ(simulated.exit_code, 0) << simulated.errors;
-  std::vector<std::string> diff = {"log", "diff", path("sim/flight.mcap"), path("record/flight.mcap"),
-                                   "--json"};
-  for (const char* topic : {"actuator_command", "mocap_pose", "ground_truth", "estimate", "reference",
-                            "battery", "rotor_speeds", "imu"})
-    diff.insert(diff.end(), {"--topic", std::string("/kl1/") + topic});
-  const ProgramResult difference = run_program("swiftlet", diff, folder_.path());
-  ASSERT_EQ(difference.exit_code, 0) << difference.errors;
-  for (const json& topic : json::parse(difference.output).at("topics")) {
-    EXPECT_GT(topic.at("compared"), 10) << topic;
-    for (const auto& [name, signal] : topic.at("signals").items())
-      EXPECT_EQ(signal.at("max"), 0.0) << topic.at("topic") << " " << name;
-  }
-  EXPECT_GT(heads_of(mcap::Reader(path("sim/flight.mcap"))).at("/kl1/log").size(), 5U);
+  expect_same_messages_in_one_process();
   const ProgramResult other = replay({"--control", "paper"});
   EXPECT_EQ(other.exit_code, 1) << other.output << other.errors;
   EXPECT_GT(json::parse(other.output).at("signals").at("throttle").at("max"), 0.01);
@@ -304,152 +280,6 @@ TEST_F(Log, OfAllVehiclesHasThoseThatAppearLater) {
   const auto heads = heads_of(mcap::Reader(file));
   for (const char* topic : {"/a1/imu", "/a2/imu", "/b1/imu", "/b1/vehicle_info"})
     EXPECT_EQ(heads.count(topic), 1U) << topic;
-}
-
-class LogTools : public Log {
- protected:
-  // Two seconds in which the vehicle lives through eight.
-  void SetUp() override {
-    start_vehicle();
-    const ProgramResult recorded = run_program(
-        "swiftlet", on_this_domain({"record", "--output", file_, "--duration", "2"}), folder_.path());
-    ASSERT_EQ(recorded.exit_code, 0) << recorded.errors;
-  }
-  ProgramResult log(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), "log");
-    return run_program("swiftlet", arguments, folder_.path());
-  }
-  json info(const std::string& file) const {
-    const ProgramResult result = log({"info", file, "--check", "--json"});
-    EXPECT_EQ(result.exit_code, 0) << result.output << result.errors;
-    return json::parse(result.output);
-  }
-  void expect_info_and_topics() const;
-  void expect_the_same_after_cut_and_merge() const;
-  void expect_table_of_values() const;
-  void expect_repair() const;
-
-  const std::string file_ = path("flight.mcap");
-};
-
-void LogTools::expect_info_and_topics() const {
-  const json whole = info(file_);
-  EXPECT_TRUE(whole.at("finished"));
-  EXPECT_EQ(whole.at("profile"), "ros2");
-  EXPECT_EQ(whole.at("metadata").at("swiftlet/counts").at("dropped"), "0");
-  EXPECT_NEAR(whole.at("duration_s").get<double>(), 2.0, 0.7);
-  const ProgramResult topics = log({"ls", file_});
-  EXPECT_NE(topics.output.find("swiftlet_msgs/msg/RotorSpeeds"), std::string::npos) << topics.output;
-  const ProgramResult signals = log({"ls", file_, "/kl1/battery"});
-  EXPECT_EQ(signals.output, "stamp_ns\nsequence_number\nvoltage_v\ncurrent_a\nstate_of_charge\n");
-  const ProgramResult unknown = log({"ls", file_, "/kl1/batery"});
-  EXPECT_EQ(unknown.exit_code, 2);
-  EXPECT_NE(unknown.errors.find("/kl1/batery: is not in the file, which has /kl1/actuator_command, "),
-            std::string::npos)
-      << unknown.errors;
-}
-
-void LogTools::expect_the_same_after_cut_and_merge() const {
-  const json whole = info(file_);
-  ASSERT_EQ(log({"cut", file_, "--to", "0.5", "-o", path("a.mcap")}).exit_code, 0);
-  ASSERT_EQ(log({"cut", file_, "--from", "0.5", "-o", path("b.mcap")}).exit_code, 0);
-  ASSERT_EQ(log({"merge", path("b.mcap"), path("a.mcap"), "-o", path("merged.mcap")}).exit_code, 0);
-  EXPECT_EQ(info(path("merged.mcap")).at("topics"), whole.at("topics"));
-  EXPECT_EQ(info(path("merged.mcap")).at("end_ns"), whole.at("end_ns"));
-  const auto before = heads_of(mcap::Reader(file_));
-  const auto after = heads_of(mcap::Reader(path("merged.mcap")));
-  for (const auto& [topic, messages] : before) {
-    ASSERT_EQ(after.at(topic).size(), messages.size()) << topic;
-    EXPECT_EQ(after.at(topic).back().sequence, messages.back().sequence) << topic;
-  }
-  const ProgramResult imu = log({"cut", file_, "--topic", "/kl1/imu", "-o", path("imu.mcap")});
-  EXPECT_EQ(imu.exit_code, 0) << imu.errors;
-  EXPECT_EQ(heads_of(mcap::Reader(path("imu.mcap"))).size(), 1U);
-  EXPECT_EQ(log({"cut", file_, "-o", file_, "--replace"}).exit_code, 2);
-  EXPECT_EQ(log({"cut", file_, "--from", "2", "--to", "0.5", "-o", path("none.mcap")}).exit_code, 2);
-  EXPECT_FALSE(std::filesystem::exists(path("none.mcap")));
-}
-
-void LogTools::expect_table_of_values() const {
-  const ProgramResult written = log({"csv", file_, "/kl1/imu", "-o", path("imu.csv")});
-  ASSERT_EQ(written.exit_code, 0) << written.errors;
-  std::ifstream table(path("imu.csv"));
-  std::string line;
-  std::getline(table, line);
-  EXPECT_EQ(line.substr(0, 81),
-            "log_time_ns,publish_time_ns,stamp_ns,sequence_number,specific_force_frd[0],specif");
-  std::size_t rows = 0;
-  double z_sum = 0.0;
-  for (; std::getline(table, line); ++rows) {
-    std::istringstream cells(line);
-    std::string cell;
-    for (int i = 0; i <= 6; ++i) std::getline(cells, cell, ',');
-    z_sum += std::stod(cell);
-  }
-  EXPECT_EQ(rows, heads_of(mcap::Reader(file_)).at("/kl1/imu").size());
-  EXPECT_NEAR(z_sum / static_cast<double>(rows), -9.81, 0.3);  // specific force along z at rest
-}
-
-void LogTools::expect_repair() const {
-  std::uint64_t offset = 0;
-  std::uint64_t messages = 0;
-  {
-    const mcap::Reader whole(file_);
-    ASSERT_GE(whole.chunks().size(), 3U);
-    const auto least = std::min_element(
-        whole.chunks().begin(), whole.chunks().end(),
-        [](const auto& a, const auto& b) { return a.uncompressed_size < b.uncompressed_size; });
-    offset = least->offset + least->length - 10;
-    messages = whole.statistics().message_count;
-  }
-  std::fstream bytes(file_, std::ios::in | std::ios::out | std::ios::binary);
-  bytes.seekp(static_cast<std::streamoff>(offset));
-  bytes.write("spoiled", 7);
-  bytes.close();
-  EXPECT_EQ(log({"info", file_, "--check"}).exit_code, 1);
-  const ProgramResult repaired = log({"repair", file_, "-o", path("repaired.mcap")});
-  EXPECT_EQ(repaired.exit_code, 0);
-  EXPECT_NE(repaired.errors.find("chunk"), std::string::npos) << repaired.errors;
-  const json after = info(path("repaired.mcap"));
-  EXPECT_LT(after.at("messages"), messages);
-  EXPECT_GT(after.at("messages"), messages / 3) << "the other chunks";
-}
-
-TEST_F(LogTools, ShowCutMergeTabulateReplayAndRepairAFile) {
-  expect_info_and_topics();
-  expect_the_same_after_cut_and_merge();
-  expect_table_of_values();
-
-  const ProgramResult refused =
-      run_program("swiftlet", on_this_domain({"log", "replay", file_}), folder_.path());
-  EXPECT_EQ(refused.exit_code, 1) << "a vehicle of this name lives";
-  vehicle_.reset();
-  const std::string again = path("again.mcap");
-  const auto recorder = start("swiftlet", {"record", "--output", again});
-  ASSERT_TRUE(eventually([&] { return recorder->errors().find("recording to") != std::string::npos; }));
-  const ProgramResult replayed = run_program(
-      "swiftlet", on_this_domain({"log", "replay", file_, "--speed", "2", "--json"}), folder_.path(), kStuck);
-  ASSERT_EQ(replayed.exit_code, 0) << replayed.errors;
-  const auto before = heads_of(mcap::Reader(file_));
-  const auto& imu = before.at("/kl1/imu");
-  ASSERT_TRUE(eventually([&] {
-    const auto written = heads_of(mcap::Reader(again, mcap::Access::kScanned));
-    return written.count("/kl1/imu") == 1 && written.at("/kl1/imu").size() == imu.size();
-  }));
-  recorder->signal(SIGINT);
-  ASSERT_EQ(recorder->wait(kStuck), 0) << recorder->errors();
-  const auto after = heads_of(mcap::Reader(again));
-  const auto length_ns = [](const std::vector<mcap::Message>& messages) {
-    return messages.back().log_time_ns - messages.front().log_time_ns;
-  };
-  // At twice the speed: a busy machine delays the last samples, and hurries none.
-  const auto recorded_ns = static_cast<double>(length_ns(imu));
-  const auto replayed_ns = static_cast<double>(length_ns(after.at("/kl1/imu")));
-  EXPECT_GT(replayed_ns, 0.5 * recorded_ns - 0.2 * math::kSecond_ns);
-  EXPECT_LT(replayed_ns, 0.9 * recorded_ns);
-  const ProgramResult difference = log({"diff", file_, again, "--topic", "/kl1/imu", "--json"});
-  EXPECT_EQ(json::parse(difference.output).at("equal"), true) << difference.output;
-  expect_repair();
 }
 
 TEST_F(Log, IsRefusedWhereAFileWouldBeLost) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +15,6 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -30,27 +28,21 @@
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/mocap/sources/source.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
+#include "tests/integration/filmed_body.hpp"
 #include "tests/support/hop_mission.hpp"
 #include "tests/support/mocap/natnet_server.hpp"
 #include "tests/support/mocap/vrpn_server.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/separate_processes.hpp"
-#include "tests/support/terminal.hpp"
 
 namespace swiftlet::tests {
 namespace {
 
-using Eigen::Quaterniond;
-using Eigen::Vector3d;
+using namespace filmed_body;
 using nlohmann::json;
-using plant::PoseSample;
 namespace msg = messages::msg;
 
 constexpr std::int64_t kHourNs = 3'600'000'000'000;
-constexpr std::int32_t kBody = 42;
-
-const Vector3d kLeverArm(0.01, -0.02, 0.03);
-const Vector3d kMisalignment(0.0, 0.0, 0.35);  // rad
 const std::string kBodyKeys = "lever_arm_frd_m: [0.01, -0.02, 0.03], misalignment_rad: [0, 0, 0.35]";
 
 std::string natnet_room(const NatNetServer& server, const std::string& vehicle) {
@@ -60,44 +52,6 @@ std::string natnet_room(const NatNetServer& server, const std::string& vehicle) 
 std::string vrpn_room(const VrpnServer& server, const std::string& vehicle) {
   return "source: vrpn\nserver: " + server.name() + "\nframe: zup\nvehicles:\n  " + vehicle +
          ": {body: drone, " + kBodyKeys + "}\n";
-}
-
-struct Pose {
-  Vector3d position;
-  Quaterniond attitude;
-};
-
-// The pose of the body that is fixed to the vehicle like this, with the noise of cameras: they see no pose twice.
-Pose body_of(const PoseSample& vehicle) {
-  constexpr double kNoiseM = 2e-5;
-  const double phase = 1e-6 * static_cast<double>(vehicle.stamp_ns);
-  const Vector3d noise = kNoiseM * Vector3d(std::sin(phase), std::sin(2.0 * phase), std::cos(phase));
-  const Quaterniond& attitude = vehicle.q_ned_from_frd;
-  const Quaterniond turn(Eigen::AngleAxisd(kMisalignment.norm(), kMisalignment.normalized()));
-  return {vehicle.position_ned - attitude * kLeverArm + noise, attitude * turn.conjugate()};
-}
-
-// Forward, up, right; forward, left, up.
-Pose with_y_up(const Pose& ned) {
-  const auto turned = [](const Vector3d& v) { return Vector3d(v.x(), -v.z(), v.y()); };
-  Pose pose{turned(ned.position), Quaterniond(ned.attitude.w(), 0, 0, 0)};
-  pose.attitude.vec() = turned(ned.attitude.vec());
-  return pose;
-}
-Pose with_z_up(const Pose& ned) {
-  const auto turned = [](const Vector3d& v) { return Vector3d(v.x(), -v.y(), -v.z()); };
-  Pose pose{turned(ned.position), Quaterniond(ned.attitude.w(), 0, 0, 0)};
-  pose.attitude.vec() = turned(ned.attitude.vec());
-  return pose;
-}
-
-natnet::Frame frame_of(natnet::Body body, std::int32_t number, const Pose& pose) {
-  for (int i = 0; i < 3; ++i) body.position[i] = static_cast<float>(pose.position[i]);
-  for (int i = 0; i < 4; ++i) body.q_xyzw[i] = static_cast<float>(pose.attitude.coeffs()[i]);
-  natnet::Frame frame;
-  frame.number = number;
-  frame.bodies = {body};
-  return frame;
 }
 
 // Cameras that see a vehicle: show(pose, age_ns) sends the pose that it had age_ns ago. They own their server.
@@ -414,121 +368,6 @@ TEST_F(MotionCapture, IsCalibratedByTheImuOfAVehicle) {
   EXPECT_NEAR(found.at("poses").get<int>(), 500, 200);
   std::ifstream file(room);
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), text);
-}
-
-// GIVEN a body that sits askew, of a vehicle that stands and then is turned about its centre THEN the room file says how.
-TEST(MotionCaptureTool, CalibratesABodyAndListsIt) {
-  const TemporaryFolder folder;
-  NatNetServer server({});
-  server.set_models({{"drone", kBody}});
-  const std::string room = (folder.path() / "room.yaml").string();
-  std::ofstream(room) << "source: natnet\nserver: " << server.name()
-                      << "\ninterface: 127.0.0.1\nframe: yup\nvehicles:\n"
-                      << "  kl1: {body: drone, lever_arm_frd_m: [0, 0, 0], misalignment_rad: [0, 0, 0]}\n";
-  std::int32_t number = 0;
-  const auto send = [&](const Quaterniond& attitude) {
-    const PoseSample vehicle{0, 0, true, {1.0, 2.0, -0.5}, attitude};
-    server.send(frame_of({"drone", kBody}, ++number, with_y_up(body_of(vehicle))));
-  };
-  Program calibrate(
-      "swiftlet",
-      {"mocap", "calibrate", "kl1", "--room", room, "--no-prompt", "--rest-time", "1", "--turn-time", "2"},
-      folder.path());
-  double turned = 0.0;
-  ASSERT_TRUE(eventually(
-      [&] {
-        const bool turns = calibrate.errors().find("Hold its centre of mass") != std::string::npos;
-        if (turns) turned += 0.02;
-        const Vector3d angles(0.6 * std::sin(3 * turned), 0.6 * std::sin(4 * turned),
-                              0.5 * std::sin(5 * turned));
-        const double angle = angles.norm();
-        send(angle < 1e-9 ? Quaterniond::Identity() : Quaterniond(Eigen::AngleAxisd(angle, angles / angle)));
-        return calibrate.exit_code().has_value();
-      },
-      kStuck, std::chrono::milliseconds(5)));
-  EXPECT_EQ(calibrate.exit_code(), 0) << calibrate.errors();
-  const mocap::Room written = mocap::load_room(room);
-  EXPECT_LT((mocap::find(written, "kl1")->lever_arm_frd - kLeverArm).norm(), 1e-4) << calibrate.output();
-  EXPECT_LT((mocap::find(written, "kl1")->misalignment - kMisalignment).norm(), 1e-4) << calibrate.output();
-
-  Program list("swiftlet", {"mocap", "list", "--room", room, "--json", "--time", "1"}, folder.path());
-  ASSERT_TRUE(eventually(
-      [&] {
-        send(Quaterniond::Identity());
-        return list.exit_code().has_value();
-      },
-      kStuck, std::chrono::milliseconds(5)));
-  EXPECT_EQ(list.exit_code(), 0) << list.errors();
-  const json listed = json::parse(list.output());
-  ASSERT_EQ(listed.at("bodies").size(), 1U);
-  EXPECT_EQ(listed.at("bodies")[0].at("body"), "drone");
-  EXPECT_EQ(listed.at("bodies")[0].at("id"), kBody);
-  EXPECT_EQ(listed.at("bodies")[0].at("tracked"), true);
-  EXPECT_GT(listed.at("bodies")[0].at("rate_hz").get<double>(), 10.0);
-}
-
-// GIVEN a motion capture that sends nothing WHEN Ctrl-C is pressed THEN the commands that wait end.
-TEST(MotionCaptureTool, EndsWhenItIsInterrupted) {
-  const TemporaryFolder folder;
-  const std::string room = (folder.path() / "room.yaml").string();
-  std::ofstream(room) << "source: vrpn\nserver: 127.0.0.1:9\nframe: zup\nvehicles:\n"
-                      << "  kl1: {body: kl1, lever_arm_frd_m: [0, 0, 0], misalignment_rad: [0, 0, 0]}\n";
-  const struct {
-    std::vector<std::string> words;
-    std::string ready;  // what it shows when it waits
-  } cases[] = {{{"watch", "--period", "0.1"}, "0 frames"}, {{"calibrate", "--no-prompt"}, "level ground"}};
-  for (const auto& one : cases) {
-    SCOPED_TRACE(one.words.front());
-    std::vector<std::string> words = {"mocap"};
-    words.insert(words.end(), one.words.begin(), one.words.end());
-    words.insert(words.end(), {"--room", room});
-    Program tool("swiftlet", words, folder.path());
-    ASSERT_TRUE(eventually([&] {
-      return (tool.output() + tool.errors()).find(one.ready) != std::string::npos;
-    })) << tool.errors();
-    tool.signal(SIGINT);
-    EXPECT_EQ(tool.wait(kStuck), 1) << tool.errors();
-  }
-  Terminal at_the_prompt("swiftlet", {"mocap", "calibrate", "--room", room}, 120, 40);
-  ASSERT_TRUE(eventually([&] { return at_the_prompt.text().find("press Enter") != std::string::npos; }));
-  at_the_prompt.type("\x03");
-  EXPECT_EQ(at_the_prompt.wait(kStuck), 1) << at_the_prompt.text();
-}
-
-class MotionCaptureOptions : public testing::Test {
- protected:
-  std::string refusal(const std::vector<std::string>& arguments) const {
-    const ProgramResult result = run_program("swiftlet-mocap", arguments, folder_.path());
-    EXPECT_EQ(result.exit_code, 2) << result.errors;
-    return result.errors;
-  }
-  TemporaryFolder folder_;
-};
-
-TEST_F(MotionCaptureOptions, ThatDoNotGoTogetherAreRefused) {
-  const struct {
-    std::vector<std::string> arguments;
-    std::string sentence;
-  } cases[] = {
-      {{"--server", "lab1"}, "--server: not with --source simulation"},
-      {{"--source", "natnet"},
-       "--frame is required without --room: zup or yup, as the motion capture is set"},
-      {{"--source", "natnet", "--frame", "zup", "--clock", "lockstep"},
-       "--clock lockstep: only with --source simulation"},
-      {{"--source", "natnet", "--frame", "zup", "--frame-clock", "host"},
-       "--frame-clock host: only with --source simulation"},
-      {{"--source", "vrpn", "--frame", "zup"}, "--source vrpn needs --server"},
-      {{"--source", "replay", "--frame", "zup"}, "--source replay needs --file"},
-      {{"--source", "vrpn", "--frame", "zup", "--server", "127.0.0.1:99999"},
-       "server: is '127.0.0.1:99999', must be"},
-      {{"--source", "vicon", "--frame", "zup", "--mocap-interface", "eth99"},
-       "interface: is 'eth99', must be"},
-      {{"--room", "optitrack", "--vehicle-name", "kl9"}, "vehicles: does not have the vehicle kl9"},
-  };
-  for (const auto& one : cases) {
-    const std::string sentence = refusal(one.arguments);
-    EXPECT_NE(sentence.find(one.sentence), std::string::npos) << sentence;
-  }
 }
 
 }  // namespace

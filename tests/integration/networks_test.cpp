@@ -1,9 +1,7 @@
 // Hosts on a switch, and behind routers that forward no multicast: who reaches whom.
 #include <algorithm>
-#include <arpa/inet.h>
 #include <csignal>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <functional>
@@ -21,6 +19,7 @@
 
 #include "tests/support/eventually.hpp"
 #include "tests/support/network/network_namespace.hpp"
+#include "tests/support/network/socket_address.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/rtps_message.hpp"
 #include "tests/support/shifted_clock.hpp"
@@ -34,57 +33,7 @@ using nlohmann::json;
 using Layout = HostNetwork::Layout;
 using Words = std::vector<std::string>;
 
-constexpr const char* kGroup = "239.255.0.1";
-constexpr std::uint16_t kPort = 7400;
 constexpr std::uint16_t kFirstDiscoveryPort = 7410;
-
-sockaddr_in socket_address(const std::string& address) {
-  sockaddr_in result{};
-  result.sin_family = AF_INET;
-  result.sin_port = htons(kPort);
-  result.sin_addr.s_addr = inet_addr(address.c_str());
-  return result;
-}
-
-// True if a datagram from one host to this address arrives at the other host within this time.
-bool arrives(const HostNetwork& network, int from, int at, const std::string& address, timeval patience) {
-  int receiver = -1;
-  {
-    const HostNetwork::Inside inside(network, at);
-    receiver = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    const sockaddr_in any = socket_address("0.0.0.0");
-    EXPECT_EQ(bind(receiver, reinterpret_cast<const sockaddr*>(&any), sizeof any), 0);
-    const ip_mreq group{{inet_addr(kGroup)}, {inet_addr(network.address(at).c_str())}};
-    setsockopt(receiver, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group);
-    setsockopt(receiver, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-  }
-  {
-    const HostNetwork::Inside inside(network, from);
-    const int sender = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    const sockaddr_in to = socket_address(address);
-    sendto(sender, "x", 1, 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
-    close(sender);
-  }
-  char byte = 0;
-  const bool received = recv(receiver, &byte, 1, 0) == 1;
-  close(receiver);
-  return received;
-}
-
-TEST(HostNetwork, CarriesMulticastOverASwitchButNotThroughARouter) {
-  if (const std::string why = HostNetwork::why_unavailable(); !why.empty()) GTEST_SKIP() << why;
-  constexpr timeval kPatience{60, 0}, kMoment{0, 200'000};
-  {
-    const HostNetwork network(Layout::kSwitch, 2);
-    EXPECT_TRUE(arrives(network, 0, 1, network.address(1), kPatience));
-    EXPECT_TRUE(arrives(network, 0, 1, kGroup, kPatience));
-  }
-  const HostNetwork network(Layout::kRouter, 2);
-  EXPECT_TRUE(arrives(network, 0, 1, network.address(1), kPatience));
-  EXPECT_FALSE(arrives(network, 0, 1, kGroup, kMoment));
-  network.run(0, "ip link set eth0 down");
-  EXPECT_FALSE(arrives(network, 0, 1, network.address(1), kMoment));
-}
 
 // Plant and motion capture on host 0, control on host 1, and the ground tools on host 2. In lockstep, so that a busy
 // machine slows the flight down instead of failing it.
@@ -267,8 +216,7 @@ TEST_F(Networks, ASecondPlantIsRefusedThroughADiscoveryServer) {
 bool answers(const HostNetwork& network, int at, int from) {
   const HostNetwork::Inside inside(network, from);
   const int stranger = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  sockaddr_in own = socket_address(network.address(from));
-  own.sin_port = 0;
+  sockaddr_in own = socket_address(network.address(from), 0);
   socklen_t size = sizeof own;
   EXPECT_EQ(bind(stranger, reinterpret_cast<const sockaddr*>(&own), size), 0);
   getsockname(stranger, reinterpret_cast<sockaddr*>(&own), &size);
@@ -282,8 +230,7 @@ bool answers(const HostNetwork& network, int at, int from) {
       .parameter(0x0031, locator)
       .parameter(0x0058, ByteWriter().u32(0x0c3f));
   const Bytes datagram = announcement(kAlice, parameters).bytes();
-  sockaddr_in to = socket_address(network.address(at));
-  to.sin_port = htons(kFirstDiscoveryPort);
+  const sockaddr_in to = socket_address(network.address(at), kFirstDiscoveryPort);
   sendto(stranger, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
   char byte = 0;
   const bool answered = recv(stranger, &byte, 1, MSG_TRUNC) > 0;

@@ -80,6 +80,17 @@ class Security : public testing::Test {
     EXPECT_EQ(commands.matched(), 0);
     EXPECT_LT(flight.z_ned(), -0.98) << "the vehicle obeyed";
   }
+  static bool says(const Program& program, const std::string& text) {
+    return program.errors().find(text) != std::string::npos;
+  }
+  // reason: as Fast DDS has it.
+  static bool refuses(const Program& program, const std::string& reason) {
+    return says(program, "refused 'ground' (") && says(program, "): see the log of Fast DDS") &&
+           says(program, reason);
+  }
+  static bool is_refused_by(const Program& program, const std::string& reason) {
+    return eventually([&] { return refuses(program, reason); }, kStuck, 20ms);
+  }
 
   TemporaryFolder folder_;
 };
@@ -135,17 +146,6 @@ TEST_F(Security, StrangersAreRefusedByName) {
     words.insert(words.end(), network.begin(), network.end());
     words.insert(words.end(), options.begin(), options.end());
     return std::make_unique<Program>("swiftlet", words, folder_.path());
-  };
-  const auto says = [](const Program& program, const std::string& text) {
-    return program.errors().find(text) != std::string::npos;
-  };
-  // reason: as Fast DDS has it.
-  const auto refuses = [&](const Program& program, const std::string& reason) {
-    return says(program, "refused 'ground' (") && says(program, "): see the log of Fast DDS") &&
-           says(program, reason);
-  };
-  const auto is_refused_by = [&](const Program& program, const std::string& reason) {
-    return eventually([&] { return refuses(program, reason); }, kStuck, 20ms);
   };
 
   // Who was revoked after it got its copy of the list.

@@ -109,7 +109,7 @@ class Hosts {
     std::string why;
     if (!succeeds(host, words, why)) throw std::runtime_error(why);
   }
-  // It is refused until motion capture is heard, and while the rotors run down.
+  // Tries until arming succeeds: it is refused until motion capture is heard, and while the rotors run down.
   void arm(int host) const {
     std::string why;
     if (!tests::eventually([&] { return succeeds(host, {"arm"}, why); })) throw std::runtime_error(why);

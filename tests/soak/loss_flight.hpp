@@ -28,7 +28,7 @@ struct LossResult {
   bool good() const;
 };
 
-// Of the root mean square of the tracking error. `fly` itself limits the peak by the mission's tolerance.
+// The limit of the tracking error's root mean square. `fly` itself limits the peak by the mission's tolerance.
 constexpr double kLargestRms_m = 0.005;
 
 // Starts the processes and lets them discover each other while datagrams are lost. Programs write their output into the

@@ -156,7 +156,7 @@ void DatagramMutator::splice(Bytes& bytes) {
   bytes.insert(bytes.end(), other.begin() + static_cast<std::ptrdiff_t>(below(other.size())), other.end());
 }
 
-// Of the first, second ... submessage.
+// Sets the length of the first, second ... submessage.
 void DatagramMutator::set_length(Bytes& bytes) {
   std::size_t at = kRtpsHeaderBytes;
   for (std::size_t skip = below(4); skip > 0 && at + 4 <= bytes.size(); --skip)

@@ -33,7 +33,7 @@ class FlightSamples {
  public:
   explicit FlightSamples(dds::Node& node);
 
-  // Of the vehicle's newest sample; 0: none yet.
+  // Stamp, speed and height of the vehicle's newest sample; 0: none yet.
   std::int64_t stamp_ns() const;
   double speed() const;  // m/s
   double z_ned() const;  // m

@@ -67,7 +67,7 @@ class FoxgloveClient {
     messages_.pop_front();
     return message;
   }
-  // Of a service whose response is bool success, string message.
+  // Reads the answer of a service whose response is bool success, string message.
   std::pair<bool, std::string> read_answer() {
     while (responses_.empty()) {
       if (!read()) return {false, "the server has closed the connection"};

@@ -73,7 +73,7 @@ class RedundantFlight {
   std::vector<std::string> on_network(std::vector<std::string> words) const;
   dds::NodeSettings node_settings(const char* name) const;
 
-  // Of the vehicle's newest sample.
+  // Stamp, speed and height of the vehicle's newest sample.
   std::int64_t stamp_ns() const { return samples_.stamp_ns(); }
   double speed() const { return samples_.speed(); }  // m/s
   double z_ned() const { return samples_.z_ned(); }  // m

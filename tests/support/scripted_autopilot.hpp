@@ -36,7 +36,7 @@ struct ScriptedAutopilotSettings {
   int samples_per_answer = 1;      // it leaves the others without an answer
 };
 
-// What it received.
+// The messages that the autopilot received.
 struct AutopilotLog {
   std::vector<std::uint64_t> sensor_times_us;
   std::uint64_t irregular = 0;  // HIL_SENSOR that do not follow the last by one period

@@ -68,7 +68,7 @@ class SeparateProcesses : public testing::Test {
   dds::Subscription status_;
 };
 
-// Of one row of ground truth.
+// Tilt and fastest rotor, 1/s, in one row of ground truth.
 double tilt_rad(const record::TruthRow& row);
 double fastest_rotor(const record::TruthRow& row);
 

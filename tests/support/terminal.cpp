@@ -120,31 +120,40 @@ class Screen {
     return value == 0 ? otherwise : value;
   }
 
-  void control(char c) {
-    const int n = number(0, 1);
+  // Returns false for another sequence.
+  bool move_cursor(char c, int n) {
     switch (c) {
       case 'A':
         row_ = std::max(row_ - n, 0);
-        break;
+        return true;
       case 'B':
         row_ = std::min(row_ + n, height_ - 1);
-        break;
+        return true;
       case 'C':
         column_ = std::min(column_ + n, width_ - 1);
-        break;
+        return true;
       case 'D':
         column_ = std::max(column_ - n, 0);
-        break;
+        return true;
       case 'G':
         column_ = std::min(n, width_) - 1;
-        break;
+        return true;
       case 'd':
         row_ = std::min(n, height_) - 1;
-        break;
+        return true;
       case 'H':
         row_ = std::min(n, height_) - 1;
         column_ = std::min(number(1, 1), width_) - 1;
-        break;
+        return true;
+      default:
+        return false;
+    }
+  }
+
+  void control(char c) {
+    const int n = number(0, 1);
+    if (move_cursor(c, n)) return;
+    switch (c) {
       case 'J':
         erase_display();
         break;

@@ -117,7 +117,7 @@ std::string counts(const mcap::Reader& file) {
   return lost->second + " lost, " + dropped->second + " dropped";
 }
 
-// Of the ground truth, or of the estimate if nobody knows the true position.
+// The tracking errors of the ground truth, or of the estimate if nobody knows the true position.
 record::TrackingErrors errors_of(const record::Flight& recorded) {
   const record::Evaluation flown = record::evaluate(recorded);
   if (!recorded.truth.empty() || !flown.window) return flown.errors;

@@ -34,7 +34,7 @@ std::int64_t zero_of(const record::Flight& recorded) {
   return recorded.estimate.empty() ? recorded.truth.front().stamp_ns : recorded.estimate.front().stamp_ns;
 }
 
-// Of the control settings that the recorder attaches.
+// The deviation in the control settings that the recorder attaches.
 PoseDeviation pose_deviation(const mcap::Reader& file, const std::string& vehicle) {
   PoseDeviation deviation;
   const std::optional<std::string> settings = mcap::attached_file(file, vehicle, "control.yaml");

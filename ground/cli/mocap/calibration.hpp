@@ -32,11 +32,11 @@ constexpr double kLargestDeviationM = 3e-3;
 // Time after which an error of a hand that holds the vehicle is another one, s.
 constexpr double kHandTime_s = 0.5;
 
-// Of a vehicle that stands level with its nose to the north. seconds: how long. Throws std::runtime_error with a sentence if it
-// moved.
+// The misalignment of a vehicle that stands level with its nose to the north. seconds: how long. Throws std::runtime_error
+// with a sentence if it moved.
 Misalignment misalignment_of(const BodyPoses& poses, double seconds);
 
-// Of a vehicle that was turned about its centre of mass, which stayed in place: the least squares of
+// The lever arm of a vehicle that was turned about its centre of mass, which stayed in place. Solves the least squares of
 //   p_i + R_i l = c
 // for the lever arm l and the place of the centre c, with position p_i of the body and attitude R_i of the vehicle. Throws
 // std::runtime_error with a sentence if the vehicle was turned too little, or its centre moved too much, to tell.

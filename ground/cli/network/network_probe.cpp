@@ -34,7 +34,7 @@ struct Message {
   std::uint64_t sender = 0;  // a random number of each run
   std::string host;
   int number = 0;
-  // Of an answer: to whom, to which kind, when the question was received, and when it was answered.
+  // Only in an answer: who asked, the kind of the question, when it was received, and when it was answered.
   std::uint64_t asker = 0;
   Kind of = Kind::kUnicast;
   std::int64_t received_ns = 0;
@@ -53,7 +53,7 @@ std::string to_text(const Message& message) {
   return text.str();
 }
 
-// It is printed: no control characters.
+// A name that is printed has no control characters.
 bool is_printable_name(const std::string& name) {
   return name.size() <= HOST_NAME_MAX &&
          std::all_of(name.begin(), name.end(), [](unsigned char c) { return c > 0x20 && c < 0x7f; });
@@ -198,7 +198,7 @@ struct NetworkProbe::Impl {
     partner.asked.erase(asked);
   }
 
-  // What it was asked just now does not count.
+  // Questions that the partner was asked just before it left do not count.
   static void take_goodbye(Partner& partner) {
     if (partner.gone) return;
     partner.gone = true;

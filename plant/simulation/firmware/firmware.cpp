@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kFlyingThrust = 0.5;  // of the weight: below it the vehicle stands, and no integral advances
 constexpr double kNoThrust = 0.02;     // of the weight: below it the rotors idle
-// Of the weight, without a command. A vehicle that is 20 % lighter than the model does not climb with it.
+// The thrust without a command, as a share of the weight. A vehicle that is 20 % lighter than the model does not climb with it.
 constexpr double kSinkingThrust = 0.8;
 constexpr double kLongestStep_s = 0.05;
 

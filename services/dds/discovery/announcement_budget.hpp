@@ -24,7 +24,7 @@ constexpr double kHeardByAll = 10'000.0;
 // Announcements per second to a process that is known, however many others there are: four within kLivelinessLease.
 constexpr double kLeastAnnouncements = 2.0;
 
-// Of one process, for one destination. Not thread-safe.
+// The announcements of one process to one destination. Not thread-safe.
 class AnnouncementBudget {
  public:
   // Returns how many copies of an announcement are sent now; 0 if the others share out the rate, and the destination has

@@ -18,18 +18,18 @@ namespace swiftlet::dds {
 // True for the UDP ports to which the processes of this domain send discovery.
 bool is_discovery_port(int domain, std::uint32_t port);
 
-// Of a message of RTPS in which participants only announce themselves, or assert that they live: a digest of what it says,
-// without its time. nullopt: another message.
+// A digest of what an RTPS message says, without its time, if participants only announce themselves in it, or assert that they
+// live. nullopt: another message.
 std::optional<std::uint64_t> announcement_digest(const std::uint8_t* message, std::size_t size);
 
-// Of one channel. Not thread-safe.
+// The repetition of discovery on one channel. Not thread-safe.
 class RepeatedDiscovery {
  public:
   using Places = std::vector<fastrtps::Locator_t>;
 
-  // Of a datagram that is sent to these places: those that get its first copy, those that get a second one, and so on, as
-  // AnnouncementBudget has it for the processes that `guard` has heard. No announcement is sent before that listens: Fast DDS
-  // begins to announce a participant before it takes in what the others answer.
+  // The places that get the first copy of a datagram, those that get a second one, and so on, as AnnouncementBudget has it
+  // for the processes that `guard` has heard. places: to which the datagram is sent. No announcement is sent before the guard
+  // listens: Fast DDS begins to announce a participant before it takes in what the others answer.
   std::vector<Places> rounds(const std::vector<std::uint8_t>& datagram, const Places& places,
                              rtps::DatagramGuard& guard);
 

@@ -43,7 +43,7 @@ void remove_namespace(const std::string& name) {
   }
 }
 
-// Those of processes that are no more.
+// Removes the namespaces of processes that have ended.
 void remove_stale_namespaces() {
   std::error_code none;
   std::vector<std::string> stale;

@@ -11,7 +11,7 @@
 
 namespace swiftlet::tests {
 
-// Of each frame, in each direction, at random and independently.
+// What befalls each frame, in each direction, at random and independently.
 struct CableConditions {
   double delay_s = 0.0;
   double jitter_s = 0.0;    // added to the delay, or taken from it, at most; frames overtake each other

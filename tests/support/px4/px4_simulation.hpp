@@ -16,7 +16,7 @@
 
 namespace swiftlet::tests {
 
-// What it publishes after a period. Stamps are the caller's.
+// The messages that PX4 publishes after a period. Stamps are the caller's.
 struct Px4Messages {
   std::optional<px4_msg::SensorCombined> sensors;
   px4_msg::VehicleOdometry odometry;

@@ -1,13 +1,11 @@
 // Faulty poses: which are refused, with which fault, and when the estimate is reset.
+#include "tests/unit/control/estimation/estimator_faults.hpp"
+
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <tuple>
 
 #include <gtest/gtest.h>
-
-#include "swiftlet/control/estimation/estimator.hpp"
-#include "tests/unit/control/estimation/estimator_motion.hpp"
 
 namespace swiftlet::control::estimator_faults_test {
 
@@ -16,50 +14,6 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using plant::PoseSample;
 using plant::RotorState;
-
-// Poses at 100 Hz, 10 ms late, from a moving vehicle.
-class EstimatorFaults : public testing::Test {
- protected:
-  using Change = std::function<void(PoseSample&)>;
-
-  // Returns the fault of the last pose.
-  PoseFault fly(
-      double duration_s, const Change& change = [](PoseSample&) {},
-      RotorState rotors = RotorState::kRunning) {
-    const std::int64_t end = time_ns_ + static_cast<std::int64_t>(duration_s * 1e9);
-    while (time_ns_ < end) {
-      time_ns_ += kStep_ns;
-      plant::ImuSample imu = motion_.imu(time_ns_);
-      imu.specific_force_frd = hidden_turn_.conjugate() * imu.specific_force_frd + imu_error_;
-      imu.body_rates_frd = hidden_turn_.conjugate() * imu.body_rates_frd;
-      EXPECT_TRUE(estimator_.predict(imu));
-      if (time_ns_ % kFrame_ns != 0 || time_ns_ < 2 * kFrame_ns) continue;
-      PoseSample pose = pose_now();
-      change(pose);
-      estimator_.correct(pose, rotors);
-    }
-    return estimator_.estimate().pose_fault;
-  }
-  PoseSample pose_now() {
-    PoseSample pose = motion_.pose(time_ns_ - kFrame_ns);
-    pose.q_ned_from_frd = pose.q_ned_from_frd * hidden_turn_;
-    return pose;
-  }
-  double position_error() const { return motion_.error(estimator_.estimate()).head<3>().norm(); }
-  double velocity_error() const { return motion_.error(estimator_.estimate()).segment<3>(3).norm(); }
-  double accelerometer_bias_error() const { return motion_.error(estimator_.estimate()).tail<3>().norm(); }
-  double angle_error() const {
-    const double t = static_cast<double>(estimator_.estimate().stamp_ns) * 1e-9;
-    return (Motion::attitude(t) * hidden_turn_).angularDistance(estimator_.estimate().q_ned_from_frd);
-  }
-
-  EstimatorSettings settings_;
-  Estimator estimator_{settings_};
-  NoisyMotion motion_{settings_, 1};
-  Vector3d imu_error_ = Vector3d::Zero();              // m/s^2
-  Quaterniond hidden_turn_ = Quaterniond::Identity();  // of the body, in no IMU sample
-  std::int64_t time_ns_ = 0;
-};
 
 TEST_F(EstimatorFaults, AcceptsEveryGoodPose) {
   EXPECT_EQ(fly(20.0), PoseFault::kNone);
@@ -132,150 +86,6 @@ TEST_F(EstimatorFaults, RefusesAnAttitudeJumpInFlight) {
   EXPECT_LT(angle_error(), 0.01);
   EXPECT_EQ(fly(0.5), PoseFault::kNone);
   EXPECT_LT(angle_error(), 0.005);
-}
-
-// A shock that the accelerometer measures wrongly.
-TEST_F(EstimatorFaults, FollowsPosesWhenTheImuIsWrong) {
-  fly(3.0);
-  imu_error_ = {60.0, 0.0, 0.0};
-  EXPECT_EQ(fly(0.05), PoseFault::kNone);
-  imu_error_.setZero();
-  EXPECT_EQ(fly(0.5), PoseFault::kNone);
-  EXPECT_EQ(estimator_.estimate().resets, 0U);
-  EXPECT_LT(position_error(), 0.005);
-  EXPECT_LT(angle_error(), 0.02);
-}
-
-// The same with some poses missing: the difference exceeds any noise, but the stream is unbroken.
-TEST_F(EstimatorFaults, FollowsAnUnbrokenStreamAgainstTheImu) {
-  fly(3.0);
-  imu_error_ = {40.0, 0.0, 0.0};
-  fly(0.05, [](PoseSample& pose) { pose.tracked = false; });
-  imu_error_.setZero();
-  EXPECT_EQ(fly(0.5), PoseFault::kNone);
-  EXPECT_GE(estimator_.estimate().resets, 1U);
-  EXPECT_LT(position_error(), 0.02);
-  EXPECT_LT(angle_error(), 0.02);
-}
-
-// After 0.2 s without poses they differ by 8 cm from the IMU. A body could have moved there, but the stream
-// was interrupted and the IMU was not: the IMU is followed.
-TEST_F(EstimatorFaults, RefusesAnInterruptedStreamAgainstTheImu) {
-  for (const Vector3d& off :
-       {Vector3d(0.08, 0.0, 0.0), Vector3d(0.0, -0.08, 0.0), Vector3d(0.0, 0.0, 0.08)}) {
-    estimator_ = Estimator(settings_);
-    fly(3.0);
-    fly(0.2, [](PoseSample& pose) { pose.tracked = false; });
-    EXPECT_EQ(fly(0.5, [&](PoseSample& pose) { pose.position_ned += off; }), PoseFault::kOutlier);
-    EXPECT_EQ(estimator_.estimate().resets, 0U);
-    EXPECT_LT(position_error(), 0.06);
-    EXPECT_EQ(fly(0.5), PoseFault::kNone);
-    EXPECT_LT(position_error(), 2e-3);
-  }
-}
-
-// An IMU silence ends with the next pose that agrees: it does not excuse a difference after a later gap.
-TEST_F(EstimatorFaults, RefusesAnInterruptedStreamAfterAnEarlierImuSilence) {
-  fly(3.0);
-  time_ns_ += 50'000'000;
-  EXPECT_EQ(fly(2.0), PoseFault::kNone);
-  fly(0.2, [](PoseSample& pose) { pose.tracked = false; });
-  EXPECT_EQ(fly(0.5, [](PoseSample& pose) { pose.position_ned.x() += 0.08; }), PoseFault::kOutlier);
-  EXPECT_EQ(estimator_.estimate().resets, 0U);
-  EXPECT_LT(position_error(), 0.06);
-}
-
-// The vehicle may have hit the ground meanwhile: poses in reach of a body are accepted, others are not.
-TEST_F(EstimatorFaults, AcceptsPosesInReachAfterImuSilence) {
-  for (const double off : {0.5, 2.0}) {
-    estimator_ = Estimator(settings_);
-    fly(3.0);
-    time_ns_ += 250'000'000;
-    const PoseFault fault = fly(0.5, [&](PoseSample& pose) { pose.position_ned.x() += off; });
-    const bool accepted = off < 1.0;
-    EXPECT_EQ(fault, accepted ? PoseFault::kNone : PoseFault::kOutlier) << off;
-    EXPECT_EQ(estimator_.estimate().resets, accepted ? 1U : 0U) << off;
-    EXPECT_NEAR(position_error(), accepted ? off : 0.0, 0.2);
-  }
-}
-
-// The step during the silence of the IMU shows that the poses after it are no motion.
-TEST_F(EstimatorFaults, RefusesMarkersThatSwapDuringImuSilence) {
-  const Change swap = [](PoseSample& pose) {
-    pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(0.4 * M_PI, Vector3d::UnitZ());
-  };
-  fly(3.0);
-  for (int frame = 1; frame <= 8; ++frame) {
-    time_ns_ += kFrame_ns;
-    PoseSample pose = motion_.pose(time_ns_ - kFrame_ns);
-    if (frame > 6) swap(pose);
-    estimator_.correct(pose);
-  }
-  EXPECT_EQ(fly(0.5, swap), PoseFault::kSwapped);
-  EXPECT_EQ(estimator_.estimate().resets, 0U);
-  EXPECT_LT(angle_error(), 0.1);
-  EXPECT_EQ(fly(0.5), PoseFault::kNone);
-}
-
-// The rotation alone could be a motion during the silence.
-TEST_F(EstimatorFaults, RefusesAPoseRotationDuringImuSilence) {
-  const Change turned = [](PoseSample& pose) {
-    pose.position_ned.x() += 0.03;
-    pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(0.2, Vector3d(0.6, 0.8, 0.0));
-  };
-  for (const int last_true_frame : {0, 12, 23}) {
-    estimator_ = Estimator(settings_);
-    hidden_turn_.setIdentity();
-    fly(3.0);
-    hidden_turn_ = AngleAxisd(0.05, Vector3d(0.8, -0.6, 0.0));
-    for (int frame = 1; frame <= 24; ++frame) {
-      time_ns_ += kFrame_ns;
-      PoseSample pose = pose_now();
-      if (frame > last_true_frame) turned(pose);
-      estimator_.correct(pose);
-    }
-    EXPECT_EQ(fly(0.4, turned), PoseFault::kOutlier) << last_true_frame;
-    EXPECT_LT(angle_error(), 0.1) << last_true_frame;
-    // Poses that step back into reach are accepted again, though the IMU has missed a motion.
-    EXPECT_EQ(fly(0.2), PoseFault::kNone) << last_true_frame;
-    EXPECT_EQ(fly(0.5), PoseFault::kNone) << last_true_frame;
-    EXPECT_LT(position_error(), 2e-3) << last_true_frame;
-    EXPECT_LT(angle_error(), 0.005) << last_true_frame;
-  }
-}
-
-// Poses are missing as well, so that no step is visible: they contradict the IMU afterwards.
-TEST_F(EstimatorFaults, RefusesAPoseRotationHiddenByImuSilence) {
-  for (const double angle : {0.1, 0.2, 0.4}) {
-    const Change turned = [&](PoseSample& pose) {
-      pose.position_ned.x() += 0.03;
-      pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(angle, Vector3d(0.6, 0.8, 0.0));
-    };
-    estimator_ = Estimator(settings_);
-    hidden_turn_.setIdentity();
-    fly(3.0);
-    hidden_turn_ = AngleAxisd(0.05, Vector3d(0.8, -0.6, 0.0));
-    time_ns_ += 250'000'000;
-    fly(1.0, turned);
-    EXPECT_GT(estimator_.pose_age_s(), 1.0) << angle;
-    EXPECT_LT(angle_error(), 0.1) << angle;
-    EXPECT_EQ(fly(0.2), PoseFault::kNone) << angle;
-    EXPECT_EQ(fly(0.5), PoseFault::kNone) << angle;
-    EXPECT_LT(position_error(), 2e-3) << angle;
-    EXPECT_LT(angle_error(), 0.005) << angle;
-  }
-}
-
-// A real motion during the silence is accepted as soon as the IMU confirms it.
-TEST_F(EstimatorFaults, AcceptsAMotionHiddenByImuSilence) {
-  fly(3.0);
-  hidden_turn_ = AngleAxisd(0.2, Vector3d(0.6, 0.8, 0.0));
-  time_ns_ += 200'000'000;
-  EXPECT_EQ(fly(0.1), PoseFault::kOutlier) << "until the consistency test agrees";
-  EXPECT_EQ(fly(0.1), PoseFault::kNone);
-  EXPECT_EQ(fly(0.5), PoseFault::kNone);
-  EXPECT_LT(angle_error(), 0.005);
-  EXPECT_LT(position_error(), 2e-3);
 }
 
 TEST_F(EstimatorFaults, RefusesSwappedMarkersInFlight) {

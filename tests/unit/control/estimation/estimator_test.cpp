@@ -155,7 +155,7 @@ double position_error(const Estimator& estimator) {
   return (estimator.estimate().position_ned - Motion::position(t)).norm();
 }
 
-// Of a gap of 10 s it integrates 0.25 s with the last rates and specific force.
+// In a gap of 10 s the estimator integrates 0.25 s with the last rates and specific force.
 TEST(Estimator, DoesNotIntegrateThroughALongGap) {
   Estimator estimator{EstimatorSettings{}};
   plant::ImuSample imu;

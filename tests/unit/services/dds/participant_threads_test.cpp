@@ -17,7 +17,7 @@ namespace swiftlet::dds::participant_threads_test {
 
 using swiftlet::tests::eventually;
 
-// Of this process: kernel's number and scheduling.
+// The threads of this process: kernel's number and scheduling.
 std::map<pid_t, int> threads() {
   std::map<pid_t, int> policies;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task")) {

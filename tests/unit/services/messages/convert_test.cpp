@@ -163,6 +163,11 @@ TEST(Convert, RefusesInvalidSamples) {
                                        [](msg::Battery& m) { m.state_of_charge(kNan); });
   expect_refused<plant::RotorSpeedSample>(example<msg::RotorSpeeds>(), "rotor_count is 9, must be at most 8",
                                           [](msg::RotorSpeeds& m) { m.rotor_count(9); });
+  expect_refused<plant::TruthSample>(example<msg::GroundTruth>(), "velocity_ned[2] is nan, must be finite",
+                                     [](msg::GroundTruth& m) { m.velocity_ned()[2] = kNan; });
+}
+
+TEST(Convert, RefusesInvalidCommandsAndStates) {
   expect_refused<plant::ActuatorCommand>(example<msg::ActuatorCommand>(),
                                          "throttle[3] is 1.01, must be between 0 and 1",
                                          [](msg::ActuatorCommand& m) { m.throttle()[3] = 1.01; });
@@ -189,8 +194,6 @@ TEST(Convert, RefusesInvalidSamples) {
                                             [](msg::TrajectorySetpoint& m) { m.position_ned()[2] = kNan; });
   expect_refused<plant::TrajectorySetpoint>(example<msg::TrajectorySetpoint>(), "yaw is nan, must be finite",
                                             [](msg::TrajectorySetpoint& m) { m.yaw(kNan); });
-  expect_refused<plant::TruthSample>(example<msg::GroundTruth>(), "velocity_ned[2] is nan, must be finite",
-                                     [](msg::GroundTruth& m) { m.velocity_ned()[2] = kNan; });
   expect_refused<ControllerReport>(example<msg::ControllerState>(), "mode is 10, must be at most 9",
                                    [](msg::ControllerState& m) { m.mode(10); });
   expect_refused<ControllerReport>(example<msg::ControllerState>(), "path_x[3] is nan, must be finite",

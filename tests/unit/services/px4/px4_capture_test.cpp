@@ -106,7 +106,7 @@ struct Event {
   std::string what;
 };
 
-// Of the states of PX4, captured or scripted: what changes, and when.
+// The changes of PX4's states, captured or scripted, and when they happen.
 class Changes {
  public:
   void note(double at_s, const msg::VehicleStatus& status) {

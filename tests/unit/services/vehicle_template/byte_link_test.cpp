@@ -108,7 +108,7 @@ TEST(PseudoTerminal, ReplacesALinkButNoFile) {
 }
 
 TEST(UdpPort, SendsToWhoeverSentTheLastValidFrame) {
-  // Of this process alone: all of 127.0.0.0/8 is this host.
+  // The address belongs to this process alone: all of 127.0.0.0/8 is this host.
   const int process = ::getpid();
   const std::string address =
       "127.1." + std::to_string(process / 256 % 256) + "." + std::to_string(process % 256) + ":29471";

@@ -82,7 +82,7 @@ TEST(Calibration, FindsHowTheBodySits) {
   EXPECT_LT(arm.residual_m, 1e-9);
 }
 
-// What it finds puts the vehicle where it is.
+// With the calibration's result, the room frame puts the vehicle where it is.
 TEST(Calibration, IsWhatTheRoomFrameUses) {
   Cameras cameras(0.0);
   mocap::Room room;
@@ -101,8 +101,8 @@ TEST(Calibration, IsWhatTheRoomFrameUses) {
   EXPECT_LT(pose.q_ned_from_frd.angularDistance(attitude), 1e-7);
 }
 
-// Of 100 calibrations with noise about 95 % are within two standard deviations, if the noise were independent; the stated
-// deviation assumes that it is not, and is larger.
+// About 95 of 100 calibrations would be within two standard deviations if the noise were independent. The stated deviation
+// assumes that it is not, and is larger.
 TEST(Calibration, StatesAnUncertaintyThatHolds) {
   Cameras cameras(0.5e-3);
   int within = 0;
