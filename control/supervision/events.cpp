@@ -7,7 +7,7 @@ namespace swiftlet::control {
 namespace {
 
 // In the order of Event.
-constexpr std::array kEventNames = {
+constexpr std::array kConditionNames = {
     "IMU samples unusable",
     "IMU samples were missing",
     "tipped over",
@@ -28,90 +28,54 @@ constexpr std::array kEventNames = {
     "setpoints violate the fence",
     "setpoints stopped",
     "plan finished",
-    "arm",
-    "disarm",
-    "takeoff",
-    "mission upload",
-    "mission start",
-    "mission pause",
-    "mission resume",
-    "mission skip",
-    "mission clear",
-    "trajectory",
-    "setpoint",
-    "goto",
-    "hold",
-    "land",
-    "stop",
-    "set control",
-    "plan unknown",
-    "engaged in flight",
 };
-static_assert(kEventNames.size() == kEventCount);
+static_assert(kConditionNames.size() == static_cast<std::size_t>(kFirstRequest));
+
+struct OfRequest {
+  RequestKind kind;
+  Event event;
+};
+constexpr std::array kRequestEvents = {
+    OfRequest{RequestKind::kArm, Event::kArm},
+    OfRequest{RequestKind::kDisarm, Event::kDisarm},
+    OfRequest{RequestKind::kTakeoff, Event::kTakeoff},
+    OfRequest{RequestKind::kGoTo, Event::kGoTo},
+    OfRequest{RequestKind::kHold, Event::kHold},
+    OfRequest{RequestKind::kLand, Event::kLand},
+    OfRequest{RequestKind::kStop, Event::kStop},
+    OfRequest{RequestKind::kMissionStart, Event::kMissionStart},
+    OfRequest{RequestKind::kMissionPause, Event::kMissionPause},
+    OfRequest{RequestKind::kMissionResume, Event::kMissionResume},
+    OfRequest{RequestKind::kMissionSkip, Event::kMissionSkip},
+    OfRequest{RequestKind::kMissionClear, Event::kMissionClear},
+    OfRequest{RequestKind::kMissionUpload, Event::kMissionUpload},
+    OfRequest{RequestKind::kTrajectory, Event::kTrajectory},
+    OfRequest{RequestKind::kSettings, Event::kSettings},
+};
 
 }  // namespace
 
 const char* to_string(Event event) {
   const auto index = static_cast<std::size_t>(event);
-  return index < kEventNames.size() ? kEventNames[index] : "unknown";
+  if (index < kConditionNames.size()) return kConditionNames[index];
+  if (const auto kind = kind_of(event)) return to_string(*kind);
+  if (event == Event::kSetpoint) return "setpoint";
+  if (event == Event::kPlanUnknown) return "plan unknown";
+  return event == Event::kEngagedInFlight ? "engaged in flight" : "unknown";
 }
 
 bool event_of(RequestKind kind, Event& event) {
-  switch (kind) {
-    case RequestKind::kArm:
-      event = Event::kArm;
-      return true;
-    case RequestKind::kDisarm:
-      event = Event::kDisarm;
-      return true;
-    case RequestKind::kTakeoff:
-      event = Event::kTakeoff;
-      return true;
-    case RequestKind::kGoTo:
-      event = Event::kGoTo;
-      return true;
-    case RequestKind::kHold:
-      event = Event::kHold;
-      return true;
-    case RequestKind::kLand:
-      event = Event::kLand;
-      return true;
-    case RequestKind::kStop:
-      event = Event::kStop;
-      return true;
-    case RequestKind::kMissionStart:
-      event = Event::kMissionStart;
-      return true;
-    case RequestKind::kMissionPause:
-      event = Event::kMissionPause;
-      return true;
-    case RequestKind::kMissionResume:
-      event = Event::kMissionResume;
-      return true;
-    case RequestKind::kMissionSkip:
-      event = Event::kMissionSkip;
-      return true;
-    case RequestKind::kMissionClear:
-      event = Event::kMissionClear;
-      return true;
-    case RequestKind::kMissionUpload:
-      event = Event::kMissionUpload;
-      return true;
-    case RequestKind::kSettings:
-      event = Event::kSettings;
-      return true;
-    case RequestKind::kTrajectory:
-      event = Event::kTrajectory;
-      return true;
+  for (const OfRequest& one : kRequestEvents) {
+    if (one.kind != kind) continue;
+    event = one.event;
+    return true;
   }
   return false;
 }
 
 std::optional<RequestKind> kind_of(Event event) {
-  for (int number = 0; number <= static_cast<int>(RequestKind::kSettings); ++number) {
-    const auto kind = static_cast<RequestKind>(number);
-    Event of_kind{};
-    if (event_of(kind, of_kind) && of_kind == event) return kind;
+  for (const OfRequest& one : kRequestEvents) {
+    if (one.event == event) return one.kind;
   }
   return std::nullopt;
 }

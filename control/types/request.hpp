@@ -31,6 +31,7 @@ enum class RequestKind : std::uint8_t {
   kTrajectory = 65,
   kSettings = 66,  // change the gains
 };
+const char* to_string(RequestKind kind);  // "goto", as the command of `swiftlet`
 
 // Identifies a request: the client that sent it and the client's number for it.
 struct RequestKey {

@@ -19,42 +19,6 @@ constexpr std::int64_t kPatienceNs = 500'000'000;
 constexpr std::int64_t kStopPatienceNs = 50'000'000;
 constexpr std::size_t kMostOtherRequests = kMaxPendingRequests - 1;  // a stop always has room
 
-const char* name_of(control::RequestKind kind) {
-  switch (kind) {
-    case control::RequestKind::kArm:
-      return "arm";
-    case control::RequestKind::kDisarm:
-      return "disarm";
-    case control::RequestKind::kTakeoff:
-      return "takeoff";
-    case control::RequestKind::kGoTo:
-      return "goto";
-    case control::RequestKind::kHold:
-      return "hold";
-    case control::RequestKind::kLand:
-      return "land";
-    case control::RequestKind::kStop:
-      return "stop";
-    case control::RequestKind::kMissionUpload:
-      return "mission";
-    case control::RequestKind::kMissionStart:
-      return "mission start";
-    case control::RequestKind::kMissionPause:
-      return "mission pause";
-    case control::RequestKind::kMissionResume:
-      return "mission resume";
-    case control::RequestKind::kMissionSkip:
-      return "mission skip";
-    case control::RequestKind::kMissionClear:
-      return "mission clear";
-    case control::RequestKind::kTrajectory:
-      return "trajectory";
-    case control::RequestKind::kSettings:
-      return "set control";
-  }
-  return "request of unknown kind";
-}
-
 control::Outcome accept_with(const char* reason) {
   control::Outcome outcome = control::accept();
   std::snprintf(outcome.reason, sizeof outcome.reason, "%s", reason);
@@ -319,7 +283,7 @@ void CommandServer::refuse(const Key& key, control::RequestKind kind, const cont
 // Call with mutex_ held.
 void CommandServer::settle(const Key& key, control::RequestKind kind, const control::Outcome& outcome,
                            std::int64_t stamp_ns) {
-  log_answer(name_of(kind), key.second, outcome);
+  log_answer(control::to_string(kind), key.second, outcome);
   outbox_.push_back(answer_to(key, outcome, stamp_ns));
   keep_answer(key, outbox_.back());
   wake_.post();

@@ -9,15 +9,12 @@
 
 #include "swiftlet/analysis/pages/recorded/flight_pieces.hpp"
 #include "swiftlet/control/types/mode.hpp"
+#include "swiftlet/control/types/request.hpp"
 #include "swiftlet/math/time.hpp"
 
 namespace swiftlet::pages {
 namespace {
 
-// By the values of Command.kind.
-constexpr std::array<const char*, 12> kRequests = {
-    "arm",  "disarm",        "take off",      "go to",          "hold",         "land",
-    "stop", "start mission", "pause mission", "resume mission", "skip an item", "clear the mission"};
 // By the values of MissionStatus.state.
 constexpr std::array<const char*, 6> kMissionStates = {"none",    "running",  "completed",
                                                        "aborted", "uploaded", "paused"};
@@ -66,7 +63,8 @@ class Events {
 
   void add_requests() {
     for (const record::RequestRow& request : recorded_.requests)
-      add(stamp_of(request), "request", "request: " + name_of(kRequests, request.kind));
+      add(stamp_of(request), "request",
+          std::string("request: ") + control::to_string(static_cast<control::RequestKind>(request.kind)));
     for (const record::RequestRow& answer : recorded_.answers) {
       if (!answer.accepted) add(stamp_of(answer), "request", "request refused: " + answer.reason, true);
     }
