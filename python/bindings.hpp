@@ -82,6 +82,7 @@ void add_errors(py::module_& module);
 void add_models(py::module_& module);
 void add_gains(py::module_& module);
 void add_simulation(py::module_& module);
+void add_stepped_simulation(py::module_& module);
 void add_environments(py::module_& module);
 void add_logs(py::module_& module);
 void add_client(py::module_& module);

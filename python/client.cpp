@@ -338,6 +338,51 @@ void add_setpoints(py::class_<Vehicle>& vehicle) {
           "The vehicle's clock, s, by which streams are timed; NaN before its first estimate.");
 }
 
+void add_stream(py::module_& module) {
+  module.def(
+      "stream",
+      [](const Context& context, const std::string& vehicle_name, const std::string& topic,
+         std::size_t capacity) {
+        const py::gil_scoped_release without_gil;
+        return std::make_unique<TopicStream>(context.participant(), vehicle_name, topic, capacity);
+      },
+      "context"_a, "vehicle"_a, "topic"_a, "capacity"_a = 4096,
+      "The messages of a topic ('estimate', 'mocap_pose', 'control_status' ...; idl/README.md lists all). Of "
+      "more than "
+      "`capacity` messages that wait, the oldest are dropped.");
+}
+
+void add_waiting(py::class_<Vehicle>& vehicle) {
+  vehicle
+      .def(
+          "connect",
+          [](Vehicle& self, double timeout_s) {
+            Result result;
+            {
+              const py::gil_scoped_release without_gil;
+              result = self.connect(limit_of(timeout_s));
+            }
+            require_accepted(result);
+          },
+          "timeout_s"_a = 5.0,
+          "Waits for the controller. Throws RequestError, which says what was found instead.")
+      .def(
+          "wait_until",
+          [](const Vehicle& self, const std::function<bool(const ground::VehicleState&)>& holds,
+             double timeout_s) {
+            const auto end = std::chrono::steady_clock::now() + limit_of(timeout_s);
+            for (;;) {
+              if (holds(self.state())) return true;
+              if (std::chrono::steady_clock::now() >= end) return false;
+              check_signals();
+              const py::gil_scoped_release without_gil;
+              self.wait_until([](const ground::VehicleState&) { return false; },
+                              std::chrono::milliseconds(20));
+            }
+          },
+          "holds"_a, "timeout_s"_a, "Waits until holds(state) is true; False after the time-out.");
+}
+
 }  // namespace
 
 void add_client(py::module_& module) {
@@ -361,52 +406,16 @@ void add_client(py::module_& module) {
            }),
            "context"_a, "name"_a = "kl1")
       .def_property_readonly("name", &Vehicle::name)
-      .def(
-          "connect",
-          [](Vehicle& self, double timeout_s) {
-            Result result;
-            {
-              const py::gil_scoped_release without_gil;
-              result = self.connect(limit_of(timeout_s));
-            }
-            require_accepted(result);
-          },
-          "timeout_s"_a = 5.0,
-          "Waits for the controller. Throws RequestError, which says what was found instead.")
       .def_property_readonly("connected", &Vehicle::connected,
                              "A control_status arrived within the last second.")
       .def("state", &Vehicle::state, WithoutGil())
-      .def(
-          "wait_until",
-          [](const Vehicle& self, const std::function<bool(const ground::VehicleState&)>& holds,
-             double timeout_s) {
-            const auto end = std::chrono::steady_clock::now() + limit_of(timeout_s);
-            for (;;) {
-              if (holds(self.state())) return true;
-              if (std::chrono::steady_clock::now() >= end) return false;
-              check_signals();
-              const py::gil_scoped_release without_gil;
-              self.wait_until([](const ground::VehicleState&) { return false; },
-                              std::chrono::milliseconds(20));
-            }
-          },
-          "holds"_a, "timeout_s"_a, "Waits until holds(state) is true; False after the time-out.")
       .def("enable_link_loss_failsafe", &Vehicle::enable_link_loss_failsafe, WithoutGil(),
            "From now on the controller acts if this program falls silent.")
       .def("disable_link_loss_failsafe", &Vehicle::disable_link_loss_failsafe, WithoutGil());
+  add_waiting(vehicle);
   add_requests(vehicle);
   add_setpoints(vehicle);
-  module.def(
-      "stream",
-      [](const Context& context, const std::string& vehicle_name, const std::string& topic,
-         std::size_t capacity) {
-        const py::gil_scoped_release without_gil;
-        return std::make_unique<TopicStream>(context.participant(), vehicle_name, topic, capacity);
-      },
-      "context"_a, "vehicle"_a, "topic"_a, "capacity"_a = 4096,
-      "The messages of a topic ('estimate', 'mocap_pose', 'control_status' ...; idl/README.md lists all). Of "
-      "more than "
-      "`capacity` messages that wait, the oldest are dropped.");
+  add_stream(module);
 }
 
 }  // namespace swiftlet::python

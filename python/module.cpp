@@ -105,6 +105,7 @@ PYBIND11_MODULE(_core, module) {
   add_models(module);
   add_gains(module);
   add_simulation(module);
+  add_stepped_simulation(module);
   add_environments(module);
   add_logs(module);
   add_client(module);
