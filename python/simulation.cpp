@@ -458,7 +458,7 @@ void add_flight(py::module_& module) {
           "record", [](const Flight& self) { return self.report.record_dir; },
           "The folder of its record; empty without one.")
       .def(
-          "report_json", [](const Flight& self) { return ground::to_json(self.report).dump(2); },
+          "report_json", [](const Flight& self) { return analysis::to_json(self.report).dump(2); },
           "What `swiftlet sim fly --json` prints.")
       .def(
           "truth", [](const Flight& self) { return columns_of(self.flown->truth); },
