@@ -79,6 +79,7 @@ class ConfigNode {
     for (const auto& option : options) names.emplace_back(option.first);
     return (options.begin() + choice_index(names))->second;
   }
+  std::ptrdiff_t choice_index(const std::vector<std::string>& names) const;
 
   // Lists of numbers, each within bounds.
   std::vector<double> numbers(std::size_t min_count, std::size_t max_count,
@@ -114,7 +115,6 @@ class ConfigNode {
 
  private:
   bool is_missing() const;
-  std::ptrdiff_t choice_index(const std::vector<std::string>& names) const;
   [[noreturn]] void fail_type(const std::string& wanted) const;
 
   std::shared_ptr<Tree> tree_;

@@ -31,6 +31,9 @@ def python_type(text, is_argument):
     text = re.sub(r"numpy\.ndarray\[numpy\.(\w+)(?:\[[^\]]*\])?(?:, flags\.\w+)*\]",
                   "ArrayLike" if is_argument else array, text)
     text = text.replace("numpy.ndarray", "NDArray[Any]")
+    # Lists of fixed size, as older and newer versions of pybind11 write them.
+    text = re.sub(r"List\[(\w+)\[\d+\]\]", r"List[\1]", text)
+    text = re.sub(r"Annotated\[(list\[\w+\]), FixedSize\(\d+\)\]", r"\1", text)
     text = re.sub(r"\bdict\b(?!\[)", "Dict[str, Any]", text)
     text = re.sub(r"\b[tT]uple\b(?!\[)", "Tuple[Any, ...]", text)
     text = re.sub(r"\blist\b(?!\[)", "List[Any]", text)

@@ -1,10 +1,14 @@
 #include "swiftlet/simulation/dispersion.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/math/linear_algebra.hpp"
 #include "swiftlet/math/random.hpp"
+#include "swiftlet/plant/model/setting_values.hpp"
+#include "swiftlet/plant/model/vehicle_visit.hpp"
+#include "swiftlet/plant/simulation/settings_visit.hpp"
 #include "swiftlet/plant/simulation/streams.hpp"
 
 namespace swiftlet::simulation {
@@ -58,98 +62,47 @@ bool varies_resistance(const Dispersion& dispersion) {
                      });
 }
 
-Values inertia(World& w) {
-  double* const first = w.vehicle.inertia.data();
+Values whole(Eigen::Matrix3d& matrix) {
   Values values;
-  for (int i = 0; i < 9; ++i) values.push_back(first + i);
+  for (Eigen::Index i = 0; i < matrix.size(); ++i) values.push_back(matrix.data() + i);
   return values;
 }
 
-std::vector<Parameter> all_parameters() {
-  return {
-      {"vehicle.mass", "kg", "mass", [](World& w) -> Values { return {&w.vehicle.mass_kg}; }},
-      {"vehicle.inertia", "", "", inertia},
-      {"vehicle.inertia.xx", "kg*m^2", "", [](World& w) -> Values { return {&w.vehicle.inertia(0, 0)}; }},
-      {"vehicle.inertia.yy", "kg*m^2", "", [](World& w) -> Values { return {&w.vehicle.inertia(1, 1)}; }},
-      {"vehicle.inertia.zz", "kg*m^2", "", [](World& w) -> Values { return {&w.vehicle.inertia(2, 2)}; }},
-      {"vehicle.linear_drag", "N*s/m", "linear_drag",
-       [](World& w) -> Values { return {&w.vehicle.linear_drag}; }},
-      {"vehicle.rotor.thrust_factor", "N*s^2", "rotor.thrust_factor",
-       [](World& w) -> Values { return {&w.vehicle.rotor.thrust}; }},
-      {"vehicle.rotor.torque_factor", "N*m*s^2", "rotor.torque_factor",
-       [](World& w) -> Values { return {&w.vehicle.rotor.torque}; }},
-      {"vehicle.motor.time_constant", "s", "motor.time_constant",
-       [](World& w) -> Values { return {&w.vehicle.motor.time_constant_s}; }},
-      {"vehicle.motor.k2", "V*s/rad", "motor.k2", [](World& w) -> Values { return {&w.vehicle.motor.k2}; }},
-      {"vehicle.motor.k3", "V*s^2/rad^2", "motor.k3",
-       [](World& w) -> Values { return {&w.vehicle.motor.k3}; }},
-      {kArmatureResistance, "ohm", "motor.armature_resistance",
-       [](World& w) -> Values { return {&w.vehicle.motor.armature_resistance_ohm}; }},
-      {"vehicle.esc.gain", "1", "esc.gain", [](World& w) -> Values { return {&w.vehicle.esc.gain}; }},
-      {"vehicle.esc.offset", "V^2", "esc.offset",
-       [](World& w) -> Values { return {&w.vehicle.esc.offset_v2}; }},
-      {"vehicle.battery.capacity", "A*h", "battery.capacity",
-       [](World& w) -> Values { return {&w.vehicle.battery.capacity_ah}; }},
-      {"vehicle.battery.internal_resistance", "ohm", "battery.internal_resistance",
-       [](World& w) -> Values { return {&w.vehicle.battery.internal_resistance_ohm}; }},
-      {"vehicle.battery.sag_time_constant", "s", "battery.sag_time_constant",
-       [](World& w) -> Values { return {&w.vehicle.battery.sag_time_constant_s}; }},
-      {"vehicle.battery.electronics_current", "A", "battery.electronics_current",
-       [](World& w) -> Values { return {&w.vehicle.battery.electronics_current_a}; }},
-      {"simulation.imu.accelerometer_noise_m_s2_per_sqrt_hz", "m/s^2/sqrt(Hz)",
-       "imu.accelerometer_noise_m_s2_per_sqrt_hz",
-       [](World& w) -> Values { return {&w.simulation.imu.accelerometer_noise_density}; }},
-      {"simulation.imu.gyro_noise_rad_s_per_sqrt_hz", "rad/s/sqrt(Hz)", "imu.gyro_noise_rad_s_per_sqrt_hz",
-       [](World& w) -> Values { return {&w.simulation.imu.gyro_noise_density}; }},
-      {"simulation.imu.accelerometer_bias_m_s2", "m/s^2", "imu.accelerometer_bias_m_s2",
-       [](World& w) -> Values { return {&w.simulation.imu.accelerometer_bias_sigma}; }},
-      {"simulation.imu.gyro_bias_rad_s", "rad/s", "imu.gyro_bias_rad_s",
-       [](World& w) -> Values { return {&w.simulation.imu.gyro_bias_sigma}; }},
-      {"simulation.imu.accelerometer_bias_walk_m_s2_per_sqrt_s", "m/s^2/sqrt(s)",
-       "imu.accelerometer_bias_walk_m_s2_per_sqrt_s",
-       [](World& w) -> Values { return {&w.simulation.imu.accelerometer_bias_walk}; }},
-      {"simulation.imu.gyro_bias_walk_rad_s_per_sqrt_s", "rad/s/sqrt(s)",
-       "imu.gyro_bias_walk_rad_s_per_sqrt_s",
-       [](World& w) -> Values { return {&w.simulation.imu.gyro_bias_walk}; }},
-      {"simulation.mocap.latency_s", "s", "mocap.latency_s",
-       [](World& w) -> Values { return {&w.simulation.mocap.latency_s}; }},
-      {"simulation.mocap.position_error_m", "m", "mocap.position_error_m",
-       [](World& w) -> Values { return {&w.simulation.mocap.position_error_m}; }},
-      {"simulation.mocap.orientation_error_rad", "rad", "mocap.orientation_error_rad",
-       [](World& w) -> Values { return {&w.simulation.mocap.orientation_error_rad}; }},
-      {"simulation.mocap.misalignment_rad", "rad", "mocap.misalignment_rad",
-       [](World& w) -> Values { return {&w.simulation.mocap.misalignment_rad}; }},
-      {"simulation.mocap.dropout_probability", "1", "mocap.dropout_probability",
-       [](World& w) -> Values { return {&w.simulation.mocap.dropout_probability}; }},
-      {"simulation.mocap.dropout_length_s", "s", "mocap.dropout_length_s",
-       [](World& w) -> Values { return {&w.simulation.mocap.dropout_length_s}; }},
-      {"simulation.supply.initial_state_of_charge", "1", "supply.initial_state_of_charge",
-       [](World& w) -> Values { return {&w.simulation.supply.initial_state_of_charge}; }},
-      {"simulation.air.wind_ned_m_s.north", "m/s", "air.wind_ned_m_s[0]",
-       [](World& w) -> Values { return {&w.simulation.air.wind_ned.x()}; }},
-      {"simulation.air.wind_ned_m_s.east", "m/s", "air.wind_ned_m_s[1]",
-       [](World& w) -> Values { return {&w.simulation.air.wind_ned.y()}; }},
-      {"simulation.air.wind_ned_m_s.down", "m/s", "air.wind_ned_m_s[2]",
-       [](World& w) -> Values { return {&w.simulation.air.wind_ned.z()}; }},
-      {"simulation.air.gust_sigma_ned_m_s.north", "m/s", "air.gust_sigma_ned_m_s[0]",
-       [](World& w) -> Values { return {&w.simulation.air.gust_sigma_ned.x()}; }},
-      {"simulation.air.gust_sigma_ned_m_s.east", "m/s", "air.gust_sigma_ned_m_s[1]",
-       [](World& w) -> Values { return {&w.simulation.air.gust_sigma_ned.y()}; }},
-      {"simulation.air.gust_sigma_ned_m_s.down", "m/s", "air.gust_sigma_ned_m_s[2]",
-       [](World& w) -> Values { return {&w.simulation.air.gust_sigma_ned.z()}; }},
-      {"simulation.air.gust_time_constant_s", "s", "air.gust_time_constant_s",
-       [](World& w) -> Values { return {&w.simulation.air.gust_time_constant_s}; }},
-      {"simulation.ground.friction", "1", "ground.friction",
-       [](World& w) -> Values { return {&w.simulation.ground.friction}; }},
+struct Place {
+  Parameter parameter;
+  Values values;
+};
+
+// The parameters with their values in a world.
+std::vector<Place> places(World& world) {
+  std::vector<Place> out;
+  const auto add = [&](const std::string& file, const std::vector<plant::SettingValue>& values) {
+    for (const plant::SettingValue& one : values) {
+      if (!one.varies) continue;
+      if (one.name == plant::kInertiaKeys[0])
+        out.push_back({{file + "inertia", "", "", out.size()}, whole(world.vehicle.inertia)});
+      const bool has_rule = one.setting.range.kind != plant::Range::Kind::kAny;
+      out.push_back({{file + one.name, one.setting.unit, has_rule ? one.key : "", out.size()}, {one.place}});
+    }
   };
+  add("vehicle.", plant::setting_values(world.vehicle));
+  add("simulation.", plant::setting_values(world.simulation));
+  return out;
 }
 
 }  // namespace
 
 const std::vector<Parameter>& parameters() {
-  static const std::vector<Parameter> all = all_parameters();
+  static const std::vector<Parameter> all = [] {
+    World world;
+    std::vector<Parameter> out;
+    for (Place& place : places(world)) out.push_back(std::move(place.parameter));
+    return out;
+  }();
   return all;
 }
+
+Values Parameter::in(World& world) const { return places(world)[index].values; }
 
 std::vector<plant::Violation> validate(const World& world) {
   std::vector<plant::Violation> violations = plant::validate(world.vehicle);

@@ -2,6 +2,7 @@
 // a distribution. A seed gives the same sample on every machine, independent of earlier samples.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -25,10 +26,13 @@ struct Parameter {
   std::string name;  // "vehicle." or "simulation." plus the key in that file
   std::string unit;  // empty: several values, which are all multiplied by the same factor
   std::string rule;  // key of validate()'s violations that concern only this value; empty: must be above 0
-  std::vector<double*> (*in)(World& world);  // the values in a world
+  std::size_t index = 0;  // in parameters()
+
+  std::vector<double*> in(World& world) const;  // the values in a world
 };
 
-const std::vector<Parameter>& parameters();  // in the order of columns and draws
+// The numbers that every vehicle and simulation file has and that may vary, in the order of columns and draws.
+const std::vector<Parameter>& parameters();
 
 enum class Distribution {
   kUniform,

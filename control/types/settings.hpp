@@ -1,5 +1,5 @@
-// The settings of the controller: weights, bandwidths, limits, thresholds. The control settings file has the
-// same keys.
+// The settings of the controller: weights, bandwidths, limits, thresholds. settings_visit.hpp has their keys in the control
+// settings file and their limits.
 #pragma once
 
 #include <algorithm>

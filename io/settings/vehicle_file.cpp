@@ -1,113 +1,51 @@
 #include "swiftlet/io/settings/vehicle_file.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "swiftlet/io/config.hpp"
 #include "swiftlet/io/nearest_name.hpp"
+#include "swiftlet/io/settings/settings_reader.hpp"
 #include "swiftlet/io/settings/violations.hpp"
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/plant/model/plausibility.hpp"
 #include "swiftlet/plant/model/rotor.hpp"
+#include "swiftlet/plant/model/setting_values.hpp"
+#include "swiftlet/plant/model/vehicle_visit.hpp"
 
 namespace swiftlet::io {
 
-namespace {
-
-using plant::Vehicle;
-
-constexpr std::size_t kMaxBatteryPoints = 1000;
-
-Eigen::Matrix3d read_inertia(const ConfigNode& node) {
-  Eigen::Matrix3d inertia;
-  const std::vector<ConfigNode> rows = node.quantity("kg*m^2").items(3, 3);
-  for (int i = 0; i < 3; ++i) inertia.row(i) = rows[static_cast<std::size_t>(i)].vector3();
-  return inertia;
-}
-
-std::vector<plant::RotorMount> read_rotors(const ConfigNode& node) {
-  std::vector<plant::RotorMount> rotors;
-  for (const ConfigNode& item : node.items(plant::kMinRotors, plant::kMaxRotors)) {
-    plant::RotorMount mount;
-    mount.position_frd = item.at("position_frd").quantity("m").vector3();
-    mount.spin = item.at("spin").choice<plant::Spin>(
-        {{"counter_clockwise", plant::Spin::kCounterClockwise}, {"clockwise", plant::Spin::kClockwise}});
-    rotors.push_back(mount);
-  }
-  return rotors;
-}
-
 // The file gives either the factors of Eq. (25) and (26) or the coefficients of Eq. (23) and (24).
-plant::RotorCoefficients read_rotor(const ConfigNode& node) {
+void read_section(const SettingsReader& reader, plant::RotorCoefficients& rotor) {
+  const ConfigNode& node = reader.node();
   if (!node.find("thrust_coefficient")) {
-    return {node.at("thrust_factor").quantity("N*s^2").number(),
-            node.at("torque_factor").quantity("N*m*s^2").number()};
+    visit(rotor, reader);
+    return;
   }
   plant::BladeCoefficients blade;
   blade.thrust = node.at("thrust_coefficient").quantity("1").number(above(0.0));
   blade.torque = node.at("torque_coefficient").quantity("1").number(above(0.0));
   blade.radius_m = node.at("radius").quantity("m").number(above(0.0));
   blade.air_density = node.at("air_density").quantity("kg/m^3").number(above(0.0));
-  return plant::rotor_coefficients(blade);
+  rotor = plant::rotor_coefficients(blade);
 }
 
-plant::Motor read_motor(const ConfigNode& node) {
-  plant::Motor motor;
-  motor.model = node.at("model").choice<plant::MotorModel>(
-      {{"reduced", plant::MotorModel::kReduced}, {"physical", plant::MotorModel::kPhysical}});
-  motor.time_constant_s = node.at("time_constant").quantity("s").number();
-  motor.k2 = node.at("k2").quantity("V*s/rad").number();
-  motor.k3 = node.at("k3").quantity("V*s^2/rad^2").number();
-  motor.armature_resistance_ohm = node.at("armature_resistance").quantity("ohm").number();
-  motor.armature_inductance_h = node.at("armature_inductance").quantity("H").number();
-  return motor;
-}
+namespace {
 
-plant::Esc read_esc(const ConfigNode& node) {
-  plant::Esc esc;
-  esc.gain = node.at("gain").quantity("1").number();
-  esc.offset_v2 = node.at("offset").quantity("V^2").number();
-  esc.pulse_min_us = node.at("pulse_min").quantity("us").number();
-  esc.pulse_range_us = node.at("pulse_range").quantity("us").number();
-  return esc;
-}
-
-plant::BatteryParameters read_battery(const ConfigNode& node) {
-  plant::BatteryParameters battery;
-  battery.capacity_ah = node.at("capacity").quantity("A*h").number();
-  battery.internal_resistance_ohm = node.at("internal_resistance").quantity("ohm").number();
-  battery.sag_time_constant_s = node.at("sag_time_constant").quantity("s").number();
-  battery.electronics_current_a = node.at("electronics_current").quantity("A").number();
-  const ConfigNode curve = node.at("open_circuit");
-  battery.state_of_charge = curve.at("state_of_charge").quantity("1").numbers(2, kMaxBatteryPoints);
-  battery.open_circuit_voltage_v = curve.at("voltage").quantity("V").numbers(2, kMaxBatteryPoints);
-  return battery;
-}
+using plant::Vehicle;
 
 // Reads the key of a scalar vehicle parameter that may have an uncertainty.
 std::string read_parameter_key(const ConfigNode& node) {
-  constexpr std::array<const char*, 17> kKeys = {"mass",
-                                                 "linear_drag",
-                                                 "inertia.xx",
-                                                 "inertia.yy",
-                                                 "inertia.zz",
-                                                 "rotor.thrust_factor",
-                                                 "rotor.torque_factor",
-                                                 "motor.time_constant",
-                                                 "motor.k2",
-                                                 "motor.k3",
-                                                 "motor.armature_resistance",
-                                                 "motor.armature_inductance",
-                                                 "esc.gain",
-                                                 "esc.offset",
-                                                 "esc.pulse_min",
-                                                 "esc.pulse_range",
-                                                 "battery.internal_resistance"};
-  std::string key = node.text();
-  if (std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end()) return key;
+  Vehicle vehicle;
+  std::vector<std::string> keys;
   std::string known;
-  for (const char* name : kKeys) known += std::string(known.empty() ? "" : ", ") + name;
-  node.fail("is " + key + ", must be one of " + known + or_nearest({kKeys.begin(), kKeys.end()}, key));
+  for (const plant::SettingValue& one : plant::setting_values(vehicle)) {
+    if (!one.varies) continue;
+    keys.push_back(one.name);
+    known += (known.empty() ? "" : ", ") + one.name;
+  }
+  std::string key = node.text();
+  if (std::find(keys.begin(), keys.end(), key) != keys.end()) return key;
+  node.fail("is " + key + ", must be one of " + known + or_nearest(keys, key));
 }
 
 plant::VehicleUncertainty read_uncertainty(const ConfigNode& root) {
@@ -146,14 +84,7 @@ Vehicle parse_vehicle(std::string_view text, const std::string& file_name) {
   Vehicle vehicle;
   root.read_known([&] {
     vehicle.name = root.at("name").text();
-    vehicle.mass_kg = root.at("mass").quantity("kg").number();
-    vehicle.inertia = read_inertia(root.at("inertia"));
-    vehicle.linear_drag = root.at("linear_drag").quantity("N*s/m").number();
-    vehicle.rotors = read_rotors(root.at("rotors"));
-    vehicle.rotor = read_rotor(root.at("rotor"));
-    vehicle.motor = read_motor(root.at("motor"));
-    vehicle.esc = read_esc(root.at("esc"));
-    vehicle.battery = read_battery(root.at("battery"));
+    read_section(SettingsReader(root, NumbersAre::kQuantities), vehicle);
     read_uncertainty(root);
   });
   reject_violations(root, plant::implausible(vehicle));

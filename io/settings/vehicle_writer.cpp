@@ -2,10 +2,12 @@
 
 #include <array>
 #include <sstream>
+#include <utility>
 
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/flat_yaml.hpp"
 #include "swiftlet/io/text_file.hpp"
+#include "swiftlet/plant/model/vehicle_visit.hpp"
 
 namespace swiftlet::io {
 
@@ -27,22 +29,66 @@ std::string list(const Numbers& numbers) {
   return out + "]";
 }
 
+// Writes the parameters in the order of their visit. A section begins in a line of its own.
 class Writer {
  public:
-  explicit Writer(const VehicleSources& sources) : sources_(sources) {}
+  Writer(std::ostream& out, const VehicleSources& sources, std::string prefix = "", std::string indent = "")
+      : out_(out), sources_(sources), prefix_(std::move(prefix)), indent_(std::move(indent)) {}
+
+  template <class T, class... Arguments>
+  void operator()(const plant::Setting& setting, T& value, Arguments...) {
+    if constexpr (plant::kIsSection<T>) {
+      begin(setting.name.key);
+      Writer inside(out_, sources_, prefix_ + setting.name.key + ".", indent_ + "  ");
+      visit(value, inside);
+    } else {
+      write(setting, value);
+    }
+  }
+  template <class Enum>
+  void operator()(const plant::Setting& setting, Enum& value, plant::ValueNames names) {
+    out_ << indent_ << setting.name.key << ": " << names.begin()[static_cast<int>(value)] << '\n';
+  }
+
+ private:
+  void begin(const std::string& section) { out_ << indent_ << section << ":\n"; }
+
+  // {value: 1, unit: kg, source: "..."}. A key such as "open_circuit.voltage" is one in a section, which begins with its first.
+  void write(const plant::Setting& setting, const std::string& value) {
+    const std::string key = setting.name.key;
+    const std::size_t dot = key.find('.');
+    if (dot != std::string::npos && key.substr(0, dot) != section_) begin(section_ = key.substr(0, dot));
+    out_ << indent_ << (dot == std::string::npos ? key : "  " + key.substr(dot + 1)) << ": {value: " << value
+         << ", unit: " << setting.unit << ", source: " << source(prefix_ + key) << "}\n";
+  }
+  void write(const plant::Setting& setting, double value) { write(setting, exact(value)); }
+  void write(const plant::Setting& setting, const Eigen::Vector3d& value) {
+    write(setting, list(std::array<double, 3>{value.x(), value.y(), value.z()}));
+  }
+  void write(const plant::Setting& setting, const std::vector<double>& values) {
+    write(setting, list(values));
+  }
+  void write(const plant::Setting& setting, const Eigen::Matrix3d& inertia) {
+    begin(setting.name.key);
+    out_ << "  value:\n";
+    for (int i = 0; i < 3; ++i)
+      out_ << "    - " << list(std::array<double, 3>{inertia(i, 0), inertia(i, 1), inertia(i, 2)}) << '\n';
+    out_ << "  unit: " << setting.unit << "\n  source: " << inertia_source() << '\n';
+  }
+  void write(const plant::Setting& setting, std::vector<plant::RotorMount>& mounts) {
+    begin(setting.name.key);
+    for (std::size_t i = 0; i < mounts.size(); ++i) {
+      std::ostringstream mount;
+      Writer inside(mount, sources_, "rotors[" + std::to_string(i) + "].", "    ");
+      visit(mounts[i], inside);
+      out_ << "  - " << mount.str().substr(4);
+    }
+  }
 
   std::string source(const std::string& key) const {
     const auto found = sources_.find(key);
     return quoted(found == sources_.end() ? "estimate" : found->second);
   }
-  // {value: 1, unit: kg, source: "..."}
-  std::string quantity(const std::string& key, const std::string& value, const char* unit) const {
-    return "{value: " + value + ", unit: " + unit + ", source: " + source(key) + "}";
-  }
-  std::string quantity(const std::string& key, double value, const char* unit) const {
-    return quantity(key, exact(value), unit);
-  }
-
   std::string inertia_source() const {
     std::string joined;
     for (const char* key : plant::kInertiaKeys) {
@@ -55,58 +101,12 @@ class Writer {
     return quoted(joined + "; the rest " + (rest == sources_.end() ? "estimate" : rest->second));
   }
 
- private:
+  std::ostream& out_;
   const VehicleSources& sources_;
+  std::string prefix_;
+  std::string indent_;
+  std::string section_;
 };
-
-void write_inertia(std::ostream& out, const Eigen::Matrix3d& inertia, const Writer& writer) {
-  out << "inertia:\n  value:\n";
-  for (int i = 0; i < 3; ++i)
-    out << "    - " << list(std::array<double, 3>{inertia(i, 0), inertia(i, 1), inertia(i, 2)}) << '\n';
-  out << "  unit: kg*m^2\n  source: " << writer.inertia_source() << '\n';
-}
-
-void write_rotors(std::ostream& out, const std::vector<plant::RotorMount>& rotors, const Writer& writer) {
-  out << "rotors:\n";
-  for (std::size_t i = 0; i < rotors.size(); ++i) {
-    const Eigen::Vector3d& p = rotors[i].position_frd;
-    const std::string key = "rotors[" + std::to_string(i) + "].position_frd";
-    out << "  - position_frd: " << writer.quantity(key, list(std::array<double, 3>{p.x(), p.y(), p.z()}), "m")
-        << "\n    spin: " << (rotors[i].spin == plant::Spin::kClockwise ? "clockwise" : "counter_clockwise")
-        << '\n';
-  }
-}
-
-void write_motor(std::ostream& out, const plant::Motor& motor, const Writer& writer) {
-  out << "motor:\n  model: " << (motor.model == plant::MotorModel::kPhysical ? "physical" : "reduced")
-      << "\n  time_constant: " << writer.quantity("motor.time_constant", motor.time_constant_s, "s")
-      << "\n  k2: " << writer.quantity("motor.k2", motor.k2, "V*s/rad")
-      << "\n  k3: " << writer.quantity("motor.k3", motor.k3, "V*s^2/rad^2") << "\n  armature_resistance: "
-      << writer.quantity("motor.armature_resistance", motor.armature_resistance_ohm, "ohm")
-      << "\n  armature_inductance: "
-      << writer.quantity("motor.armature_inductance", motor.armature_inductance_h, "H") << '\n';
-}
-
-void write_esc(std::ostream& out, const plant::Esc& esc, const Writer& writer) {
-  out << "esc:\n  gain: " << writer.quantity("esc.gain", esc.gain, "1")
-      << "\n  offset: " << writer.quantity("esc.offset", esc.offset_v2, "V^2")
-      << "\n  pulse_min: " << writer.quantity("esc.pulse_min", esc.pulse_min_us, "us")
-      << "\n  pulse_range: " << writer.quantity("esc.pulse_range", esc.pulse_range_us, "us") << '\n';
-}
-
-void write_battery(std::ostream& out, const plant::BatteryParameters& battery, const Writer& writer) {
-  out << "battery:\n  capacity: " << writer.quantity("battery.capacity", battery.capacity_ah, "A*h")
-      << "\n  internal_resistance: "
-      << writer.quantity("battery.internal_resistance", battery.internal_resistance_ohm, "ohm")
-      << "\n  sag_time_constant: "
-      << writer.quantity("battery.sag_time_constant", battery.sag_time_constant_s, "s")
-      << "\n  electronics_current: "
-      << writer.quantity("battery.electronics_current", battery.electronics_current_a, "A")
-      << "\n  open_circuit:\n    state_of_charge: "
-      << writer.quantity("battery.open_circuit.state_of_charge", list(battery.state_of_charge), "1")
-      << "\n    voltage: "
-      << writer.quantity("battery.open_circuit.voltage", list(battery.open_circuit_voltage_v), "V") << '\n';
-}
 
 void write_uncertainty(std::ostream& out, const plant::VehicleUncertainty& uncertainty) {
   if (uncertainty.parameters.empty()) return;
@@ -141,21 +141,13 @@ VehicleSources load_vehicle_sources(const std::string& path) {
 
 std::string vehicle_text(const plant::Vehicle& vehicle, const VehicleSources& sources,
                          const plant::VehicleUncertainty& uncertainty, const std::string& comment) {
-  const Writer writer(sources);
   std::ostringstream out;
   std::istringstream lines(comment);
   for (std::string line; std::getline(lines, line);) out << "# " << line << '\n';
-  out << "name: " << quoted(vehicle.name) << "\n\nmass: " << writer.quantity("mass", vehicle.mass_kg, "kg")
-      << '\n';
-  write_inertia(out, vehicle.inertia, writer);
-  out << "linear_drag: " << writer.quantity("linear_drag", vehicle.linear_drag, "N*s/m") << '\n';
-  write_rotors(out, vehicle.rotors, writer);
-  out << "rotor:\n  thrust_factor: " << writer.quantity("rotor.thrust_factor", vehicle.rotor.thrust, "N*s^2")
-      << "\n  torque_factor: " << writer.quantity("rotor.torque_factor", vehicle.rotor.torque, "N*m*s^2")
-      << '\n';
-  write_motor(out, vehicle.motor, writer);
-  write_esc(out, vehicle.esc, writer);
-  write_battery(out, vehicle.battery, writer);
+  out << "name: " << quoted(vehicle.name) << "\n\n";
+  plant::Vehicle written = vehicle;
+  Writer writer(out, sources);
+  visit(written, writer);
   write_uncertainty(out, uncertainty);
   return out.str();
 }

@@ -7,12 +7,13 @@
 #include "swiftlet/math/linear_algebra.hpp"
 #include "swiftlet/plant/model/airframe.hpp"
 #include "swiftlet/plant/model/propulsion.hpp"
+#include "swiftlet/plant/model/setting_values.hpp"
+#include "swiftlet/plant/model/vehicle_visit.hpp"
 
 namespace swiftlet::plant {
 
 namespace {
 
-constexpr double kMinTimeConstant = 1e-3;            // s; shorter ones cannot be integrated in real time
 constexpr double kMinElectricalTimeConstant = 1e-6;  // s, L_a / R_a; for the same reason
 constexpr double kMinHubDistance = 1e-3;             // m, between two hubs
 constexpr double kMinSingularValue = 1e-3;           // of the effectiveness with rows scaled to length 1
@@ -73,14 +74,6 @@ bool check_rotors(const std::vector<RotorMount>& rotors, RuleChecker& check) {
 
 bool check_motor(const Vehicle& vehicle, RuleChecker& check) {
   const Motor& motor = vehicle.motor;
-  bool holds = check.above("rotor.thrust_factor", vehicle.rotor.thrust, 0.0);
-  holds = check.above("rotor.torque_factor", vehicle.rotor.torque, 0.0) && holds;
-  holds = check.at_least("motor.time_constant", motor.time_constant_s, kMinTimeConstant) && holds;
-  holds = check.above("motor.k2", motor.k2, 0.0) && holds;
-  holds = check.above("motor.k3", motor.k3, 0.0) && holds;
-  holds = check.above("motor.armature_resistance", motor.armature_resistance_ohm, 0.0) && holds;
-  holds = check.at_least("motor.armature_inductance", motor.armature_inductance_h, 0.0) && holds;
-  if (!holds) return false;
   const double max_resistance = motor.k2 * motor.k3 / vehicle.rotor.torque;
   if (!(motor.armature_resistance_ohm <= max_resistance)) {
     check.add("motor.armature_resistance", "is ", motor.armature_resistance_ohm,
@@ -97,24 +90,13 @@ bool check_motor(const Vehicle& vehicle, RuleChecker& check) {
   return true;
 }
 
-bool check_esc(const Esc& esc, RuleChecker& check) {
-  bool holds = check.above("esc.gain", esc.gain, 0.0);
-  holds = check.finite("esc.offset", esc.offset_v2) && holds;
-  holds = check.at_least("esc.pulse_min", esc.pulse_min_us, 0.0) && holds;
-  return check.above("esc.pulse_range", esc.pulse_range_us, 0.0) && holds;
-}
-
 bool is_strictly_rising(const std::vector<double>& values) {
   return std::adjacent_find(values.begin(), values.end(), [](double a, double b) { return !(a < b); }) ==
          values.end();
 }
 
 bool check_battery(const BatteryParameters& battery, RuleChecker& check) {
-  bool holds = check.above("battery.capacity", battery.capacity_ah, 0.0);
-  holds = check.at_least("battery.internal_resistance", battery.internal_resistance_ohm, 0.0) && holds;
-  holds = check.at_least("battery.sag_time_constant", battery.sag_time_constant_s, kMinTimeConstant) && holds;
-  holds = check.at_least("battery.electronics_current", battery.electronics_current_a, 0.0) && holds;
-
+  bool holds = true;
   const std::vector<double>& soc = battery.state_of_charge;
   const std::vector<double>& voltage = battery.open_circuit_voltage_v;
   if (soc.size() < 2 || soc.front() != 0.0 || soc.back() != 1.0 || !is_strictly_rising(soc)) {
@@ -170,12 +152,10 @@ void check_hover(const Vehicle& vehicle, RuleChecker& check) {
 std::vector<Violation> validate(const Vehicle& vehicle) {
   RuleChecker check;
   if (vehicle.name.empty()) check.add("name", "is empty, must be given");
-  bool holds = check.above("mass", vehicle.mass_kg, 0.0);
+  bool holds = check_settings(vehicle, check);
+  holds = holds && check_motor(vehicle, check);
   holds = check_inertia(vehicle.inertia, check) && holds;
-  holds = check.at_least("linear_drag", vehicle.linear_drag, 0.0) && holds;
   holds = check_rotors(vehicle.rotors, check) && holds;
-  holds = check_motor(vehicle, check) && holds;
-  holds = check_esc(vehicle.esc, check) && holds;
   holds = check_battery(vehicle.battery, check) && holds;
   if (holds && check_authority(vehicle, check)) check_hover(vehicle, check);
   return check.take();

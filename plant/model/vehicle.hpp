@@ -1,5 +1,6 @@
-// Parameters of an identified vehicle, as in the vehicle file. Equation numbers are those of the paper (Phang
-// et al., "Explicit Model Identification and Control of a Micro Aerial Vehicle", ICUAS 2014).
+// Parameters of an identified vehicle. vehicle_visit.hpp has their keys in the vehicle file and their limits. Equation
+// numbers are those of the paper (Phang et al., "Explicit Model Identification and Control of a Micro Aerial Vehicle", ICUAS
+// 2014).
 #pragma once
 
 #include <string>

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "swiftlet/plant/model/setting.hpp"
+
 namespace swiftlet::plant {
 
 // One violated rule: the key in the parameter file and a sentence with value and limit.
@@ -39,6 +41,13 @@ class RuleChecker {
   bool between(const std::string& key, double value, double min, double max) {
     return require(value >= min && value <= max, key, "is ", value, ", must be at least ", min,
                    " and at most ", max);
+  }
+
+  bool in_range(const std::string& key, double value, const Range& range) {
+    if (range.kind == Range::Kind::kFinite) return finite(key, value);
+    if (range.kind == Range::Kind::kAbove) return above(key, value, range.min);
+    if (range.kind == Range::Kind::kAtLeast) return at_least(key, value, range.min);
+    return range.kind == Range::Kind::kAny || between(key, value, range.min, range.max);
   }
 
   std::vector<Violation> take() { return std::move(violations_); }

@@ -1,5 +1,5 @@
-// Settings of the simulation: integration, sensors, battery, air and ground. The keys of the simulation file
-// have the same names.
+// Settings of the simulation: integration, sensors, battery, air and ground. settings_visit.hpp has their keys in the
+// simulation file and their limits.
 #pragma once
 
 #include <array>

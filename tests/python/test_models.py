@@ -66,6 +66,21 @@ class Vehicles(unittest.TestCase):
             swiftlet.load_vehicle("kaylon")
 
 
+class Settings(unittest.TestCase):
+    def test_are_those_of_the_files(self):
+        control, simulation = swiftlet.load_control(), swiftlet.load_simulation()
+        control.estimator.detectors.recovery.poses = 7
+        control.failsafe.ground_link_action = "hold"
+        simulation.gps.rate_hz = 5.0
+        self.assertEqual(control.estimator.detectors.recovery.poses, 7)
+        self.assertEqual(control.failsafe.ground_link_action, "hold")
+        self.assertEqual((control.validate(), simulation.validate()), ([], []))
+        with self.assertRaisesRegex(swiftlet.InputError, "ground_link_action is 'pray', must be 'none', 'hold' or 'land'"):
+            control.failsafe.ground_link_action = "pray"
+        control.failsafe.battery_delay_s = -1.0
+        self.assertEqual([one.key for one in control.validate()], ["failsafe.battery_delay_s"])
+
+
 class Gains(unittest.TestCase):
     def test_equal_those_of_the_command(self):
         for vehicle, control in (("kaylion", "motor_lag"), ("crazyflie2", "paper")):
