@@ -135,7 +135,7 @@ enum class OdometrySource : std::uint8_t { kNone, kMocap, kOwnSensors };
 
 struct OdometrySettings {
   OdometrySource source = OdometrySource::kNone;  // not a key of the file (`--odometry`)
-  // Of its own sensors: standard deviations of errors that change smoothly.
+  // The errors of its own sensors: standard deviations of what changes smoothly.
   double position_drift_m = 0.1;  // each axis
   double heading_drift_rad = 0.02;
   double drift_time_constant_s = 20.0;  // of these errors

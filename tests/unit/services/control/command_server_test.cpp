@@ -43,7 +43,8 @@ TEST_F(CommandServerTest, StatusesAfterAnAcceptanceIncludeTheRequest) {
   command_server_.on_command(command(Command_Constants::TAKEOFF, 2));
   step();
   const std::int64_t accepted_ns = last_imu_.stamp_ns;
-  for (const messages::msg::CommandAck& answer : command_server_.collect()) EXPECT_GT(answer.stamp_ns(), 0) << answer.id();
+  for (const messages::msg::CommandAck& answer : command_server_.collect())
+    EXPECT_GT(answer.stamp_ns(), 0) << answer.id();
   command_server_.on_command(command(Command_Constants::TAKEOFF, 2));
   const std::vector<messages::msg::CommandAck> again = command_server_.collect();
   ASSERT_EQ(again.size(), 1U);
@@ -76,7 +77,7 @@ TEST_F(CommandServerTest, ChangesTheGains) {
   command_server_.on_control_settings(settings_message(2, 2.0));
   step();
   EXPECT_EQ(command_server_.collect().at(0).reason(),
-               "another request changed the gains meanwhile; send this one again");
+            "another request changed the gains meanwhile; send this one again");
   command_server_.set_gains_in_force(last_.gains);
   command_server_.on_control_settings(settings_message(3, 2.0));
   step();
@@ -214,8 +215,7 @@ TEST_F(CommandServerTest, RefusesPathsBeyondItsRotors) {
   const std::vector<messages::msg::CommandAck> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 2U);
   for (const messages::msg::CommandAck& answer : answers) EXPECT_FALSE(answer.accepted());
-  EXPECT_EQ(answers[0].reason().to_string().rfind("the trajectory: least thrust of a rotor is ", 0),
-            0U)
+  EXPECT_EQ(answers[0].reason().to_string().rfind("the trajectory: least thrust of a rotor is ", 0), 0U)
       << answers[0].reason();
   EXPECT_EQ(answers[1].reason().to_string().rfind("the mission: least thrust of a rotor is ", 0), 0U)
       << answers[1].reason();
