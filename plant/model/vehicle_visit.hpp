@@ -41,8 +41,10 @@ template <class Visitor>
 void visit(Esc& s, Visitor& v) {
   v({"gain", "1", above(0.0)}, s.gain);
   v({{"offset_v2", "offset"}, "V^2", finite()}, s.offset_v2);
-  v({{"pulse_min_us", "pulse_min"}, "us", at_least(0.0), "pulse width at delta = 0"}, s.pulse_min_us);
-  v({{"pulse_range_us", "pulse_range"}, "us", above(0.0), "from delta = 0 to 1"}, s.pulse_range_us);
+  v(Setting{{"pulse_min_us", "pulse_min"}, "us", at_least(0.0), "pulse width at delta = 0"}.fixed(),
+    s.pulse_min_us);
+  v(Setting{{"pulse_range_us", "pulse_range"}, "us", above(0.0), "from delta = 0 to 1"}.fixed(),
+    s.pulse_range_us);
 }
 
 template <class Visitor>

@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <climits>
-#include <iterator>
 #include <random>
-#include <set>
-#include <sstream>
 #include <stdexcept>
 #include <thread>
 #include <unistd.h>
