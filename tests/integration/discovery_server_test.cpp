@@ -12,6 +12,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/io/network/sockets.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/network/network_namespace.hpp"
 #include "tests/support/program.hpp"
@@ -66,10 +67,7 @@ class Client {
     return body.parameter(0x800f, ByteWriter(guid(prefix_, kSpdpWriter)).number(0, number));
   }
   void send(unsigned kind, unsigned flags, const ByteWriter& body) const {
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_port = htons(kPort);
-    to.sin_addr.s_addr = inet_addr(server_.c_str());
+    const sockaddr_in to = io::socket_address(server_, kPort);
     const Bytes message = RtpsMessage(prefix_).add(kind, flags, body).bytes();
     ::sendto(socket_, message.data(), message.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
   }

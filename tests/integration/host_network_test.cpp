@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/io/network/sockets.hpp"
 #include "tests/support/network/network_namespace.hpp"
-#include "tests/support/network/socket_address.hpp"
 
 namespace swiftlet::tests {
 namespace {
@@ -22,7 +22,7 @@ bool arrives(const HostNetwork& network, int from, int at, const std::string& ad
   {
     const HostNetwork::Inside inside(network, at);
     receiver = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    const sockaddr_in any = socket_address("0.0.0.0", kDataPort);
+    const sockaddr_in any = io::socket_address("", kDataPort);
     EXPECT_EQ(bind(receiver, reinterpret_cast<const sockaddr*>(&any), sizeof any), 0);
     const ip_mreq group{{inet_addr(kGroup)}, {inet_addr(network.address(at).c_str())}};
     setsockopt(receiver, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group);
@@ -31,7 +31,7 @@ bool arrives(const HostNetwork& network, int from, int at, const std::string& ad
   {
     const HostNetwork::Inside inside(network, from);
     const int sender = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    const sockaddr_in to = socket_address(address, kDataPort);
+    const sockaddr_in to = io::socket_address(address, kDataPort);
     sendto(sender, "x", 1, 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
     close(sender);
   }

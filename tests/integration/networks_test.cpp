@@ -17,9 +17,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/io/network/sockets.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/network/network_namespace.hpp"
-#include "tests/support/network/socket_address.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/rtps_message.hpp"
 #include "tests/support/shifted_clock.hpp"
@@ -216,7 +216,7 @@ TEST_F(Networks, ASecondPlantIsRefusedThroughADiscoveryServer) {
 bool answers(const HostNetwork& network, int at, int from) {
   const HostNetwork::Inside inside(network, from);
   const int stranger = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  sockaddr_in own = socket_address(network.address(from), 0);
+  sockaddr_in own = io::socket_address(network.address(from), 0);
   socklen_t size = sizeof own;
   EXPECT_EQ(bind(stranger, reinterpret_cast<const sockaddr*>(&own), size), 0);
   getsockname(stranger, reinterpret_cast<sockaddr*>(&own), &size);
@@ -230,7 +230,7 @@ bool answers(const HostNetwork& network, int at, int from) {
       .parameter(0x0031, locator)
       .parameter(0x0058, ByteWriter().u32(0x0c3f));
   const Bytes datagram = announcement(kAlice, parameters).bytes();
-  const sockaddr_in to = socket_address(network.address(at), kFirstDiscoveryPort);
+  const sockaddr_in to = io::socket_address(network.address(at), kFirstDiscoveryPort);
   sendto(stranger, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
   char byte = 0;
   const bool answered = recv(stranger, &byte, 1, MSG_TRUNC) > 0;

@@ -16,6 +16,8 @@
 #include <unistd.h>
 #include <utility>
 
+#include "swiftlet/io/network/sockets.hpp"
+
 namespace swiftlet::tests {
 namespace {
 
@@ -266,10 +268,7 @@ DatagramAttack::~DatagramAttack() {
 }
 
 void DatagramAttack::send(const CapturedDatagram& datagram) const {
-  sockaddr_in to{};
-  to.sin_family = AF_INET;
-  to.sin_port = htons(datagram.port);
-  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const sockaddr_in to = io::socket_address("127.0.0.1", datagram.port);
   ::sendto(socket_, datagram.bytes.data(), datagram.bytes.size(), MSG_DONTWAIT,
            reinterpret_cast<const sockaddr*>(&to), sizeof to);
 }

@@ -14,6 +14,7 @@
 
 #include <Eigen/Geometry>
 
+#include "swiftlet/io/network/sockets.hpp"
 #include "swiftlet/math/geodesy.hpp"
 #include "swiftlet/plant/model/propulsion.hpp"
 #include "tests/support/eventually.hpp"
@@ -32,14 +33,6 @@ constexpr double kAttitude_1_s = 6.0;
 constexpr double kVelocity_1_s = 3.0;
 constexpr double kPosition_1_s2 = 2.5;
 constexpr double kIntegral_1_s3 = 1.0;
-
-sockaddr_in loopback(int port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  return address;
-}
 
 // The control of a rotor of a quadrotor in X in PX4's numbers, from 0.
 std::size_t px4_control(const Vector3d& position_frd) {
@@ -64,7 +57,7 @@ ScriptedAutopilot::ScriptedAutopilot(const plant::Vehicle& vehicle, const plant:
 ScriptedAutopilot::~ScriptedAutopilot() { disconnect(); }
 
 bool ScriptedAutopilot::connect(int port, std::chrono::milliseconds timeout) {
-  const sockaddr_in address = loopback(port);
+  const sockaddr_in address = io::socket_address("127.0.0.1", port);
   const bool connected = eventually(
       [&] {
         disconnect();
@@ -214,7 +207,7 @@ plant::RotorThrusts ScriptedAutopilot::thrusts(const Vector3d& body_rates) {
 
 int free_tcp_port() {
   const int descriptor = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address = loopback(0);
+  sockaddr_in address = io::socket_address("127.0.0.1", 0);
   socklen_t size = sizeof address;
   const bool bound = ::bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
                      ::getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size) == 0;

@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 #include <utility>
 
+#include "swiftlet/io/network/sockets.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::tests {
@@ -32,10 +33,7 @@ VrpnServer::VrpnServer(Settings settings)
       listener_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
   const int yes = 1;
   ::setsockopt(listener_.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(settings_.port);
+  sockaddr_in address = io::socket_address("127.0.0.1", settings_.port);
   ::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
   ::listen(listener_.get(), 4);
   socklen_t size = sizeof address;

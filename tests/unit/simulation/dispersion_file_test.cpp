@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/fault.hpp"
 #include "tests/support/paths.hpp"
+#include "tests/unit/fault.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 #include "tests/unit/simulation/nominal_world.hpp"
 

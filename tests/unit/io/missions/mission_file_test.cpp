@@ -11,9 +11,9 @@
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/planning/waypoint_path.hpp"
 #include "swiftlet/io/config_error.hpp"
-#include "tests/support/fault.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/unit/fault.hpp"
 
 namespace swiftlet::io::mission_file_test {
 

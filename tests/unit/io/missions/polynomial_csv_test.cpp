@@ -7,7 +7,7 @@
 #include "swiftlet/control/types/polynomial.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
-#include "tests/support/fault.hpp"
+#include "tests/unit/fault.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
 
 namespace swiftlet::io::polynomial_csv_test {

@@ -17,6 +17,7 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/io/network/interfaces.hpp"
+#include "swiftlet/io/network/sockets.hpp"
 #include "tests/support/rtps_message.hpp"
 
 namespace swiftlet::dds::guarded_transport_test {
@@ -27,8 +28,6 @@ namespace transport = eprosima::fastdds::rtps;
 class Receiver {
  public:
   Receiver() {
-    address_.sin_family = AF_INET;
-    address_.sin_addr.s_addr = ::htonl(INADDR_LOOPBACK);
     socklen_t size = sizeof address_;
     auto* const address = reinterpret_cast<sockaddr*>(&address_);
     if (::bind(socket_, address, size) != 0 || ::getsockname(socket_, address, &size) != 0)
@@ -53,7 +52,7 @@ class Receiver {
 
  private:
   const int socket_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address_{};
+  sockaddr_in address_ = io::socket_address("127.0.0.1", 0);
 };
 
 // As Fast DDS 3 uses it, or as 2.9 does, which has no other form.

@@ -20,6 +20,7 @@
 
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/unit/services/dds/node_settings.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
 namespace swiftlet::dds::fixtures::node_test {
@@ -28,13 +29,6 @@ using swiftlet::dds::DomainLock;
 using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
 using namespace std::chrono_literals;
-
-NodeSettings settings(const DomainLock& lock, const char* name) {
-  NodeSettings settings;
-  settings.name = name;
-  settings.domain = lock.domain();
-  return settings;
-}
 
 TEST(Participant, IgnoresProcessesOfOtherVehiclesThatIgnoreIt) {
   const DomainLock lock;

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/network/sockets.hpp"
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
@@ -28,9 +29,7 @@ using swiftlet::tests::Inbox;
 class TakenPort {
  public:
   explicit TakenPort(std::uint32_t port) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    const sockaddr_in address = io::socket_address("", static_cast<int>(port));
     EXPECT_EQ(::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0) << port;
   }
   ~TakenPort() { ::close(socket_); }

@@ -13,6 +13,7 @@
 #include "swiftlet/services/dds/node.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/serialization.hpp"
+#include "tests/unit/services/dds/node_settings.hpp"
 #include "tests/unit/services/dds/steady_sender.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
@@ -22,13 +23,6 @@ using swiftlet::dds::DomainLock;
 using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
 using namespace std::chrono_literals;
-
-NodeSettings settings(const DomainLock& lock, const char* name) {
-  NodeSettings settings;
-  settings.name = name;
-  settings.domain = lock.domain();
-  return settings;
-}
 
 template <class T>
 struct TopicOf;

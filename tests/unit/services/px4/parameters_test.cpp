@@ -17,6 +17,7 @@
 
 #include "swiftlet/io/mavlink/messages.hpp"
 #include "swiftlet/io/mavlink/payload.hpp"
+#include "swiftlet/io/network/sockets.hpp"
 
 namespace swiftlet::px4::parameters_test {
 
@@ -25,9 +26,7 @@ class ScriptedParameters {
  public:
   explicit ScriptedParameters(int lose_every) : lose_every_(lose_every) {
     socket_ = ::socket(AF_INET, SOCK_DGRAM, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    sockaddr_in address = io::socket_address("127.0.0.1", 0);
     EXPECT_EQ(::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
     socklen_t size = sizeof address;
     ::getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size);

@@ -13,13 +13,16 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/io/network/sockets.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/participant_session.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/unit/services/dds/node_settings.hpp"
 
 namespace swiftlet::dds::discovery_ports_test {
 
+using fixtures::settings;
 using swiftlet::tests::Inbox;
 
 // Occupies the first ports of a domain.
@@ -38,23 +41,13 @@ class TakenPorts {
  private:
   void take(std::uint32_t port) {
     const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(port));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const sockaddr_in address = io::socket_address("127.0.0.1", static_cast<int>(port));
     if (::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
       throw std::runtime_error("port " + std::to_string(port) + " is taken already");
     sockets_.push_back(socket);
   }
   std::vector<int> sockets_;
 };
-
-NodeSettings settings(const DomainLock& lock, const char* name) {
-  NodeSettings settings;
-  settings.name = name;
-  settings.domain = lock.domain();
-  return settings;
-}
 
 TEST(DiscoveryPorts, DoNotOverlapBetweenDomains) {
   for (int domain = 0; domain < 232; ++domain) {
