@@ -195,8 +195,8 @@ void GuardedTransport::receive(transport::TransportReceiverInterface* next, cons
   const io::Ipv4 sender = address_of(remote);
   const rtps::CheckedDatagram checked = guard_->admit(data, size, sender, local.port, rtps::Now::read());
   if (checked.fault != nullptr || checked.is_ignored) return;
-  std::unique_lock<std::mutex> no_change;
-  if (rtps::is_discovery_server(checked.source)) no_change = std::unique_lock(guard_->changes_mutex());
+  std::unique_lock<std::mutex> turn;
+  if (guard_->takes_turns(checked)) turn = std::unique_lock(guard_->turn_mutex());
   try {
     const bool lacks_address = !checked.places.loopback.empty() && !io::is_loopback(sender);
     if (!checked.places.hidden.empty() || checked.fragment || lacks_address) {

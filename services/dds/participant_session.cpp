@@ -120,7 +120,7 @@ void ParticipantSession::announce(const rtps::Announcement& announcement) {
 }
 
 void ParticipantSession::set_qos(const fastdds::DomainParticipantQos& qos) {
-  const std::lock_guard<std::mutex> lock(guard_->changes_mutex());
+  const std::lock_guard<std::mutex> lock(guard_->turn_mutex());
   if (!succeeded(participant->set_qos(qos)))
     runtime::log_error("the middleware refuses to announce a change of this process to the others");
 }

@@ -293,7 +293,10 @@ const char* DatagramCheck::check_payload(Submessage& submessage, const ListConte
       result_.announced = announced;
     }
   }
-  if (context.topic == BuiltinTopic::kHandshake) return check_handshake_payload(payload);
+  if (context.topic == BuiltinTopic::kHandshake) {
+    result_.handshake = true;
+    return check_handshake_payload(payload);
+  }
   if (context.topic == BuiltinTopic::kLiveliness) return check_liveliness_payload(payload, context);
   return nullptr;
 }

@@ -48,6 +48,7 @@ struct CheckedDatagram {
   std::size_t length = 0;
   bool announces_itself = false;  // holds an announcement of its source
   Announced announced;            // in that announcement; in the datagram that was checked
+  bool handshake = false;         // holds a message of the handshake of DDS Security
   // An announcement of a participant that this process ignores.
   bool is_ignored = false;
 

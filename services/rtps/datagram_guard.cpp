@@ -55,6 +55,11 @@ CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size,
   return checked;
 }
 
+bool DatagramGuard::takes_turns(const CheckedDatagram& checked) const {
+  const bool meets_peer = checked.announces_itself || checked.handshake;
+  return is_discovery_server(checked.source) || (limits_.security && meets_peer);
+}
+
 bool DatagramGuard::ignores(const CheckedDatagram& checked, Ipv4 sender, const Now& now) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const Announced& said = checked.announced;

@@ -78,10 +78,14 @@ class DatagramGuard {
   // own: the interfaces of this host that have an address.
   void set_own_interfaces(const std::vector<io::Interface>& own);
 
-  // Held while the middleware takes in what a discovery server sent, and while its participant announces a change: Fast DDS
-  // takes two locks in one order for the former (PDPClient::assignRemoteEndpoints), and in the other one for the latter
-  // (RTPSParticipantImpl::update_attributes), and both threads would wait for each other.
-  std::mutex& changes_mutex() { return changes_mutex_; }
+  // Whether the middleware must take in a datagram while it does no other of these things: the thread then holds turn_mutex(), as
+  // the one does that announces a change.
+  // From a discovery server: Fast DDS takes two locks in one order then (PDPClient::assignRemoteEndpoints), and in the other one
+  // to announce a change (RTPSParticipantImpl::update_attributes), and both threads would wait for each other.
+  // Who announces himself, or authenticates, with security: SecurityManager of Fast DDS 2.9 describes the peer in a member that
+  // all threads share (match_builtin_endpoints, mended by #3362). Of two peers discovered together, one is never answered.
+  bool takes_turns(const CheckedDatagram& checked) const;
+  std::mutex& turn_mutex() { return turn_mutex_; }
 
  private:
   // Notes an announcement. Returns whether this process ignores the participant.
@@ -93,7 +97,7 @@ class DatagramGuard {
   RefusalLog refusals_;
   std::atomic<bool> listens_{true};
   std::atomic<std::uint32_t> discovery_port_{0};
-  std::mutex changes_mutex_;
+  std::mutex turn_mutex_;
   std::mutex mutex_;  // guards what follows; all threads that receive take it, for each datagram
   std::optional<DatagramOpener> opener_;
   ReplyCheck replies_;

@@ -30,6 +30,17 @@ bool is_of_participant(ByteReader data) {
   return topic == rtps::BuiltinTopic::kParticipant || topic == rtps::BuiltinTopic::kLiveliness;
 }
 
+bool is_handshake(const std::vector<std::uint8_t>& datagram) {
+  bool found = false;
+  rtps::for_each_submessage(datagram.data(), datagram.size(), [&](std::uint8_t kind, ByteReader body) {
+    if (kind != rtps::kData) return;
+    body.skip(rtps::kBytesBeforeIds);
+    const rtps::EntityId reader = rtps::entity_id(body);
+    found = found || rtps::topic_of(reader, rtps::entity_id(body)) == rtps::BuiltinTopic::kHandshake;
+  });
+  return found;
+}
+
 }  // namespace
 
 std::optional<std::uint64_t> announcement_digest(const std::uint8_t* message, std::size_t size) {
@@ -49,6 +60,7 @@ std::vector<RepeatedDiscovery::Places> RepeatedDiscovery::rounds(const std::vect
   const auto digest = announcement_digest(datagram.data(), datagram.size());
   const rtps::Now now = rtps::Now::read();
   const std::size_t processes = guard.participants_heard(now);
+  if (is_handshake(datagram)) return std::vector<Places>(kHandshakeCopies, places);
   if (!digest) return std::vector<Places>(static_cast<std::size_t>(endpoint_copies(processes)), places);
   if (!guard.listens()) return {};
   // By port: Fast DDS sends to own hosts by other addresses.

@@ -53,6 +53,29 @@ TEST(DatagramGuard, RefusesNoNumberAndNoNewcomer) {
   EXPECT_EQ(guard.refusals().total(), 0U);
 }
 
+TEST(DatagramGuard, LetsWhoIsMetTakeTurnsWithSecurityOnly) {
+  constexpr EntityId kHandshakeReader{0x00, 0x02, 0x01, 0xc4};
+  constexpr EntityId kHandshakeWriter{0x00, 0x02, 0x01, 0xc3};
+  const RtpsMessage handshake = RtpsMessage().add(0x15, 4,
+                                                  data_fields(kHandshakeReader, kHandshakeWriter, 1)
+                                                      .u32(0x0100)
+                                                      .zeros(96)
+                                                      .string("dds.sec.auth")
+                                                      .u32(0));
+  DatagramGuard secure(io::NetworkKeys{}, DatagramLimits{true, false});
+  DatagramGuard open;
+  const auto takes_turns = [](DatagramGuard& guard, const RtpsMessage& message) {
+    const CheckedDatagram checked =
+        guard.admit(message.bytes().data(), message.bytes().size(), kHost, 7411, {kSecond_ns, kSecond_ns});
+    EXPECT_STREQ(checked.fault, nullptr);
+    return guard.takes_turns(checked);
+  };
+  EXPECT_TRUE(takes_turns(secure, handshake));
+  EXPECT_TRUE(takes_turns(secure, newcomer(1)));
+  EXPECT_FALSE(takes_turns(open, newcomer(1)));
+  EXPECT_FALSE(takes_turns(open, sample(1)));
+}
+
 // The threads that receive are real-time: they hold a lock meanwhile for which the others wait.
 TEST(DatagramGuard, AllocatesNothingWhileItReceives) {
   std::vector<Bytes> datagrams;
