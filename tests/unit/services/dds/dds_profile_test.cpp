@@ -1,5 +1,7 @@
+#include <climits>
 #include <string>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <fastdds/dds/log/Log.hpp>
 #include <gtest/gtest.h>
@@ -8,6 +10,7 @@
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/log_text.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::dds::dds_profile_test {
@@ -123,6 +126,26 @@ TEST_F(DdsProfiles, DoNotChangeWhatSwiftletSets) {
   ASSERT_TRUE(peers.wait_for_count(1));
   EXPECT_EQ(peers.items().front(), "here");
   there.on_peer({});
+}
+
+// Fast DDS refuses an announcement that is longer than the profile allows; the others then never hear of the second vehicle.
+TEST_F(DdsProfiles, SayWhatTheyKeepFromBeingAnnounced) {
+  char host[HOST_NAME_MAX + 1] = {};
+  ::gethostname(host, HOST_NAME_MAX);
+  const std::string announced =
+      "enclave=/;vehicle=kl1;host=" + std::string(host) + ";process=" + std::to_string(::getpid()) + ";";
+  const std::string limit = std::to_string(announced.size() + 2);
+  const Participant participant(
+      settings_with(folder_.write(
+          "small.xml", with("", "<allocation><max_user_data>" + limit + "</max_user_data></allocation>\n"))),
+      {"kl1"});
+  const Node first(participant, "kl1");
+  const tests::LogText log;
+  const Node second(participant, "kl2");
+  const std::string sentence =
+      "the middleware refuses to announce a change of this process to the others";
+  EXPECT_TRUE(tests::eventually([&] { return log.lines().find(sentence) != std::string::npos; }))
+      << log.lines();
 }
 
 }  // namespace swiftlet::dds::dds_profile_test
