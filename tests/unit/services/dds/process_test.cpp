@@ -9,6 +9,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -29,7 +30,7 @@ using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
 using namespace std::chrono_literals;
 
-// Runs dds_peer; the destructor kills it.
+// Runs dds_peer; the destructor kills it, and the end of the test.
 class PeerProcess {
  public:
   explicit PeerProcess(std::string domain) {
@@ -39,6 +40,7 @@ class PeerProcess {
     char* const arguments[] = {program.data(), domain.data(), nullptr};
     pid_ = ::fork();
     if (pid_ == 0) {
+      ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a stopped one would outlive a test that ends early, and keep its output open
       ::dup2(ends[0], STDIN_FILENO);
       ::close(ends[0]);
       ::close(ends[1]);
