@@ -16,6 +16,12 @@ nlohmann::ordered_json axes(const std::array<double, 3>& values) {
   return {{"x", values[0]}, {"y", values[1]}, {"z", values[2]}};
 }
 
+// Where the samples end by which the flight is judged.
+std::string end_of(const FlightReport& report) {
+  if (!report.record_fault.empty()) return "the end of the record";
+  return report.completed ? "landing" : "the end of the flight";
+}
+
 }  // namespace
 
 nlohmann::ordered_json to_json(const FlightReport& report) {
@@ -69,8 +75,7 @@ std::string to_text(const FlightReport& report) {
     text += fmt::format("    peak        mm  {:8.2f}{:8.2f}{:8.2f}{:8.2f}   (tolerance {:.0f})\n",
                         errors.peak_m[0] * kMm, errors.peak_m[1] * kMm, errors.peak_m[2] * kMm,
                         errors.peak_3d_m * kMm, report.tolerance_m * kMm);
-    text += fmt::format("    from {} samples, takeoff to {}\n", errors.matched,
-                        report.completed ? "landing" : "the end of the flight");
+    text += fmt::format("    from {} samples, takeoff to {}\n", errors.matched, end_of(report));
   }
   if (report.clock != kRealtime && report.wall_s > 0.0) {
     text += fmt::format("  simulated         {:.1f} s in {:.2f} s, {}: {:.0f} times real time\n",

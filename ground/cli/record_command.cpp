@@ -1,5 +1,4 @@
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -103,7 +102,6 @@ void print(const RecordOptions& options, const record::RecorderTotals& totals, d
 
 int record(const RecordOptions& options) {
   require_free(options);
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit of the file's size is an error of write(), as a full disk is
   const Interrupts interrupts;
   const Context context(options.network);
   record::RecorderSettings settings = options.recorder;

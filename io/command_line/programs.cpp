@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -141,6 +142,7 @@ int run_commands(int argc, char** argv, const char* version,
     std::puts(json_of(command_text(root)).c_str());
     return kDone;
   }
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit of a file's size is an error of write(), as a full disk is
   return run_command_line(program, argc, argv, [&] {
     const bool given = std::any_of(commands.begin(), commands.end(),
                                    [](const Command& command) { return command.app.parsed(); });

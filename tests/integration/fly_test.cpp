@@ -136,6 +136,21 @@ TEST_F(Fly, TwoAtOnceDoNotInterfere) {
   EXPECT_EQ(second.wait(kStuck), 0) << second.errors();
 }
 
+// A limit of the file's size stands for the disk. The flight goes on to its landing, and is judged by what was recorded.
+TEST_F(Fly, ADiskThatFillsEndsTheRecordAndNotTheFlight) {
+  std::vector<std::string> words = {
+      "--fsize=600000", program_file("swiftlet"), "fly", "square", "--clock", "lockstep",
+      "--record",       record().string()};
+  const ProgramResult flight = run_program("/usr/bin/prlimit", words, folder_.path(), kStuck);
+  EXPECT_EQ(flight.exit_code, 1);
+  EXPECT_NE(flight.output.find("square: completed"), std::string::npos) << flight.output << flight.errors;
+  EXPECT_NE(flight.output.find("takeoff to the end of the record"), std::string::npos) << flight.output;
+  EXPECT_NE(flight.errors.find("is incomplete: "), std::string::npos) << flight.errors;
+  EXPECT_NE(flight.errors.find("cannot be written: File too large"), std::string::npos) << flight.errors;
+  const ProgramResult page = run_program("swiftlet", {"report", record().string()}, folder_.path());
+  EXPECT_EQ(page.exit_code, 0) << page.errors;
+}
+
 // A flight in lockstep that is interrupted once it is airborne.
 class FlyInterrupted : public Fly {
  protected:

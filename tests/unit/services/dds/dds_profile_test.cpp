@@ -142,8 +142,7 @@ TEST_F(DdsProfiles, SayWhatTheyKeepFromBeingAnnounced) {
   const Node first(participant, "kl1");
   const tests::LogText log;
   const Node second(participant, "kl2");
-  const std::string sentence =
-      "the middleware refuses to announce a change of this process to the others";
+  const std::string sentence = "the middleware refuses to announce a change of this process to the others";
   EXPECT_TRUE(tests::eventually([&] { return log.lines().find(sentence) != std::string::npos; }))
       << log.lines();
 }

@@ -40,7 +40,8 @@ class PeerProcess {
     char* const arguments[] = {program.data(), domain.data(), nullptr};
     pid_ = ::fork();
     if (pid_ == 0) {
-      ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a stopped one would outlive a test that ends early, and keep its output open
+      ::prctl(PR_SET_PDEATHSIG,
+              SIGKILL);  // a stopped one would outlive a test that ends early, and keep its output open
       ::dup2(ends[0], STDIN_FILENO);
       ::close(ends[0]);
       ::close(ends[1]);

@@ -56,12 +56,9 @@ TEST(DatagramGuard, RefusesNoNumberAndNoNewcomer) {
 TEST(DatagramGuard, LetsWhoIsMetTakeTurnsWithSecurityOnly) {
   constexpr EntityId kHandshakeReader{0x00, 0x02, 0x01, 0xc4};
   constexpr EntityId kHandshakeWriter{0x00, 0x02, 0x01, 0xc3};
-  const RtpsMessage handshake = RtpsMessage().add(0x15, 4,
-                                                  data_fields(kHandshakeReader, kHandshakeWriter, 1)
-                                                      .u32(0x0100)
-                                                      .zeros(96)
-                                                      .string("dds.sec.auth")
-                                                      .u32(0));
+  const RtpsMessage handshake = RtpsMessage().add(
+      0x15, 4,
+      data_fields(kHandshakeReader, kHandshakeWriter, 1).u32(0x0100).zeros(96).string("dds.sec.auth").u32(0));
   DatagramGuard secure(io::NetworkKeys{}, DatagramLimits{true, false});
   DatagramGuard open;
   const auto takes_turns = [](DatagramGuard& guard, const RtpsMessage& message) {
