@@ -54,17 +54,27 @@ Outcome check_length(const char* what, const PolynomialSegment& segment, int der
   return refuse("%s reaches %.2f %s, the limit is %.2f %s", what, std::sqrt(reached), unit, limit, unit);
 }
 
-Outcome check_segments(const char* of, const PolynomialSegment* segments, std::size_t count,
+Outcome check_segments(const char* of, const PolynomialSegment* segments, std::size_t count, bool yaw_free,
                        const Limits& limits) {
   for (std::size_t i = 0; i < count; ++i) {
     char what[64];
     std::snprintf(what, sizeof what, "%ssegment %zu", of, i + 1);
     Outcome outcome = check_segment(what, segments[i], limits);
     if (!outcome.accepted) return outcome;
-    outcome =
-        i == 0 ? check_start("the trajectory", segments[i]) : check_joint(what, segments[i - 1], segments[i]);
+    outcome = i == 0 ? check_start("the trajectory", segments[i], yaw_free)
+                     : check_joint(what, segments[i - 1], segments[i]);
     if (!outcome.accepted) return outcome;
   }
+  return check_end("the trajectory", segments[count - 1], yaw_free);
+}
+
+// verb: "start" or "end".
+Outcome check_rest(const char* what, const char* verb, const Reference& there, bool yaw_free) {
+  const double speed = there.velocity_ned.norm();
+  const double turning = yaw_free ? 0.0 : std::abs(there.yaw_rate);
+  if (speed > kJoin_m_s) return refuse("%s %ss at %.2f m/s, must %s at rest", what, verb, speed, verb);
+  if (turning > kRest_rad_s)
+    return refuse("%s %ss turning at %.2f rad/s, must %s at rest", what, verb, turning, verb);
   return accept();
 }
 
@@ -97,7 +107,7 @@ Outcome check_item_trajectory(const char* what, const Mission& mission, const Mi
   char of[40];
   std::snprintf(of, sizeof of, "%s: ", what);
   const PolynomialSegment* const first = mission.segments.data() + item.first_segment;
-  Outcome outcome = check_segments(of, first, item.segment_count, limits);
+  Outcome outcome = check_segments(of, first, item.segment_count, item.yaw_free, limits);
   for (std::size_t i = 0; outcome.accepted && i < item.segment_count; ++i)
     outcome = check_own_bounds(what, i + 1, first[i], mission.bounds, item.yaw_free);
   return outcome;
@@ -247,7 +257,7 @@ Outcome check(const Trajectory& trajectory, const Limits& limits) {
   if (count > kMaxTrajectorySegments) {
     return refuse("the trajectory has %zu segments, the limit is %d", count, kMaxTrajectorySegments);
   }
-  return check_segments("", trajectory.segments.data(), count, limits);
+  return check_segments("", trajectory.segments.data(), count, false, limits);
 }
 
 Outcome check_segment(const char* what, const PolynomialSegment& segment, const Limits& limits) {
@@ -282,10 +292,12 @@ Outcome check_joint(const char* what, const PolynomialSegment& before, const Pol
                 step_m_s);
 }
 
-Outcome check_start(const char* what, const PolynomialSegment& first) {
-  const double speed = evaluate(first, 0.0).velocity_ned.norm();
-  if (speed <= kJoin_m_s) return accept();
-  return refuse("%s starts at %.2f m/s, must start at rest", what, speed);
+Outcome check_start(const char* what, const PolynomialSegment& first, bool yaw_free) {
+  return check_rest(what, "start", evaluate(first, 0.0), yaw_free);
+}
+
+Outcome check_end(const char* what, const PolynomialSegment& last, bool yaw_free) {
+  return check_rest(what, "end", evaluate(last, last.duration_s), yaw_free);
 }
 
 }  // namespace swiftlet::control

@@ -34,7 +34,7 @@ Outcome check(const MissionBounds& bounds, const Limits& limits);
 Outcome check(const Mission& mission, const Limits& settings);
 
 // 1 to kMaxTrajectorySegments segments that pass check_segment(), without steps in position and velocity
-// between them, starting at rest.
+// between them, from rest to rest.
 Outcome check(const Trajectory& trajectory, const Limits& limits);
 
 // Duration above 0 and at most an hour, finite coefficients, and check_motion().
@@ -48,7 +48,10 @@ Outcome check_motion(const char* what, const PolynomialSegment& segment, const L
 constexpr double kJoin_m = 1e-3;
 constexpr double kJoin_m_s = 1e-2;
 Outcome check_joint(const char* what, const PolynomialSegment& before, const PolynomialSegment& next);
-// A trajectory's first segment starts at rest, to within kJoin_m_s.
-Outcome check_start(const char* what, const PolynomialSegment& first);
+// A trajectory's first segment starts at rest, and its last one ends there, to within kJoin_m_s and kRest_rad_s: before and after it the
+// vehicle stands in the air.
+constexpr double kRest_rad_s = 0.1;
+Outcome check_start(const char* what, const PolynomialSegment& first, bool yaw_free = false);
+Outcome check_end(const char* what, const PolynomialSegment& last, bool yaw_free = false);
 
 }  // namespace swiftlet::control

@@ -320,6 +320,27 @@ void say(const io::CsvTable& table, const MotionColumns& columns, const Samples&
 }
 
 // The row of the table of the last sample at or before the start of a segment.
+// The speed at one end of samples without velocities, if it is more than their rounding, and a start from rest between them, explain:
+// step is 1 at the first and -1 at the last sample.
+std::optional<double> speed_at(const Samples& samples, std::size_t end, int step,
+                               const control::Limits& limits) {
+  constexpr double kUnnoticed_m_s = 0.05;
+  if (samples.size() < 3) return std::nullopt;
+  const auto sample = [&](int i) {
+    return static_cast<std::size_t>(static_cast<std::ptrdiff_t>(end) + std::ptrdiff_t{i} * step);
+  };
+  const auto& [time_s, places] = std::tie(samples.times.time_s, samples.places);
+  const double before_s = std::abs(time_s[sample(1)] - time_s[sample(0)]);
+  const double behind_s = std::abs(time_s[sample(2)] - time_s[sample(0)]);
+  const Eigen::Vector3d near = (places[sample(1)] - places[sample(0)]).head<3>() / before_s;
+  const Eigen::Vector3d far = (places[sample(2)] - places[sample(0)]).head<3>() / behind_s;
+  // Second order: exact at constant acceleration.
+  const double speed = ((behind_s * near - before_s * far) / (behind_s - before_s)).norm();
+  const double rounding = 4.0 * samples.tolerances[end].head<3>().norm() / before_s;
+  const double explained = kUnnoticed_m_s + rounding + behind_s * before_s * limits.max_reference_jerk / 6.0;
+  return speed > explained ? std::optional(speed) : std::nullopt;
+}
+
 std::size_t row_of(const Samples& samples, const std::vector<control::PolynomialSegment>& segments,
                    std::size_t segment) {
   double begin_s = 0.0;
@@ -327,6 +348,22 @@ std::size_t row_of(const Samples& samples, const std::vector<control::Polynomial
   const auto after =
       std::upper_bound(samples.times.time_s.begin(), samples.times.time_s.end(), begin_s + 1e-9);
   return samples.first_row + static_cast<std::size_t>(after - samples.times.time_s.begin()) - 1;
+}
+
+// Fails with what the fit of samples without velocities cannot do near their ends.
+void fail_at(const io::CsvTable& table, const Samples& samples, std::size_t row, const std::string& fault,
+             const control::Limits& limits) {
+  constexpr double kNear_s = 0.5;
+  const std::vector<double>& time_s = samples.times.time_s;
+  const std::size_t last = samples.size() - 1;
+  const double at_s = time_s[row - samples.first_row];
+  if (const auto speed = speed_at(samples, 0, 1, limits); speed && at_s - time_s.front() < kNear_s)
+    table.fail(samples.first_row, "",
+               fmt::format("the path starts at about {:.2f} m/s, must start at rest", *speed));
+  if (const auto speed = speed_at(samples, last, -1, limits); speed && time_s.back() - at_s < kNear_s)
+    table.fail(samples.first_row + last, "",
+               fmt::format("the path ends at about {:.2f} m/s, must end at rest", *speed));
+  table.fail(row, "", fault);
 }
 
 }  // namespace
@@ -371,7 +408,9 @@ TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file
   const std::vector<control::PolynomialSegment> segments = path.segments;
   return checked({std::move(path.segments), std::move(assumptions)}, limits, options,
                  [&](std::size_t segment, const std::string& fault) {
-                   table.fail(row_of(samples, segments, segment), "", fault);
+                   const std::size_t row = row_of(samples, segments, segment);
+                   if (given.velocity) table.fail(row, "", fault);
+                   fail_at(table, samples, row, fault, limits);
                  });
 }
 

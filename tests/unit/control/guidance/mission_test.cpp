@@ -232,12 +232,32 @@ TEST(MissionBounds, HoldForGivenTrajectories) {
   EXPECT_NE(std::string(check(mission, limits).reason).find("the limit is 0.50 m/s"), std::string::npos)
       << check(mission, limits).reason;
   mission.bounds = {};
-  mission.segments.front().yaw = {0.0, 0.9};
   mission.bounds.max_yaw_rate = 0.5;
-  const char* const too_fast = "item 1: segment 1 reaches a yaw rate of 0.90 rad/s, the limit is 0.50 rad/s";
-  EXPECT_STREQ(check(mission, limits).reason, too_fast);
-  mission.segments.front().yaw = {0.0, -0.9};
-  EXPECT_STREQ(check(mission, limits).reason, too_fast) << "to the left as to the right";
+  const double t = mission.segments.front().duration_s;
+  for (const double rate : {0.9, -0.9}) {  // in the middle, from and to rest
+    mission.segments.front().yaw = {0.0, 0.0, 2.0 * rate / t, -4.0 / 3.0 * rate / (t * t)};
+    EXPECT_STREQ(check(mission, limits).reason,
+                 "item 1: segment 1 reaches a yaw rate of 0.90 rad/s, the limit is 0.50 rad/s");
+  }
+}
+
+// Before and after a trajectory the vehicle stands in the air.
+TEST(TrajectoryCheck, GoesFromRestToRest) {
+  const Limits limits;
+  Trajectory trajectory;
+  trajectory.segments = {{2.0, {}, {}, {-1.0}, {}}};
+  const auto refusal = [&] { return std::string(check(trajectory, limits).reason); };
+  EXPECT_EQ(refusal(), "");
+  PolynomialSegment& only = trajectory.segments.front();
+  only.x = {0.0, 0.0, 0.375, -0.09375};  // 0.375 m/s at its end
+  EXPECT_EQ(refusal(), "the trajectory ends at 0.38 m/s, must end at rest");
+  only.x = {0.0, 0.5};
+  EXPECT_EQ(refusal(), "the trajectory starts at 0.50 m/s, must start at rest");
+  only.x = {};
+  only.yaw = {0.0, 0.0, 0.25};
+  EXPECT_EQ(refusal(), "the trajectory ends turning at 1.00 rad/s, must end at rest");
+  only.yaw = {0.0, 0.5};
+  EXPECT_EQ(refusal(), "the trajectory starts turning at 0.50 rad/s, must start at rest");
 }
 
 }  // namespace swiftlet::control::mission_test
