@@ -1,6 +1,7 @@
 #include "swiftlet/ground/cli/sent_mission.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -73,13 +74,16 @@ void SentFile::require_flyable(const Vehicle& running, const io::MissionFile& fi
   CheckConditions conditions;
   const VehicleState state = state_of(running, timeout);
   if (state.position_ned_m.allFinite()) conditions.start_ned = state.position_ned_m.head<2>();
+  if (std::isfinite(state.battery_charge)) conditions.state_of_charge = state.battery_charge;
   require_flyable(running, file, conditions);
 }
 
 void SentFile::require_flyable(const Vehicle& running, const io::TrajectoryFile& file,
                                std::chrono::milliseconds timeout) const {
-  state_of(running, timeout);
-  require_flyable(running, mission_of(std::filesystem::path(path).stem(), file, settings), at_start_of(file));
+  CheckConditions conditions = at_start_of(file);
+  const VehicleState state = state_of(running, timeout);
+  if (std::isfinite(state.battery_charge)) conditions.state_of_charge = state.battery_charge;
+  require_flyable(running, mission_of(std::filesystem::path(path).stem(), file, settings), conditions);
 }
 
 void SentFile::require_flyable(const Vehicle& running, const io::MissionFile& file,

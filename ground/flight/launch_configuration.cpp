@@ -54,10 +54,17 @@ void require_valid(const FlightInputs& given) {
   if (given.simulation) require("simulation", plant::validate(*given.simulation));
 }
 
-// As require_flyable(), of a mission that is in no file.
-double require_flyable_mission(const LaunchConfiguration& plan) {
+CheckConditions conditions_of(const LaunchConfiguration& plan) {
   CheckConditions conditions;
   conditions.start_ned = plan.start_ned;
+  const plant::SupplySettings& supply = plan.simulation.supply;
+  conditions.state_of_charge = supply.ideal ? std::nullopt : std::optional(supply.initial_state_of_charge);
+  return conditions;
+}
+
+// As require_flyable(), of a mission that is in no file.
+double require_flyable_mission(const LaunchConfiguration& plan) {
+  const CheckConditions conditions = conditions_of(plan);
   const MissionCheck check = check_mission(plan.mission, plan.vehicle, plan.control, conditions);
   if (!check.feasible()) throw io::InputError(plan.mission_file.string() + ": " + check.refusal());
   return check.duration_s;
@@ -180,8 +187,7 @@ double require_flyable(const LaunchConfiguration& plan) {
 
 double require_flyable(const LaunchConfiguration& plan, const plant::Vehicle& vehicle,
                        const io::FileOptions& reading) {
-  CheckConditions conditions;
-  conditions.start_ned = plan.start_ned;
+  const CheckConditions conditions = conditions_of(plan);
   const MissionCheck check = check_mission(plan.mission, vehicle, plan.control, conditions);
   const std::string refusal = refusal_with_advice(plan.mission, plan.mission_file.string(), reading, vehicle,
                                                   plan.control, check, conditions);

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/math/angles.hpp"
+#include "swiftlet/plant/model/endurance.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -139,10 +140,16 @@ nlohmann::ordered_json json_of(const WorstDemand& worst) {
           {"position_ned", {p.x(), p.y(), p.z()}}};
 }
 
+std::string outlasted(const MissionCheck& check) {
+  return fmt::format("it takes {:.1f} s, longer than the battery lasts: {:.0f} s of hover", check.duration_s,
+                     check.endurance_s);
+}
+
 }  // namespace
 
 bool MissionCheck::feasible() const {
-  return reason.empty() && std::all_of(items.begin(), items.end(), [](const ItemCheck& item) {
+  return reason.empty() && duration_s <= endurance_s &&
+         std::all_of(items.begin(), items.end(), [](const ItemCheck& item) {
            return std::none_of(item.demands.begin(), item.demands.end(),
                                [](const WorstDemand& worst) { return worst.exceeded(); });
          });
@@ -159,7 +166,7 @@ std::string MissionCheck::refusal() const {
       where = name_of(items[i], i);
     }
   }
-  if (furthest == nullptr) return "";
+  if (furthest == nullptr) return duration_s <= endurance_s ? "" : outlasted(*this);
   return where + ": " + value_of(*furthest) + ": " + place_of(*furthest);
 }
 
@@ -172,6 +179,9 @@ MissionCheck check_mission(const io::MissionFile& file, const plant::Vehicle& ve
   check.reason = dry_run.completed ? "" : dry_run.reason;
   check.duration_s = dry_run.duration_s;
   check.supply_voltage_v = supply_voltage_v;
+  if (conditions.state_of_charge)
+    check.endurance_s =
+        plant::hover_endurance_s(vehicle, *conditions.state_of_charge, settings.failsafe.low_battery_voltage);
   for (std::size_t i = 0; i < dry_run.item_starts_s.size(); ++i) {
     const bool last = i + 1 == dry_run.item_starts_s.size();
     const double end_s = last ? dry_run.duration_s : dry_run.item_starts_s[i + 1];
@@ -198,9 +208,12 @@ std::string check_table(const MissionCheck& check, const io::MissionFile& file, 
   text += "\n" + closest_to_limit(check) + exceeded_of(check);
   if (!check.reason.empty())
     return text + "the control service would not complete the mission: " + check.reason + "\n";
-  return text + fmt::format("{} {} fly the mission: {:.1f} s, with a battery down to {:.2f} V\n",
-                            vehicle.c_str(), check.feasible() ? "can" : "cannot", check.duration_s,
-                            check.supply_voltage_v);
+  if (check.duration_s > check.endurance_s) text += outlasted(check) + "\n";
+  return text + fmt::format(
+                    "{} {} fly the mission: {:.1f} s, with a battery down to {:.2f} V, which lasts {:.0f} s "
+                    "of hover\n",
+                    vehicle, check.feasible() ? "can" : "cannot", check.duration_s, check.supply_voltage_v,
+                    check.endurance_s);
 }
 
 std::string check_json(const MissionCheck& check, const io::MissionFile& file, const std::string& vehicle,
@@ -212,7 +225,8 @@ std::string check_json(const MissionCheck& check, const io::MissionFile& file, c
                                  {"reason", check.reason},
                                  {"advice", advice},
                                  {"duration_s", check.duration_s},
-                                 {"supply_voltage_v", check.supply_voltage_v}};
+                                 {"supply_voltage_v", check.supply_voltage_v},
+                                 {"endurance_s", check.endurance_s}};
   json["items"] = nlohmann::ordered_json::array();
   for (const ItemCheck& item : check.items) {
     nlohmann::ordered_json demands = nlohmann::ordered_json::array();

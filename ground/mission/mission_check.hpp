@@ -2,6 +2,7 @@
 // commands that check or fly a mission decide by this.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,10 +29,12 @@ struct MissionCheck {
   std::vector<ItemCheck> items;
   double duration_s = 0.0;
   double supply_voltage_v = 0.0;  // at which the rotors are checked
+  // The battery's, in hover, until its voltage is at the low-battery threshold.
+  double endurance_s = std::numeric_limits<double>::infinity();
 
   bool feasible() const;
-  // Why it is not feasible: the reason, or the demand that is furthest beyond its limit, with item, time and place. Empty
-  // if it is.
+  // Why it is not feasible: the reason, or the demand that is furthest beyond its limit, with item, time and place, or that it
+  // takes longer than the battery lasts. Empty if it is.
   std::string refusal() const;
 };
 
@@ -42,6 +45,8 @@ struct CheckConditions {
   // 0 .. 1: the share of the tilt limit, and of the range between least and greatest thrust at both of its ends, that is
   // kept free: the limits are so much tighter.
   double reserve = 0.0;
+  std::optional<double> state_of_charge =
+      1.0;  // 0 .. 1, of the battery at the start; none: it does not run empty
 };
 
 // A dry run of the mission, and the demands on its path. Limits and fence: those of the settings, as tightened by the
@@ -62,7 +67,7 @@ std::string refusal_with_advice(const io::MissionFile& file, const std::string& 
                                 const CheckConditions& conditions = {});
 
 // check_table(): text for people, ends in a newline. check_json(): JSON, without a newline, of
-//   mission, vehicle, control, feasible, reason, advice, duration_s, supply_voltage_v
+//   mission, vehicle, control, feasible, reason, advice, duration_s, supply_voltage_v, endurance_s
 //   items: kind, line, start_s, duration_s,
 //     demands: demand, unit, value, limit, exceeded, time_s, position_ned
 std::string check_table(const MissionCheck& check, const io::MissionFile& file, const std::string& vehicle);

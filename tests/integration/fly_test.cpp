@@ -31,7 +31,7 @@ const std::string kLongMission =
     "tolerance_m: 0.1\n"
     "items:\n"
     "  - {kind: takeoff, height_m: 1.2, speed_m_s: 0.8}\n"
-    "  - {kind: waypoint, position_m: [0, 0, -1.3], speed_m_s: 0.5, hold_s: 2000}\n"
+    "  - {kind: waypoint, position_m: [0, 0, -1.3], speed_m_s: 0.5, hold_s: 500}\n"
     "  - {kind: land, speed_m_s: 0.5}\n";
 
 class Fly : public testing::Test {

@@ -300,11 +300,10 @@ class AttachedFlight : public OnlineFlight {
   std::vector<std::string> attach(const std::string& mission, const std::string& record) const {
     return {"fly", mission, "--attach", "--json", "--record", (folder_.path() / record).string()};
   }
-  const std::string hover_ =
-      folder_.write("hover.yaml",
-                    "frame: ned\ntolerance_m: 0.1\nitems:\n"
-                    "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8, hold_s: 1000}\n"
-                    "  - {kind: land, speed_m_s: 0.8}\n");
+  const std::string hover_ = folder_.write("hover.yaml",
+                                           "frame: ned\ntolerance_m: 0.1\nitems:\n"
+                                           "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8, hold_s: 500}\n"
+                                           "  - {kind: land, speed_m_s: 0.8}\n");
 };
 
 TEST_F(AttachedFlight, FliesOnlyFromTheGroundAndLeavesTheVehicleToAToolThatTakesOver) {

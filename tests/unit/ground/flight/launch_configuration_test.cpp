@@ -12,6 +12,7 @@
 #include "swiftlet/ground/flight/in_process_flight.hpp"
 #include "swiftlet/io/command_line/command.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/plant/model/endurance.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -81,11 +82,31 @@ TEST_F(LaunchConfigurationTest, DoesNotJudgeAVehicleThatIsNotKnown) {
   EXPECT_EQ(refusal(flight), "it was accepted");
 }
 
+std::string hover_for(double duration_s) {
+  return fmt::format(
+      "frame: ned\ntolerance_m: 0.1\nitems:\n  - {{kind: takeoff, height_m: 1, speed_m_s: 0.5}}\n"
+      "  - {{kind: wait, duration_s: {}}}\n  - {{kind: land, speed_m_s: 0.5}}\n",
+      duration_s);
+}
+
+// The battery lands the vehicle after the hover that was told, of a full and of a nearly empty one.
+TEST_F(LaunchConfigurationTest, RefusesWhatOutlastsTheBattery) {
+  const FlyOptions flight = options(folder_.write("long.yaml", hover_for(3000.0)));
+  EXPECT_NE(refusal(flight).find("longer than the battery lasts: "), std::string::npos) << refusal(flight);
+  LaunchConfiguration plan = plan_flight(options(folder_.write("hover.yaml", hover_for(300.0))));
+  plan.simulation.supply.initial_state_of_charge = 0.3;
+  const double endurance_s =
+      plant::hover_endurance_s(plan.vehicle, 0.3, plan.control.failsafe.low_battery_voltage);
+  EXPECT_LT(endurance_s, 300.0);
+  const analysis::FlightReport report = fly(plan);
+  EXPECT_NE(report.reason.find("battery is low"), std::string::npos) << report.reason;
+  EXPECT_NEAR(report.duration_s, endurance_s, 0.05 * endurance_s);
+}
+
 TEST_F(LaunchConfigurationTest, HasNoGreatestDuration) {
-  const LaunchConfiguration plan = plan_flight(options(
-      folder_.write("long.yaml",
-                    "frame: ned\ntolerance_m: 0.1\nitems:\n  - {kind: takeoff, height_m: 1, speed_m_s: 0.5}\n"
-                    "  - {kind: wait, duration_s: 720}\n  - {kind: land, speed_m_s: 0.5}\n")));
+  FlyOptions flight = options(folder_.write("long.yaml", hover_for(720.0)));
+  flight.simulation = "ideal";
+  const LaunchConfiguration plan = plan_flight(flight);
   EXPECT_NEAR(plan.planned_duration_s, 729.0, 2.0);
   const analysis::FlightReport report = fly(plan);
   EXPECT_TRUE(report.completed) << report.reason;

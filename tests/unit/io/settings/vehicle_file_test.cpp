@@ -141,8 +141,9 @@ const Fault kFaults[] = {
      "inertia.value[1]: is a list of 2, must be a list of 3"},
     {"InertiaTriangle", "[0, 0, 8.8e-5]", "[0, 0, 9.8e-5]", "inertia:\n",
      "inertia: has the principal moment 9.8e-05, must be at most the sum of the others, 8.9e-05"},
-    {"Curve", "[3.60, 3.66,", "[3.60,", "voltage:\n",
-     "battery.open_circuit.voltage: is a list of 8, must have one value for each of the 9 states of charge"},
+    {"Curve", "[2.65, 2.96,", "[2.65,", "voltage:\n",
+     "battery.open_circuit.voltage: is a list of 11, must have one value for each of the 12 states of "
+     "charge"},
     {"RotorKeysMixed", "  torque_factor: {value: 1.8623e-10, unit: N*m*s^2, source: \"Eq. (26)\"}", "",
      "rotor:\n", "rotor.torque_factor: is missing, must be given"},
 };

@@ -18,7 +18,7 @@ TEST(Battery, OpenCircuitVoltageMatchesTheTable) {
                 1e-12);
   }
   EXPECT_DOUBLE_EQ(open_circuit_voltage(battery, 1.0), 4.19);
-  EXPECT_DOUBLE_EQ(open_circuit_voltage(battery, 0.0), 3.60);
+  EXPECT_DOUBLE_EQ(open_circuit_voltage(battery, 0.0), 2.65);
 }
 
 TEST(Battery, OpenCircuitVoltageIsLinearBetweenPoints) {
@@ -31,7 +31,7 @@ TEST(Battery, OpenCircuitVoltageIsLinearBetweenPoints) {
 
 TEST(Battery, ClampsToTheEndsOfTheTable) {
   const BatteryParameters& battery = kaylion().battery;
-  EXPECT_DOUBLE_EQ(open_circuit_voltage(battery, -0.5), 3.60);
+  EXPECT_DOUBLE_EQ(open_circuit_voltage(battery, -0.5), 2.65);
   EXPECT_DOUBLE_EQ(open_circuit_voltage(battery, 1.5), 4.19);
   EXPECT_DOUBLE_EQ(state_of_charge_from_voltage(battery, 2.0), 0.0);
   EXPECT_DOUBLE_EQ(state_of_charge_from_voltage(battery, 5.0), 1.0);

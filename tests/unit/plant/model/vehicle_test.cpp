@@ -123,7 +123,7 @@ const Rule kRules[] = {
     {"ChargeEmpty", [](Vehicle& v) { v.battery.state_of_charge.clear(); },
      "battery.open_circuit.state_of_charge", "must rise from 0 to 1"},
     {"VoltageCount", [](Vehicle& v) { v.battery.open_circuit_voltage_v.pop_back(); },
-     "battery.open_circuit.voltage", "is a list of 8, must have one value for each of the 9"},
+     "battery.open_circuit.voltage", "is a list of 11, must have one value for each of the 12"},
     {"VoltageRises", [](Vehicle& v) { v.battery.open_circuit_voltage_v[3] = 3.0; },
      "battery.open_circuit.voltage", "must be above 0, finite and rising"},
     {"VoltageNan", [](Vehicle& v) { v.battery.open_circuit_voltage_v[3] = kNan; },

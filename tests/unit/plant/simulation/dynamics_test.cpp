@@ -273,7 +273,7 @@ TEST(Dynamics, EmptyBatteryKeepsItsLowestVoltage) {
   state.state_of_charge = 1.0e-4;
   fly(dynamics, state, {}, 2.0, 2000);
   EXPECT_EQ(state.state_of_charge, 0.0);
-  EXPECT_NEAR(dynamics.supply_voltage(state), 3.60 - 0.12, 1.0e-9);
+  EXPECT_NEAR(dynamics.supply_voltage(state), 2.65 - 0.12, 1.0e-9);
 }
 
 TEST(Dynamics, IdealSupplyNeitherSagsNorEmpties) {

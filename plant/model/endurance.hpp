@@ -1,0 +1,12 @@
+// How long a battery carries its vehicle.
+#pragma once
+
+#include "swiftlet/plant/model/vehicle.hpp"
+
+namespace swiftlet::plant {
+
+// Seconds of hover from a state of charge, 0 .. 1, on, until the voltage under load, v_s of Eq. (9), falls below least_voltage_v or the
+// battery is empty; 0 if it is below at once. The rotors share m g, Eq. (22) and (25); the ESCs have no loss (esc.hpp).
+double hover_endurance_s(const Vehicle& vehicle, double state_of_charge, double least_voltage_v);
+
+}  // namespace swiftlet::plant
