@@ -113,6 +113,14 @@ Outcome check_item_trajectory(const char* what, const Mission& mission, const Mi
   return outcome;
 }
 
+Outcome check_item_end(const char* what, const MissionItem& item, const Limits& limits) {
+  Eigen::Vector3d position = item.position_ned;
+  if (item.kind == MissionItemKind::kTakeoff)
+    position.head<2>() = 0.5 * (limits.fence_min_ned + limits.fence_max_ned).head<2>();
+  const Outcome outcome = check_position(what, position, limits);
+  return outcome.accepted && !item.yaw_free ? check_yaw(what, item.yaw_rad) : outcome;
+}
+
 }  // namespace
 
 Outcome accept() {
@@ -235,17 +243,18 @@ Outcome check(const Mission& mission, const Limits& settings) {
       return refuse("%s: hold is %.3f s, must be 0 or more", what, item.hold_s);
     if (!(item.acceptance_radius_m >= 0.0))
       return refuse("%s: acceptance radius is %.3f m, must be 0 or more", what, item.acceptance_radius_m);
-    if (item.kind == MissionItemKind::kLand || item.kind == MissionItemKind::kWait) continue;
-    if (item.kind == MissionItemKind::kTrajectory) {
-      outcome = check_item_trajectory(what, mission, item, limits);
-      if (!outcome.accepted) return outcome;
-      continue;
+    switch (item.kind) {
+      case MissionItemKind::kTakeoff:
+      case MissionItemKind::kWaypoint:
+        outcome = check_item_end(what, item, limits);
+        break;
+      case MissionItemKind::kTrajectory:
+        outcome = check_item_trajectory(what, mission, item, limits);
+        break;
+      case MissionItemKind::kLand:
+      case MissionItemKind::kWait:
+        break;
     }
-    Eigen::Vector3d position = item.position_ned;
-    if (item.kind == MissionItemKind::kTakeoff)
-      position.head<2>() = 0.5 * (limits.fence_min_ned + limits.fence_max_ned).head<2>();
-    outcome = check_position(what, position, limits);
-    if (outcome.accepted && !item.yaw_free) outcome = check_yaw(what, item.yaw_rad);
     if (!outcome.accepted) return outcome;
   }
   return accept();

@@ -1,6 +1,7 @@
 // A mission as the control service flies it: a list of items in order, and the mission's own limits.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -18,6 +19,11 @@ enum class MissionItemKind : std::uint8_t {
   kTrajectory = 3,  // join the first segment smoothly, fly all segments, then hold
   kWait = 4,        // hold the present position for hold_s
 };
+// By kind, as in the mission file.
+constexpr const char* kMissionItemKinds[] = {"takeoff", "waypoint", "land", "trajectory", "wait"};
+inline const char* to_string(MissionItemKind kind) {
+  return kMissionItemKinds[static_cast<std::size_t>(kind)];
+}
 
 struct MissionItem {
   MissionItemKind kind = MissionItemKind::kWaypoint;

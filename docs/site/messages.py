@@ -1,10 +1,10 @@
-"""The reference of the topics: every topic of services/messages/topics.hpp and every type of the IDL files."""
+"""The reference of the topics: every topic of services/messages/topic_table.hpp and every type of the IDL files."""
 
 import re
 
 from manual_text import ManualError, plain, table
 
-_TOPIC = re.compile(r'Topic<msg::(\w+)> k\w+\{"(\w+)", Qos::k(\w+)\};')
+_TOPIC = re.compile(r'^  TOPIC(?:_OF)?\((\w+), (?:\w+, )?"(\w+)", (\w+), ', re.MULTILINE)
 _CONSTANT = re.compile(r"^const (\w+) (\w+) = ([^;]+);$")
 _FIELD = re.compile(r"^([\w:]+(?:<.*>)?) (\w+)(\[\d+\])?;$")
 
@@ -15,12 +15,12 @@ def words_of(name):
 
 
 def read_topics(root):
-    file = root / "services/messages/topics.hpp"
+    file = root / "services/messages/topic_table.hpp"
     topics = [(name, kind, words_of(profile))
               for kind, name, profile in _TOPIC.findall(file.read_text())]
     if not topics:
         raise ManualError(f"{file.relative_to(root)}: no topic found; docs/site/messages.py reads lines such as "
-                          'Topic<msg::Imu> kImu{"imu", Qos::kStream};')
+                          'TOPIC(Imu, "imu", Stream, roles::kVehicle)')
     return topics
 
 
@@ -37,8 +37,8 @@ def table_of_readme(root):
 def check_readme(root, topics):
     code, document = set(topics), table_of_readme(root)
     for row in sorted(code ^ document):
-        where = "services/messages/topics.hpp" if row in code else "idl/README.md"
-        raise ManualError(f"idl/README.md: its table of topics and services/messages/topics.hpp differ: only {where} has "
+        where = "services/messages/topic_table.hpp" if row in code else "idl/README.md"
+        raise ManualError(f"idl/README.md: its table of topics and services/messages/topic_table.hpp differ: only {where} has "
                           f"{', '.join(row)}")
 
 
@@ -86,7 +86,7 @@ def page(root):
     check_readme(root, topics)
     out = [
         "# Messages\n\n"
-        "This page is generated from the IDL files and from `services/messages/topics.hpp`. "
+        "This page is generated from the IDL files and from `services/messages/topic_table.hpp`. "
         "[Topics](../rooms/idl.md) explains rates, profiles and conventions.\n\n"
         "## All topics\n\n",
         table(["topic", "type", "profile"],

@@ -4,8 +4,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "swiftlet/services/messages/all_topics.hpp"
 #include "swiftlet/services/messages/schemas.hpp"
+#include "swiftlet/services/messages/topics.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::ground {

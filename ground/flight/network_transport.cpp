@@ -408,7 +408,7 @@ void NetworkTransport::update_progress(const View& view) {
   const std::size_t item = std::min<std::size_t>(mission.item_index(), mission_.mission.items.size() - 1);
   const std::string text = fmt::format(
       "{:5.1f} s  {}/{} {:<10}  ({:5.2f}, {:5.2f}, {:5.2f}) m, {:5.1f} mm off, {:.2f} V", time_s, item + 1,
-      mission_.mission.items.size(), io::to_string(mission_.mission.items[item].kind), position[0],
+      mission_.mission.items.size(), control::to_string(mission_.mission.items[item].kind), position[0],
       position[1], position[2], newest_error_m(view) * 1e3, view.battery.message.voltage_v());
   std::string line = text;
   if (mode_of(view) != ControlMode::kMission)

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <exception>
 #include <optional>
-#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -57,12 +56,8 @@ SimulatedRecorder::SimulatedRecorder(simulation::ClosedLoop& loop, const LaunchC
   });
   write_vehicle_info();
   if (loop.answered) {  // at stamp 0, before anything could listen
-    plant::TelemetryPacket first;
-    first.imu = *loop.answered;
-    first.odometry = loop.answered_odometry;
+    plant::TelemetryPacket first{loop.plant.samples(), *loop.answered, loop.answered_odometry, {}};
     first.obeyed.reported = true;
-    first.battery = loop.plant.battery();
-    first.rotor_speeds = loop.plant.rotor_speeds();
     write_sample(first, std::nullopt);
     step();
   }
@@ -99,23 +94,21 @@ void SimulatedRecorder::write(const messages::Topic<T>& topic, const T& message,
 void SimulatedRecorder::write_sample(const plant::TelemetryPacket& packet,
                                      const std::optional<plant::PoseSample>& pose) {
   const std::int64_t now_ns = loop_.plant.stamp_ns();
-  if (packet.rotor_speeds) {
-    rotor_speeds_sequence_ = packet.rotor_speeds->sequence;
-    write(topics::kRotorSpeeds, messages::to_message(*packet.rotor_speeds), now_ns);
-  }
-  if (packet.battery) {
-    battery_sequence_ = packet.battery->sequence;
-    write(topics::kBattery, messages::to_message(*packet.battery), now_ns);
-  }
+  plant::for_each_sensor(
+      [&](const auto& sample, std::uint64_t& sequence) {
+        if (!sample) return;
+        sequence = sample->sequence;
+        const auto message = messages::to_message(*sample);
+        write(messages::topic_of(message), message, now_ns);
+      },
+      packet, inputs_);
   if (pose) {
-    pose_sequence_ = pose->sequence;
+    inputs_.mocap_pose = pose->sequence;
     write(topics::kMocapPose, messages::to_message(*pose), now_ns);
   }
   const auto write_answered = [&](const auto& topic, auto message) {
     message.obeyed(messages::to_message(packet.obeyed));
-    message.lockstep().mocap_pose(pose_sequence_);
-    message.lockstep().battery(battery_sequence_);
-    message.lockstep().rotor_speeds(rotor_speeds_sequence_);
+    message.lockstep(messages::to_message(inputs_));
     write(topic, message, now_ns);
   };
   if (packet.odometry) {
@@ -129,15 +122,8 @@ void SimulatedRecorder::write_sample(const plant::TelemetryPacket& packet,
 void SimulatedRecorder::write_command(std::int64_t now_ns) {
   std::visit(
       [&](const auto& command) {
-        using Sent = std::decay_t<decltype(command)>;
-        if constexpr (std::is_same_v<Sent, plant::ActuatorCommand>)
-          write(topics::kActuatorCommand, messages::to_message(command), now_ns);
-        if constexpr (std::is_same_v<Sent, plant::RatesSetpoint>)
-          write(topics::kRatesSetpoint, messages::to_message(command), now_ns);
-        if constexpr (std::is_same_v<Sent, plant::AttitudeSetpoint>)
-          write(topics::kAttitudeSetpoint, messages::to_message(command), now_ns);
-        if constexpr (std::is_same_v<Sent, plant::TrajectorySetpoint>)
-          write(topics::kTrajectorySetpoint, messages::to_message(command), now_ns);
+        const auto message = messages::to_message(command);
+        write(messages::topic_of(message), message, now_ns);
       },
       loop_.sent);
 }

@@ -58,9 +58,7 @@ class SimulatedRecorder {
   std::map<std::string, std::uint16_t> channels_;  // by topic
   std::map<std::uint16_t, std::uint32_t> counts_;  // of messages, by channel
   messages::msg::VehicleInfo vehicle_info_;        // last written, as all below
-  std::uint64_t pose_sequence_ = 0;
-  std::uint64_t battery_sequence_ = 0;
-  std::uint64_t rotor_speeds_sequence_ = 0;
+  plant::LockstepInputs inputs_;
   std::uint64_t truth_sequence_ = 0;
   std::uint64_t answered_sequence_ = 0;
   std::uint64_t telemetry_sequence_ = 0;

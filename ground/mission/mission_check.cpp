@@ -76,12 +76,12 @@ std::string value_of(const WorstDemand& worst) {
 
 std::string name_of(const ItemCheck& item, std::size_t index) {
   const std::string line = item.line > 0 ? fmt::format(", line {}", item.line) : "";
-  return fmt::format("item {} ({}{})", index + 1, io::to_string(item.kind), line.c_str());
+  return fmt::format("item {} ({}{})", index + 1, control::to_string(item.kind), line.c_str());
 }
 
 std::string row_of(const ItemCheck& item, std::size_t index) {
   std::string row =
-      fmt::format("{:5}  {:<10} {:>5} {:9.2f} {:8.2f}", index + 1, io::to_string(item.kind),
+      fmt::format("{:5}  {:<10} {:>5} {:9.2f} {:8.2f}", index + 1, control::to_string(item.kind),
                   item.line > 0 ? std::to_string(item.line).c_str() : "", item.start_s, item.duration_s);
   if (item.demands.empty()) return row + "\n";
   const bool exceeded = std::any_of(item.demands.begin(), item.demands.end(),
@@ -231,7 +231,7 @@ std::string check_json(const MissionCheck& check, const io::MissionFile& file, c
   for (const ItemCheck& item : check.items) {
     nlohmann::ordered_json demands = nlohmann::ordered_json::array();
     for (const WorstDemand& worst : item.demands) demands.push_back(json_of(worst));
-    json["items"].push_back({{"kind", io::to_string(item.kind)},
+    json["items"].push_back({{"kind", control::to_string(item.kind)},
                              {"line", item.line},
                              {"start_s", item.start_s},
                              {"duration_s", item.duration_s},

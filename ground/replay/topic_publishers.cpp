@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "swiftlet/services/dds/payload.hpp"
-#include "swiftlet/services/messages/all_topics.hpp"
+#include "swiftlet/services/messages/topics.hpp"
 
 namespace swiftlet::ground {
 

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <utility>
 
-#include "swiftlet/services/messages/all_topics.hpp"
+#include "swiftlet/services/messages/topics.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::ground {

@@ -240,11 +240,11 @@ double planned_duration_s(const control::Mission& mission, const control::Limits
   Eigen::Vector3d at = Eigen::Vector3d::Zero();
   double yaw = 0.0;
   for (const MissionItem& item : mission.items) {
-    Eigen::Vector3d to = item.position_ned;
+    Eigen::Vector3d to = at;
+    if (item.kind == MissionItemKind::kWaypoint) to = item.position_ned;
     if (item.kind == MissionItemKind::kTakeoff) to = {at.x(), at.y(), item.position_ned.z()};
     if (item.kind == MissionItemKind::kLand) to = {at.x(), at.y(), 0.0};
     if (item.kind == MissionItemKind::kTrajectory) to = start_of(mission, item);
-    if (item.kind == MissionItemKind::kWait) to = at;
     const double distance = (to - at).norm();
     const double move_s =
         item.kind == MissionItemKind::kTrajectory
@@ -269,22 +269,6 @@ double planned_duration_s(const control::Mission& mission, const control::Limits
     }
   }
   return duration_s;
-}
-
-const char* to_string(MissionItemKind kind) {
-  switch (kind) {
-    case MissionItemKind::kTakeoff:
-      return "takeoff";
-    case MissionItemKind::kWaypoint:
-      return "waypoint";
-    case MissionItemKind::kLand:
-      return "land";
-    case MissionItemKind::kTrajectory:
-      return "trajectory";
-    case MissionItemKind::kWait:
-      return "wait";
-  }
-  return "unknown";
 }
 
 }  // namespace swiftlet::io

@@ -70,6 +70,4 @@ MissionFile stretched(MissionFile file, double factor);
 // limits of acceleration, jerk and yaw rate.
 double planned_duration_s(const control::Mission& mission, const control::Limits& settings);
 
-const char* to_string(control::MissionItemKind kind);
-
 }  // namespace swiftlet::io

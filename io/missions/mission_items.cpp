@@ -26,8 +26,6 @@ constexpr double kLargestRadiusM = 10.0;
 constexpr double kLeastCorridorM = 1e-3;  // half width, as in control/planning/waypoint_path.hpp
 constexpr double kLargestCorridorM = 10.0;
 
-enum class FileItem { kTakeoff, kWaypoint, kPath, kTrajectory, kSet, kWait, kLand };
-
 // A yaw in NED; free: the vehicle keeps its yaw.
 struct Yaw {
   bool free = true;
@@ -51,41 +49,23 @@ class ItemReader {
   void read(const ConfigNode& node) {
     node.allow({"kind", "height_m", "position_m", "points", "file", "duration_s", "yaw_rad", "speed_m_s",
                 "acceptance_radius_m", "hold_s", "straight", "corridor_m", "smoothness"});
-    const auto kind = node.at("kind").choice<FileItem>({{"takeoff", FileItem::kTakeoff},
-                                                        {"waypoint", FileItem::kWaypoint},
-                                                        {"path", FileItem::kPath},
-                                                        {"trajectory", FileItem::kTrajectory},
-                                                        {"set", FileItem::kSet},
-                                                        {"wait", FileItem::kWait},
-                                                        {"land", FileItem::kLand}});
-    if (kind == FileItem::kSet) return read_set(node);
-    if (!file_.mission.items.empty() && kind == FileItem::kTakeoff)
+    const auto item = node.at("kind").choice<ReadItem>({{"takeoff", &ItemReader::takeoff},
+                                                        {"waypoint", &ItemReader::waypoint},
+                                                        {"path", &ItemReader::path},
+                                                        {"trajectory", &ItemReader::trajectory},
+                                                        {"set", nullptr},
+                                                        {"wait", &ItemReader::wait},
+                                                        {"land", &ItemReader::land}});
+    if (item == nullptr) return read_set(node);
+    if (!file_.mission.items.empty() && item == &ItemReader::takeoff)
       node.fail("is a takeoff, which must be the first item");
     if (file_.lands()) node.fail("comes after a land, which must be the last item");
-    file_.mission.items.push_back(item(kind, node));
+    file_.mission.items.push_back((this->*item)(node));
     file_.lines.push_back(node.line());
   }
 
  private:
-  MissionItem item(FileItem kind, const ConfigNode& node) {
-    switch (kind) {
-      case FileItem::kTakeoff:
-        return takeoff(node);
-      case FileItem::kWaypoint:
-        return waypoint(node);
-      case FileItem::kPath:
-        return path(node);
-      case FileItem::kTrajectory:
-        return trajectory(node);
-      case FileItem::kWait:
-        return wait(node);
-      case FileItem::kLand:
-        return land(node);
-      case FileItem::kSet:
-        break;
-    }
-    throw std::logic_error("an item that is not flown");
-  }
+  using ReadItem = MissionItem (ItemReader::*)(const ConfigNode&);
 
   void read_set(const ConfigNode& node) {
     node.allow({"kind", "speed_m_s", "yaw_rad", "acceptance_radius_m", "hold_s"});
@@ -101,7 +81,7 @@ class ItemReader {
     if (hold) defaults_.hold_s = hold->number(io::between(0.0, kLongestHoldS));
   }
 
-  MissionItem takeoff(const ConfigNode& node) const {
+  MissionItem takeoff(const ConfigNode& node) {
     node.allow({"kind", "height_m", "speed_m_s", "hold_s"});
     MissionItem item;
     item.kind = MissionItemKind::kTakeoff;
@@ -120,7 +100,7 @@ class ItemReader {
     return item;
   }
 
-  MissionItem waypoint(const ConfigNode& node) const {
+  MissionItem waypoint(const ConfigNode& node) {
     node.allow({"kind", "position_m", "yaw_rad", "speed_m_s", "acceptance_radius_m", "hold_s"});
     MissionItem item;
     item.kind = MissionItemKind::kWaypoint;
@@ -134,7 +114,7 @@ class ItemReader {
     return item;
   }
 
-  MissionItem wait(const ConfigNode& node) const {
+  MissionItem wait(const ConfigNode& node) {
     node.allow({"kind", "duration_s"});
     MissionItem item;
     item.kind = MissionItemKind::kWait;
@@ -143,7 +123,7 @@ class ItemReader {
     return item;
   }
 
-  MissionItem land(const ConfigNode& node) const {
+  MissionItem land(const ConfigNode& node) {
     node.allow({"kind", "speed_m_s"});
     MissionItem item;
     item.kind = MissionItemKind::kLand;

@@ -1,7 +1,7 @@
 #include "swiftlet/io/settings/simulation_file.hpp"
 
 #include <cmath>
-#include <utility>
+#include <iterator>
 #include <vector>
 
 #include "swiftlet/io/config.hpp"
@@ -14,22 +14,11 @@ namespace swiftlet::io {
 
 namespace {
 
-plant::FaultKind read_fault_kind(const ConfigNode& node) {
-  using Kind = plant::FaultKind;
-  const auto named = [](Kind kind) { return std::make_pair(plant::to_string(kind), kind); };
-  return node.choice<Kind>({named(Kind::kMocapStop), named(Kind::kMocapFreeze), named(Kind::kMocapUntracked),
-                            named(Kind::kMocapJump), named(Kind::kMocapSwap), named(Kind::kMocapLatency),
-                            named(Kind::kImuStop), named(Kind::kImuNan), named(Kind::kImuStuck),
-                            named(Kind::kImuBias), named(Kind::kBatteryStop), named(Kind::kRotorSpeedsStop),
-                            named(Kind::kBatteryDrop), named(Kind::kRotorThrust), named(Kind::kPush),
-                            named(Kind::kWind), named(Kind::kCommandsStop), named(Kind::kCommandsDelay),
-                            named(Kind::kOdometryJump)});
-}
-
 plant::Fault read_fault(const ConfigNode& node) {
   using Kind = plant::FaultKind;
   plant::Fault fault;
-  fault.kind = read_fault_kind(node.at("kind"));
+  fault.kind = static_cast<Kind>(
+      node.at("kind").choice_index({std::begin(plant::kFaultKindNames), std::end(plant::kFaultKindNames)}));
   fault.at_s = node.at("at_s").number();
   fault.for_s = node.at("for_s").number();
   switch (fault.kind) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -65,6 +66,26 @@ struct RotorSpeedSample {
   int rotor_count = 0;
   PerRotor speeds{};  // rad/s
 };
+
+// The newest samples of the sensors beside IMU and motion capture.
+struct SensorSamples {
+  std::optional<BatterySample> battery;
+  std::optional<RotorSpeedSample> rotor_speeds;
+};
+
+// In lockstep: the sequence numbers of the newest samples that belong to an IMU sample; 0: none.
+struct LockstepInputs {
+  std::uint64_t mocap_pose = 0;
+  std::uint64_t battery = 0;
+  std::uint64_t rotor_speeds = 0;
+};
+
+// Calls use() for each sensor of SensorSamples, with its member of each of the structs.
+template <class Use, class... Structs>
+void for_each_sensor(const Use& use, Structs&... of) {
+  use(of.rotor_speeds...);
+  use(of.battery...);
+}
 
 // "Off" differs from throttle 0, at which the ESC of Eq. (9) still turns the rotor.
 enum class RotorState : std::uint8_t { kOff = 0, kRunning = 1 };

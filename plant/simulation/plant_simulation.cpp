@@ -94,16 +94,15 @@ void PlantSimulation::change_faults() {
 
 void PlantSimulation::sample(const MotorCommand& drive) {
   imu_sample_.reset();
-  battery_sample_.reset();
-  rotor_speed_sample_.reset();
+  samples_ = {};
   imu_due_ = imu_schedule_.due();
   if (imu_due_) sample_imu();
   if (battery_schedule_.due() && faults_.active(FaultKind::kBatteryStop, stamp_ns_) == nullptr) {
-    battery_sample_ = BatterySample{stamp_ns_, battery_schedule_.sequence, dynamics_.supply_voltage(state_),
-                                    dynamics_.supply_current(state_, drive), state_.state_of_charge};
+    samples_.battery = BatterySample{stamp_ns_, battery_schedule_.sequence, dynamics_.supply_voltage(state_),
+                                     dynamics_.supply_current(state_, drive), state_.state_of_charge};
   }
   if (rotor_speed_schedule_.due() && faults_.active(FaultKind::kRotorSpeedsStop, stamp_ns_) == nullptr) {
-    rotor_speed_sample_ =
+    samples_.rotor_speeds =
         RotorSpeedSample{stamp_ns_, rotor_speed_schedule_.sequence, rotor_count_, state_.rotor_speeds};
   }
 }

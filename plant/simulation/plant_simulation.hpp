@@ -47,8 +47,9 @@ class PlantSimulation {
   std::uint64_t imu_count() const { return imu_schedule_.sequence; }
   // Samples sent at this stamp; empty if none is due or a fault suppresses it.
   const std::optional<ImuSample>& imu() const { return imu_sample_; }
-  const std::optional<BatterySample>& battery() const { return battery_sample_; }
-  const std::optional<RotorSpeedSample>& rotor_speeds() const { return rotor_speed_sample_; }
+  const std::optional<BatterySample>& battery() const { return samples_.battery; }
+  const std::optional<RotorSpeedSample>& rotor_speeds() const { return samples_.rotor_speeds; }
+  const SensorSamples& samples() const { return samples_; }
 
   bool on_ground() const { return on_ground_; }
   const Imu& imu_sensor() const { return imu_; }
@@ -99,8 +100,7 @@ class PlantSimulation {
   bool imu_due_ = false;
   std::optional<ImuSample> imu_sample_;
   ImuSample last_sound_imu_;  // last sample before kImuStuck
-  std::optional<BatterySample> battery_sample_;
-  std::optional<RotorSpeedSample> rotor_speed_sample_;
+  SensorSamples samples_;
 };
 
 }  // namespace swiftlet::plant

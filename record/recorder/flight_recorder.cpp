@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "swiftlet/services/messages/all_topics.hpp"
+#include "swiftlet/services/messages/topics.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::record {

@@ -64,23 +64,14 @@ ControlService::ControlService(const plant::Vehicle& vehicle, const control::Con
 }
 
 void ControlService::subscribe_sensors(dds::Node& node, runtime::Clock clock) {
-  using Stream = LockstepGate::Stream;
-  std::function<void(const msg::MocapPose&)> take_pose;
-  std::function<void(const msg::Battery&)> take_battery;
-  std::function<void(const msg::RotorSpeeds&)> take_rotor_speeds;
+  using Inputs = plant::LockstepInputs;
   // In real time no other topic may delay IMU and poses. In lockstep threads of their own only cost wake-ups.
   const Delivery delivery = clock == runtime::Clock::kLockstep ? Delivery::kShared : Delivery::kSensors;
-  if (clock == runtime::Clock::kLockstep) {
-    take_pose = deliver_in_lockstep<msg::MocapPose>(loop_.pose, pose_faults_, Stream::kPose);
-    take_battery = deliver_in_lockstep<msg::Battery>(loop_.battery, battery_faults_, Stream::kBattery);
-    take_rotor_speeds =
-        deliver_in_lockstep<msg::RotorSpeeds>(loop_.rotor_speeds, rotor_speed_faults_, Stream::kRotorSpeeds);
-  } else {
-    take_pose = deliver<msg::MocapPose>(loop_.pose, pose_faults_);
-    take_battery = deliver<msg::Battery>(loop_.battery, battery_faults_);
-    take_rotor_speeds = deliver<msg::RotorSpeeds>(loop_.rotor_speeds, rotor_speed_faults_);
-    telemetry_.watch_imu();
-  }
+  if (clock == runtime::Clock::kRealtime) telemetry_.watch_imu();
+  const auto take_pose = deliver_sensor<msg::MocapPose>(loop_.pose, pose_faults_, &Inputs::mocap_pose);
+  const auto take_battery = deliver_sensor<msg::Battery>(loop_.battery, battery_faults_, &Inputs::battery);
+  const auto take_rotor_speeds =
+      deliver_sensor<msg::RotorSpeeds>(loop_.rotor_speeds, rotor_speed_faults_, &Inputs::rotor_speeds);
 
   // Poses are needed to hold position: their thread has real-time priority, like the IMU's.
   sensors_.push_back({"poses", node.subscribe<msg::MocapPose>(
@@ -184,9 +175,10 @@ std::function<void(const Message&)> ControlService::deliver_to_worker(
 }
 
 template <class Message, class Sample>
-std::function<void(const Message&)> ControlService::deliver_in_lockstep(runtime::LatestValue<Sample>& latest,
-                                                                        dds::ThrottledWarning& faults,
-                                                                        LockstepGate::Stream stream) {
+std::function<void(const Message&)> ControlService::deliver_sensor(runtime::LatestValue<Sample>& latest,
+                                                                   dds::ThrottledWarning& faults,
+                                                                   LockstepGate::Stream stream) {
+  if (clock_ == runtime::Clock::kRealtime) return deliver<Message>(latest, faults);
   return [this, stream, take = deliver<Message>(latest, faults)](const Message& message) {
     const std::lock_guard<std::mutex> lock(gate_mutex_);
     if (!gate_.is_new(stream, message.sequence_number())) return;

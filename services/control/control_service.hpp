@@ -89,9 +89,9 @@ class ControlService {
   std::function<void(const Message&)> deliver(runtime::LatestValue<Sample>& latest,
                                               dds::ThrottledWarning& faults);
   template <class Message, class Sample>
-  std::function<void(const Message&)> deliver_in_lockstep(runtime::LatestValue<Sample>& latest,
-                                                          dds::ThrottledWarning& faults,
-                                                          LockstepGate::Stream stream);
+  std::function<void(const Message&)> deliver_sensor(runtime::LatestValue<Sample>& latest,
+                                                     dds::ThrottledWarning& faults,
+                                                     LockstepGate::Stream stream);
 
   const std::uint64_t controller_;
   const runtime::Clock clock_;

@@ -1,9 +1,7 @@
-// Lockstep: holds a sample of the vehicle, of its IMU or its own estimate, back until the pose, battery and
-// rotor-speed samples that it names have arrived, so that every run processes them in the same order.
+// Lockstep: holds a sample of the vehicle, of its IMU or its own estimate, back until the pose and the samples of
+// other sensors that it names have arrived, so that every run processes them in the same order.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -15,11 +13,11 @@ namespace swiftlet::services {
 // Not thread-safe.
 class LockstepGate {
  public:
-  enum class Stream : std::size_t { kPose, kBattery, kRotorSpeeds };
+  using Stream = std::uint64_t plant::LockstepInputs::*;
 
   // Call for each sample of the other streams. Returns false for a repeated sample, which must be ignored.
   bool is_new(Stream stream, std::uint64_t sequence) {
-    std::uint64_t& newest = newest_[static_cast<std::size_t>(stream)];
+    std::uint64_t& newest = newest_.*stream;
     if (sequence <= newest) return false;
     newest = sequence;
     return true;
@@ -41,11 +39,13 @@ class LockstepGate {
 
  private:
   bool complete(const VehicleSample& sample) const {
-    return newest_[0] >= sample.mocap_sequence && newest_[1] >= sample.battery_sequence &&
-           newest_[2] >= sample.rotor_speeds_sequence;
+    bool all = newest_.mocap_pose >= sample.lockstep.mocap_pose;
+    plant::for_each_sensor([&all](auto newest, auto named) { all = all && newest >= named; }, newest_,
+                           sample.lockstep);
+    return all;
   }
 
-  std::array<std::uint64_t, 3> newest_{};  // by Stream
+  plant::LockstepInputs newest_;
   std::optional<VehicleSample> waiting_;
   std::uint64_t let_through_ = 0;
 };

@@ -15,8 +15,7 @@ VehicleSample converted(const Message& message) {
     sample.sequence = message.sequence_number();
     sample.body_rates_frd.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
-  return {sample, messages::from_message(message.obeyed()), message.lockstep().mocap_pose(),
-          message.lockstep().battery(), message.lockstep().rotor_speeds()};
+  return {sample, messages::from_message(message.obeyed()), messages::from_message(message.lockstep())};
 }
 
 }  // namespace

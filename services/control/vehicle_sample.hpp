@@ -13,10 +13,7 @@ namespace swiftlet::services {
 struct VehicleSample {
   std::variant<plant::ImuSample, plant::OdometrySample> motion;
   plant::ObeyedCommand obeyed;
-  // In lockstep: the newest samples that belong to this one; 0: none.
-  std::uint64_t mocap_sequence = 0;
-  std::uint64_t battery_sequence = 0;
-  std::uint64_t rotor_speeds_sequence = 0;
+  plant::LockstepInputs lockstep;
 
   std::int64_t stamp_ns() const {
     return std::visit([](const auto& sample) { return sample.stamp_ns; }, motion);

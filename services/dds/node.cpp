@@ -14,7 +14,7 @@
 
 namespace swiftlet::dds {
 
-#define SWIFTLET_TYPE_HASH(Name)                                                                \
+#define SWIFTLET_TYPE_HASH(Name, ...)                                                           \
   template <>                                                                                   \
   struct RosTypeHash<messages::msg::Name> {                                                     \
     static const char* value() { return messages::schema_of<messages::msg::Name>().type_hash; } \
@@ -81,7 +81,7 @@ void Node::on_peer(std::function<void(const PeerEvent&)> callback) {
 
 void Node::rejoin() { participant_.impl_->rejoin(); }
 
-#define SWIFTLET_INSTANTIATE(Name)                                                                    \
+#define SWIFTLET_INSTANTIATE(Name, ...)                                                               \
   template Publisher<messages::msg::Name> Node::publish(const messages::Topic<messages::msg::Name>&); \
   template Subscription Node::subscribe(const messages::Topic<messages::msg::Name>&,                  \
                                         std::function<void(const messages::msg::Name&)>, Delivery,    \

@@ -30,7 +30,7 @@ bool from_payload(const std::uint8_t* bytes, std::size_t size, T& message) {
   }
 }
 
-#define SWIFTLET_INSTANTIATE(Name)                                           \
+#define SWIFTLET_INSTANTIATE(Name, ...)                                      \
   template std::vector<std::uint8_t> to_payload(const messages::msg::Name&); \
   template bool from_payload(const std::uint8_t*, std::size_t, messages::msg::Name&);
 SWIFTLET_FOR_EACH_MESSAGE(SWIFTLET_INSTANTIATE)

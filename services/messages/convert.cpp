@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "swiftlet/control/attitude/attitude_error.hpp"
 #include "swiftlet/services/messages/wire.hpp"
@@ -160,7 +161,7 @@ Fault from_message(const msg::Mission& in, control::Mission& out) {
   for (std::size_t i = 0; check.ok() && i < in.items().size(); ++i) {
     const msg::MissionItem& item = in.items()[i];
     check.of_item("item", i + 1);
-    check.at_most("kind", item.kind(), msg::MissionItem_Constants::WAIT)
+    check.at_most("kind", item.kind(), std::size(control::kMissionItemKinds) - 1)
         .finite("position_ned", item.position_ned())
         .finite("yaw", item.yaw())
         .finite("speed", item.speed())

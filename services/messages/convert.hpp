@@ -46,6 +46,7 @@ struct ControllerReport {
 // allocate.
 Fault from_message(const msg::Imu& in, plant::ImuSample& out);
 plant::ObeyedCommand from_message(const msg::ObeyedCommand& in);
+plant::LockstepInputs from_message(const msg::LockstepInputs& in);
 Fault from_message(const msg::VehicleOdometry& in, plant::OdometrySample& out);
 Fault from_message(const msg::MocapPose& in,
                    plant::PoseSample& out);  // ignores the pose of an untracked sample
@@ -66,6 +67,7 @@ Fault from_message(const msg::ControlSettings& in, control::SettingsRequest& out
 
 msg::Imu to_message(const plant::ImuSample& in);
 msg::ObeyedCommand to_message(const plant::ObeyedCommand& in);
+msg::LockstepInputs to_message(const plant::LockstepInputs& in);
 msg::VehicleOdometry to_message(const plant::OdometrySample& in);
 msg::MocapPose to_message(const plant::PoseSample& in);
 msg::Battery to_message(const plant::BatterySample& in);

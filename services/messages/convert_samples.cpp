@@ -61,6 +61,18 @@ msg::Imu to_message(const plant::ImuSample& in) {
   return out;
 }
 
+plant::LockstepInputs from_message(const msg::LockstepInputs& in) {
+  return {in.mocap_pose(), in.battery(), in.rotor_speeds()};
+}
+
+msg::LockstepInputs to_message(const plant::LockstepInputs& in) {
+  msg::LockstepInputs out;
+  out.mocap_pose(in.mocap_pose);
+  out.battery(in.battery);
+  out.rotor_speeds(in.rotor_speeds);
+  return out;
+}
+
 Fault from_message(const msg::MocapPose& in, plant::PoseSample& out) {
   Check check;
   check.time(in.stamp_ns());

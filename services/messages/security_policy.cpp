@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/services/messages/topic_roles.hpp"
+#include "swiftlet/services/messages/topics.hpp"
 
 namespace swiftlet::messages {
 namespace {
@@ -63,9 +63,10 @@ std::string permissions_document(const std::string& role, const std::string& sub
   std::string read;
   for (const std::string& vehicle : vehicles) {
     read += fmt::format("<topic>rt/{}/*</topic>", vehicle);
-    for (const WrittenTopic& topic : kWrittenTopics) {
-      if (topic.role == role) written += fmt::format("<topic>rt/{}/{}</topic>", vehicle, topic.name);
-    }
+    for_each_topic([&](const auto& topic) {
+      for (const std::string_view writer : topic.writers)
+        if (writer == role) written += fmt::format("<topic>rt/{}/{}</topic>", vehicle, topic.name);
+    });
   }
   const std::time_t now = std::time(nullptr);
   return fmt::format(R"(<?xml version="1.0" encoding="UTF-8"?>

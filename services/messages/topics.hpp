@@ -1,36 +1,13 @@
-// The topics of a vehicle: name, type and QoS profile of each, as in idl/README.md. The wire name is
-// rt/<vehicle>/<name>.
+// The topics of a vehicle as constants of their message types: topics::kImu.
 #pragma once
 
-#include "swiftlet_msgs/msg/ActuatorCommand.h"
-#include "swiftlet_msgs/msg/AttitudeSetpoint.h"
-#include "swiftlet_msgs/msg/Battery.h"
-#include "swiftlet_msgs/msg/ClockReply.h"
-#include "swiftlet_msgs/msg/ClockRequest.h"
-#include "swiftlet_msgs/msg/ClockStatus.h"
-#include "swiftlet_msgs/msg/Command.h"
-#include "swiftlet_msgs/msg/CommandAck.h"
-#include "swiftlet_msgs/msg/ControlSettings.h"
-#include "swiftlet_msgs/msg/ControlStatus.h"
-#include "swiftlet_msgs/msg/ControllerState.h"
-#include "swiftlet_msgs/msg/Estimate.h"
-#include "swiftlet_msgs/msg/GroundLink.h"
-#include "swiftlet_msgs/msg/GroundTruth.h"
-#include "swiftlet_msgs/msg/Imu.h"
-#include "swiftlet_msgs/msg/Mission.h"
-#include "swiftlet_msgs/msg/MissionStatus.h"
-#include "swiftlet_msgs/msg/MocapPose.h"
-#include "swiftlet_msgs/msg/RatesSetpoint.h"
-#include "swiftlet_msgs/msg/Reference.h"
-#include "swiftlet_msgs/msg/RotorSpeeds.h"
-#include "swiftlet_msgs/msg/Setpoint.h"
-#include "swiftlet_msgs/msg/SimulationClock.h"
-#include "swiftlet_msgs/msg/Trajectory.h"
-#include "swiftlet_msgs/msg/TrajectorySetpoint.h"
-#include "swiftlet_msgs/msg/VehicleInfo.h"
-#include "swiftlet_msgs/msg/VehicleOdometry.h"
+#include <string_view>
+
+#include "swiftlet_msgs/msg/types.h"
 
 #include "swiftlet/services/messages/qos.hpp"
+#include "swiftlet/services/messages/topic_roles.hpp"
+#include "swiftlet/services/messages/topic_table.hpp"
 
 namespace swiftlet::messages {
 
@@ -41,38 +18,34 @@ struct Topic {
   using Message = T;
   const char* name;
   Qos qos;
+  std::string_view writers[2]{};  // roles; empty: none
 };
 
 namespace topics {
-inline constexpr Topic<msg::Imu> kImu{"imu", Qos::kStream};
-inline constexpr Topic<msg::VehicleOdometry> kVehicleOdometry{"vehicle_odometry", Qos::kStream};
-inline constexpr Topic<msg::ActuatorCommand> kActuatorCommand{"actuator_command", Qos::kStream};
-inline constexpr Topic<msg::RatesSetpoint> kRatesSetpoint{"rates_setpoint", Qos::kStream};
-inline constexpr Topic<msg::AttitudeSetpoint> kAttitudeSetpoint{"attitude_setpoint", Qos::kStream};
-inline constexpr Topic<msg::TrajectorySetpoint> kTrajectorySetpoint{"trajectory_setpoint", Qos::kStream};
-inline constexpr Topic<msg::ControllerState> kControllerState{"controller_state", Qos::kStream};
-inline constexpr Topic<msg::MocapPose> kMocapPose{"mocap_pose", Qos::kStream};
-inline constexpr Topic<msg::RotorSpeeds> kRotorSpeeds{"rotor_speeds", Qos::kStream};
-inline constexpr Topic<msg::Setpoint> kSetpoint{"setpoint", Qos::kStream};
-inline constexpr Topic<msg::ClockRequest> kClockRequest{"clock_request", Qos::kStream};
-inline constexpr Topic<msg::ClockReply> kClockReply{"clock_reply", Qos::kStream};
-inline constexpr Topic<msg::Battery> kBattery{"battery", Qos::kTelemetry};
-inline constexpr Topic<msg::Estimate> kEstimate{"estimate", Qos::kTelemetry};
-inline constexpr Topic<msg::Reference> kReference{"reference", Qos::kTelemetry};
-inline constexpr Topic<msg::GroundTruth> kGroundTruth{"ground_truth", Qos::kTelemetry};
-inline constexpr Topic<msg::ClockStatus> kClockStatus{"clock_status", Qos::kTelemetry};
-inline constexpr Topic<msg::ControlStatus> kControlStatus{"control_status", Qos::kLatched};
-inline constexpr Topic<msg::MissionStatus> kMissionStatus{"mission_status", Qos::kLatched};
-inline constexpr Topic<msg::VehicleInfo> kVehicleInfo{"vehicle_info", Qos::kLatched};
-inline constexpr Topic<msg::GroundLink> kGroundLink{"ground_link", Qos::kTelemetry};
-inline constexpr Topic<msg::SimulationClock> kSimulationClock{"simulation_clock", Qos::kLatched};
-inline constexpr Topic<msg::Command> kCommand{"command", Qos::kRequest};
-inline constexpr Topic<msg::Mission> kMission{"mission", Qos::kRequest};
-inline constexpr Topic<msg::Trajectory> kTrajectory{"trajectory", Qos::kRequest};
-inline constexpr Topic<msg::ControlSettings> kControlSettings{"control_settings", Qos::kRequest};
-inline constexpr Topic<msg::Mission> kFlownMission{"flown_mission", Qos::kLatchedLarge};
-inline constexpr Topic<msg::Trajectory> kFlownTrajectory{"flown_trajectory", Qos::kLatchedLarge};
-inline constexpr Topic<msg::CommandAck> kCommandAck{"command_ack", Qos::kReply};
+#define SWIFTLET_TOPIC_OF(Type, Constant, name, profile, ...) \
+  inline constexpr Topic<msg::Type> k##Constant{name, Qos::k##profile, {__VA_ARGS__}};
+#define SWIFTLET_TOPIC(Type, ...) SWIFTLET_TOPIC_OF(Type, Type, __VA_ARGS__)
+SWIFTLET_TOPICS(SWIFTLET_TOPIC, SWIFTLET_TOPIC_OF)
+#undef SWIFTLET_TOPIC
+#undef SWIFTLET_TOPIC_OF
 }  // namespace topics
+
+// The topic of a message, if its type has several the one that is named like it.
+#define SWIFTLET_TOPIC(Type, ...) \
+  constexpr const Topic<msg::Type>& topic_of(const msg::Type&) { return topics::k##Type; }
+#define SWIFTLET_TOPIC_OF(...)
+SWIFTLET_TOPICS(SWIFTLET_TOPIC, SWIFTLET_TOPIC_OF)
+#undef SWIFTLET_TOPIC
+#undef SWIFTLET_TOPIC_OF
+
+// Calls use(topic) with each Topic<T>.
+template <class Use>
+void for_each_topic(const Use& use) {
+#define SWIFTLET_USE_TOPIC(Type, ...) use(topics::k##Type);
+#define SWIFTLET_USE_TOPIC_OF(Type, Constant, ...) use(topics::k##Constant);
+  SWIFTLET_TOPICS(SWIFTLET_USE_TOPIC, SWIFTLET_USE_TOPIC_OF)
+#undef SWIFTLET_USE_TOPIC
+#undef SWIFTLET_USE_TOPIC_OF
+}
 
 }  // namespace swiftlet::messages

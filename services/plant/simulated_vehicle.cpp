@@ -10,10 +10,8 @@
 namespace swiftlet::services {
 namespace {
 
-using messages::topics::kBattery;
 using messages::topics::kGroundTruth;
 using messages::topics::kImu;
-using messages::topics::kRotorSpeeds;
 using messages::topics::kVehicleOdometry;
 
 constexpr std::int64_t kReportPeriodNs = 50'000'000;
@@ -62,8 +60,7 @@ SimulatedVehicle::SimulatedVehicle(const plant::Vehicle& vehicle, const plant::S
   } else {
     imu_ = node.publish(kImu);
   }
-  rotor_speeds_ = node.publish(kRotorSpeeds);
-  battery_ = node.publish(kBattery);
+  plant::for_each_sensor([&](auto& sensor) { sensor.publisher = node.publish(sensor.topic); }, sensors_);
 }
 
 bool SimulatedVehicle::obey(const ReceivedCommand& received) {
@@ -131,7 +128,7 @@ void SimulatedVehicle::inform_firmware() {
 
 // Without a radio, the samples of this stamp are those that arrive.
 plant::TelemetryPacket SimulatedVehicle::present_samples() const {
-  return {*simulation_.imu(), odometry_sample_, firmware_.obeyed(), {}, {}};
+  return {{}, *simulation_.imu(), odometry_sample_, firmware_.obeyed()};
 }
 
 void SimulatedVehicle::prepare_imu(const plant::TelemetryPacket& packet) {
@@ -150,7 +147,7 @@ void SimulatedVehicle::publish_samples(bool truth_needed) {
     while (const auto* packet = telemetry_path_.take(simulation_.stamp_ns())) {
       prepare_imu(*packet);
       publish_imu_again();
-      publish_slow_samples(packet->battery, packet->rotor_speeds);
+      publish_slow_samples(*packet);
     }
     if (truth_needed) publish_truth();
     return;
@@ -160,7 +157,7 @@ void SimulatedVehicle::publish_samples(bool truth_needed) {
     publish_imu_again();
   }
   if (truth_needed) publish_truth();
-  publish_slow_samples(simulation_.battery(), simulation_.rotor_speeds());
+  publish_slow_samples(simulation_.samples());
 }
 
 // Publishes the longest path first: the controller waits for the frame that motion capture makes of the truth.
@@ -172,7 +169,7 @@ void SimulatedVehicle::publish_samples_in_order(std::uint64_t mocap_sequence, bo
   if (telemetry_path_.has_radio()) {
     if (simulation_.imu_due()) go_on_in_order();  // time waits for answers at these stamps only
   } else {
-    publish_slow_samples(simulation_.battery(), simulation_.rotor_speeds());
+    publish_slow_samples(simulation_.samples());
     if (simulation_.imu()) publish_imu_in_order(present_samples());
   }
   if (truth_needed && !frame_due) publish_truth();
@@ -183,19 +180,18 @@ void SimulatedVehicle::go_on_in_order() {
   if (!telemetry_path_.has_radio()) return;
   const auto* packet = telemetry_path_.take(simulation_.stamp_ns());
   if (packet == nullptr) return;
-  publish_slow_samples(packet->battery, packet->rotor_speeds);
+  publish_slow_samples(*packet);
   publish_imu_in_order(*packet);
 }
 
 void SimulatedVehicle::publish_imu_in_order(const plant::TelemetryPacket& packet) {
   prepare_imu(packet);
-  const auto name_others = [this](auto& message) {
-    message.lockstep().mocap_pose(mocap_sequence_);
-    message.lockstep().battery(battery_message_.sequence_number());
-    message.lockstep().rotor_speeds(rotor_speeds_message_.sequence_number());
-  };
-  name_others(imu_message_);
-  name_others(odometry_message_);
+  plant::LockstepInputs others;
+  others.mocap_pose = mocap_sequence_;
+  plant::for_each_sensor([](auto& number, const auto& sensor) { number = sensor.message.sequence_number(); },
+                         others, sensors_);
+  imu_message_.lockstep(messages::to_message(others));
+  odometry_message_.lockstep(messages::to_message(others));
   awaited_ = packet.imu.sequence;
   publish_imu_again();
 }
@@ -209,8 +205,11 @@ void SimulatedVehicle::publish_imu_again() {
 }
 
 void SimulatedVehicle::publish_again() {
-  if (rotor_speeds_message_.sequence_number() > 0) rotor_speeds_.publish(rotor_speeds_message_);
-  if (battery_message_.sequence_number() > 0) battery_.publish(battery_message_);
+  plant::for_each_sensor(
+      [](auto& sensor) {
+        if (sensor.message.sequence_number() > 0) sensor.publisher.publish(sensor.message);
+      },
+      sensors_);
   ground_truth_.publish(truth_message_);
   publish_imu_again();
 }
@@ -225,16 +224,14 @@ void SimulatedVehicle::publish_truth(std::int64_t stamp_ns) {
   ground_truth_.publish(truth_message_);
 }
 
-void SimulatedVehicle::publish_slow_samples(const std::optional<plant::BatterySample>& battery,
-                                            const std::optional<plant::RotorSpeedSample>& rotor_speeds) {
-  if (rotor_speeds) {
-    rotor_speeds_message_ = messages::to_message(*rotor_speeds);
-    rotor_speeds_.publish(rotor_speeds_message_);
-  }
-  if (battery) {
-    battery_message_ = messages::to_message(*battery);
-    battery_.publish(battery_message_);
-  }
+void SimulatedVehicle::publish_slow_samples(const plant::SensorSamples& samples) {
+  plant::for_each_sensor(
+      [](auto& sensor, const auto& sample) {
+        if (!sample) return;
+        sensor.message = messages::to_message(*sample);
+        sensor.publisher.publish(sensor.message);
+      },
+      sensors_, samples);
 }
 
 void SimulatedVehicle::note_slip(std::int64_t slipped_ns) {

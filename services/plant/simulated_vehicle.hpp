@@ -106,8 +106,7 @@ class SimulatedVehicle {
   void inform_firmware();
   void refuse(const messages::Fault& fault);
   void publish_truth();
-  void publish_slow_samples(const std::optional<plant::BatterySample>& battery,
-                            const std::optional<plant::RotorSpeedSample>& rotor_speeds);
+  void publish_slow_samples(const plant::SensorSamples& samples);
 
   plant::PlantSimulation simulation_;
   plant::TelemetryPath telemetry_path_;
@@ -119,8 +118,6 @@ class SimulatedVehicle {
   // The newest samples; sequence number 0 before the first.
   messages::msg::Imu imu_message_;
   messages::msg::VehicleOdometry odometry_message_;
-  messages::msg::Battery battery_message_;
-  messages::msg::RotorSpeeds rotor_speeds_message_;
   messages::msg::GroundTruth truth_message_;
   std::uint64_t mocap_sequence_ = 0;  // lockstep: newest frame that control must have
   std::optional<std::uint64_t> awaited_;
@@ -134,8 +131,18 @@ class SimulatedVehicle {
   dds::Publisher<messages::msg::Imu> imu_;  // or, in its place:
   dds::Publisher<messages::msg::VehicleOdometry> vehicle_odometry_;
   dds::Publisher<messages::msg::GroundTruth> ground_truth_;
-  dds::Publisher<messages::msg::RotorSpeeds> rotor_speeds_;
-  dds::Publisher<messages::msg::Battery> battery_;
+
+  template <class Message>
+  struct Sensor {
+    messages::Topic<Message> topic;
+    dds::Publisher<Message> publisher = {};
+    Message message = {};  // the newest
+  };
+  struct Sensors {
+    Sensor<messages::msg::Battery> battery{messages::topics::kBattery};
+    Sensor<messages::msg::RotorSpeeds> rotor_speeds{messages::topics::kRotorSpeeds};
+  };
+  Sensors sensors_;
 };
 
 }  // namespace swiftlet::services

@@ -5,8 +5,10 @@
 
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/services/dds/checked_type_support.hpp"
+#include "swiftlet/services/dds/message_types.hpp"
 #include "tests/fuzz/message_types.hpp"
 #include "tests/fuzz/refusal.hpp"
+#include "tests/support/serialization.hpp"
 
 using namespace swiftlet;
 
@@ -15,8 +17,9 @@ namespace {
 // Converts the bytes to the plain struct of a message; false if they are not a valid message.
 template <class Type>
 bool is_accepted(const std::uint8_t* data, std::size_t size, typename Type::Plain& out) {
-  static swiftlet::dds::CheckedTypeSupport<typename Type::PubSub> type;
-  swiftlet::dds::ReceivedSample<typename Type::PubSub::type> sample;
+  static swiftlet::dds::CheckedTypeSupport<typename swiftlet::dds::PubSubTypeOf<typename Type::Message>::type>
+      type;
+  swiftlet::dds::ReceivedSample<typename Type::Message> sample;
   if (!tests::deserialize(type, data, size, &sample)) return false;
   const messages::Fault fault = messages::from_message(sample.message, out);
   if (fault) tests::demand(std::strlen(fault.text) > 8, "a refusal says what is wrong");
@@ -25,12 +28,14 @@ bool is_accepted(const std::uint8_t* data, std::size_t size, typename Type::Plai
 
 template <class Type>
 void check_message(const std::uint8_t* data, std::size_t size) {
+  using Message = typename Type::Message;
   typename Type::Plain accepted;
   if (!is_accepted<Type>(data, size, accepted)) return;
-  if constexpr (std::is_same_v<Type, tests::Mission> || std::is_same_v<Type, tests::Trajectory>) {
+  if constexpr (std::is_same_v<Message, messages::msg::Mission> ||
+                std::is_same_v<Message, messages::msg::Trajectory>) {
     const control::Outcome outcome = control::check(accepted, control::Limits());
     tests::demand(outcome.accepted || std::strlen(outcome.reason) > 8, "a refusal says what is wrong");
-  } else if constexpr (!std::is_same_v<Type, tests::GroundLink>) {
+  } else if constexpr (!std::is_same_v<Message, messages::msg::GroundLink>) {
     typename Type::Plain again;
     tests::demand(!messages::from_message(messages::to_message(accepted), again),
                   "an accepted message can be sent");
@@ -38,7 +43,7 @@ void check_message(const std::uint8_t* data, std::size_t size) {
 }
 
 template <class... Types>
-void check_selected(char tag, const std::uint8_t* data, std::size_t size) {
+void check_selected(std::tuple<Types...>, char tag, const std::uint8_t* data, std::size_t size) {
   (void)((tag == Types::kTag && (check_message<Types>(data, size), true)) || ...);
 }
 
@@ -51,9 +56,6 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  using namespace swiftlet::tests;
-  check_selected<Imu, VehicleOdometry, MocapPose, Battery, RotorSpeeds, ActuatorCommand, RatesSetpoint,
-                 AttitudeSetpoint, TrajectorySetpoint, GroundTruth, Setpoint, ControllerState, GroundLink,
-                 Command, ControlSettings, Mission, Trajectory>(static_cast<char>(*data), data + 1, size - 1);
+  check_selected(tests::MessageTypes(), static_cast<char>(*data), data + 1, size - 1);
   return 0;
 }

@@ -65,7 +65,7 @@ static void join_ros(peer_t* peer, int domain, const char* vehicle, int seconds)
   peer->waitset = dds_create_waitset(peer->participant);
   dds_qos_t* qos = ros_qos(false);
   for (int i = 0; i < INPUTS; ++i) {
-    peer->topics[i] = (topic_t){inputs[i].name, inputs[i].type, STREAM};
+    peer->topics[i] = (topic_t){inputs[i].name, inputs[i].type, Stream};
     peer->readers[i] = dds_create_reader(peer->participant, topic_in(peer->participant, inputs[i].name, vehicle, inputs[i].type), qos, NULL);
     dds_set_status_mask(peer->readers[i], DDS_DATA_AVAILABLE_STATUS);
     dds_waitset_attach(peer->waitset, peer->readers[i], i);
@@ -76,7 +76,7 @@ static void join_ros(peer_t* peer, int domain, const char* vehicle, int seconds)
       peer->participant, topic_in(peer->participant, "rt/%s/cmd_vel", vehicle, TYPE(geometry_msgs, Twist)), qos, NULL);
   dds_delete_qos(qos);
   qos = ros_qos(true);
-  peer->graph_topic = (topic_t){"ros_discovery_info", TYPE(rmw_dds_common, ParticipantEntitiesInfo), LATCHED};
+  peer->graph_topic = (topic_t){"ros_discovery_info", TYPE(rmw_dds_common, ParticipantEntitiesInfo), Latched};
   peer->graph = dds_create_reader(
       peer->participant, topic_in(peer->participant, "%s", "ros_discovery_info", peer->graph_topic.type), qos, NULL);
   dds_delete_qos(qos);

@@ -6,41 +6,12 @@
 #include <string.h>
 
 #include "dds/ddsi/ddsi_serdata.h"
+#include "services/messages/topic_table.hpp"
 
-#define TOPIC(name, type, profile) \
-  { name, &swiftlet_msgs_msg_dds__##type##__desc, profile }
+#define TOPIC(type, name, profile, ...) {name, &swiftlet_msgs_msg_dds__##type##__desc, profile},
+#define TOPIC_OF(type, constant, ...) TOPIC(type, __VA_ARGS__)
 
-const topic_t topics[] = {
-    TOPIC("imu", Imu, STREAM),
-    TOPIC("vehicle_odometry", VehicleOdometry, STREAM),
-    TOPIC("actuator_command", ActuatorCommand, STREAM),
-    TOPIC("rates_setpoint", RatesSetpoint, STREAM),
-    TOPIC("attitude_setpoint", AttitudeSetpoint, STREAM),
-    TOPIC("trajectory_setpoint", TrajectorySetpoint, STREAM),
-    TOPIC("controller_state", ControllerState, STREAM),
-    TOPIC("mocap_pose", MocapPose, STREAM),
-    TOPIC("rotor_speeds", RotorSpeeds, STREAM),
-    TOPIC("clock_request", ClockRequest, STREAM),
-    TOPIC("clock_reply", ClockReply, STREAM),
-    TOPIC("simulation_clock", SimulationClock, LATCHED),
-    TOPIC("setpoint", Setpoint, STREAM),
-    TOPIC("battery", Battery, STREAM),
-    TOPIC("estimate", Estimate, STREAM),
-    TOPIC("reference", Reference, STREAM),
-    TOPIC("ground_truth", GroundTruth, STREAM),
-    TOPIC("clock_status", ClockStatus, STREAM),
-    TOPIC("control_status", ControlStatus, LATCHED),
-    TOPIC("mission_status", MissionStatus, LATCHED),
-    TOPIC("vehicle_info", VehicleInfo, LATCHED),
-    TOPIC("ground_link", GroundLink, STREAM),
-    TOPIC("command", Command, REQUEST),
-    TOPIC("mission", Mission, REQUEST),
-    TOPIC("trajectory", Trajectory, REQUEST),
-    TOPIC("control_settings", ControlSettings, REQUEST),
-    TOPIC("flown_mission", Mission, LATCHED),
-    TOPIC("flown_trajectory", Trajectory, LATCHED),
-    TOPIC("command_ack", CommandAck, REPLY),
-};
+const topic_t topics[] = {SWIFTLET_TOPICS(TOPIC, TOPIC_OF)};
 const size_t topic_count = sizeof topics / sizeof topics[0];
 
 void fail(const char* format, ...) {
@@ -61,10 +32,10 @@ const topic_t* find_topic(const char* name) {
 
 static dds_qos_t* qos_of(profile_t profile) {
   dds_qos_t* qos = dds_create_qos();
-  const bool reliable = profile == LATCHED || profile == REQUEST || profile == REPLY;
+  const bool reliable = profile != Stream && profile != Telemetry;
   dds_qset_reliability(qos, reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, DDS_SECS(1));
-  if (profile == LATCHED || profile == REPLY) dds_qset_durability(qos, DDS_DURABILITY_TRANSIENT_LOCAL);
-  if (profile == REQUEST || profile == REPLY)
+  if (profile == Latched || profile == LatchedLarge || profile == Reply) dds_qset_durability(qos, DDS_DURABILITY_TRANSIENT_LOCAL);
+  if (profile == Request || profile == Reply)
     dds_qset_history(qos, DDS_HISTORY_KEEP_ALL, 0);
   else
     dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 1);

@@ -7,7 +7,7 @@
 #include "dds/dds.h"
 #include "swiftlet_msgs.h"
 
-typedef enum { STREAM, LATCHED, REQUEST, REPLY } profile_t;  // as in idl/README.md; telemetry is as a stream
+typedef enum { Stream, Telemetry, Latched, LatchedLarge, Request, Reply } profile_t;  // as in idl/README.md
 
 typedef struct {
   const char* name;

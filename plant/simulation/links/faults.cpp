@@ -64,15 +64,7 @@ void check_parameters(const Fault& fault, ParameterChecker check) {
     case FaultKind::kWind:
       check.vector("wind_ned_m_s", fault.wind_ned, 30.0);
       return;
-    case FaultKind::kMocapStop:
-    case FaultKind::kMocapFreeze:
-    case FaultKind::kMocapUntracked:
-    case FaultKind::kImuStop:
-    case FaultKind::kImuNan:
-    case FaultKind::kImuStuck:
-    case FaultKind::kBatteryStop:
-    case FaultKind::kRotorSpeedsStop:
-    case FaultKind::kCommandsStop:
+    default:
       return;
   }
 }
@@ -82,50 +74,6 @@ bool overlap(const Fault& a, const Fault& b) {
 }
 
 }  // namespace
-
-const char* to_string(FaultKind kind) {
-  switch (kind) {
-    case FaultKind::kMocapStop:
-      return "mocap_stop";
-    case FaultKind::kMocapFreeze:
-      return "mocap_freeze";
-    case FaultKind::kMocapUntracked:
-      return "mocap_untracked";
-    case FaultKind::kMocapJump:
-      return "mocap_jump";
-    case FaultKind::kMocapSwap:
-      return "mocap_swap";
-    case FaultKind::kMocapLatency:
-      return "mocap_latency";
-    case FaultKind::kImuStop:
-      return "imu_stop";
-    case FaultKind::kImuNan:
-      return "imu_nan";
-    case FaultKind::kImuStuck:
-      return "imu_stuck";
-    case FaultKind::kImuBias:
-      return "imu_bias";
-    case FaultKind::kBatteryStop:
-      return "battery_stop";
-    case FaultKind::kRotorSpeedsStop:
-      return "rotor_speeds_stop";
-    case FaultKind::kBatteryDrop:
-      return "battery_drop";
-    case FaultKind::kRotorThrust:
-      return "rotor_thrust";
-    case FaultKind::kPush:
-      return "push";
-    case FaultKind::kWind:
-      return "wind";
-    case FaultKind::kCommandsStop:
-      return "commands_stop";
-    case FaultKind::kCommandsDelay:
-      return "commands_delay";
-    case FaultKind::kOdometryJump:
-      return "odometry_jump";
-  }
-  return "";
-}
 
 void check_faults(const std::vector<Fault>& faults, double step_s, RuleChecker& check) {
   for (std::size_t i = 0; i < faults.size(); ++i) {

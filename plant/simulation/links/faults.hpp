@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <vector>
@@ -43,8 +44,14 @@ enum class FaultKind : std::uint8_t {
   // The vehicle's own estimate, of a vehicle that brings it.
   kOdometryJump,  // turned about the origin and moved, with a reset at the start and at the end
 };
-constexpr std::size_t kFaultKinds = static_cast<std::size_t>(FaultKind::kOdometryJump) + 1;
-const char* to_string(FaultKind kind);  // as in the simulation file: "mocap_stop"
+// As in the simulation file, by kind.
+constexpr const char* kFaultKindNames[] = {
+    "mocap_stop",    "mocap_freeze",      "mocap_untracked", "mocap_jump",   "mocap_swap",
+    "mocap_latency", "imu_stop",          "imu_nan",         "imu_stuck",    "imu_bias",
+    "battery_stop",  "rotor_speeds_stop", "battery_drop",    "rotor_thrust", "push",
+    "wind",          "commands_stop",     "commands_delay",  "odometry_jump"};
+constexpr std::size_t kFaultKinds = std::size(kFaultKindNames);
+inline const char* to_string(FaultKind kind) { return kFaultKindNames[static_cast<std::size_t>(kind)]; }
 
 // A fault is active in the half-open interval [at_s, at_s + for_s). Only the parameters of its kind are used.
 struct Fault {

@@ -14,12 +14,10 @@
 
 namespace swiftlet::plant {
 
-struct TelemetryPacket {
+struct TelemetryPacket : SensorSamples {
   ImuSample imu;
   std::optional<OdometrySample> odometry;  // in its place
   ObeyedCommand obeyed;                    // when the sample was taken
-  std::optional<BatterySample> battery;
-  std::optional<RotorSpeedSample> rotor_speeds;
 };
 
 class TelemetryPath {
@@ -33,12 +31,11 @@ class TelemetryPath {
   // IMU. obeyed: by the vehicle so far. odometry: that of this IMU sample, if the vehicle brings it in its place.
   void collect(const PlantSimulation& plant, const ObeyedCommand& obeyed,
                const std::optional<OdometrySample>& odometry) {
-    if (sent_) {
-      next_.battery.reset();
-      next_.rotor_speeds.reset();
-    }
-    if (plant.battery()) next_.battery = plant.battery();
-    if (plant.rotor_speeds()) next_.rotor_speeds = plant.rotor_speeds();
+    for_each_sensor(
+        [this](auto& next, const auto& now) {
+          if (sent_ || now) next = now;
+        },
+        next_, plant.samples());
     sent_ = plant.imu().has_value();
     arrived_ = sent_ && !has_radio();
     if (!sent_) return;

@@ -4,7 +4,7 @@
 
 namespace swiftlet::services::lockstep_gate_test {
 
-using Stream = LockstepGate::Stream;
+using Inputs = plant::LockstepInputs;
 
 VehicleSample imu(std::uint64_t number, std::uint64_t pose, std::uint64_t battery,
                   std::uint64_t rotor_speeds) {
@@ -31,23 +31,23 @@ TEST(LockstepGate, PassesASampleWithoutDependenciesOnce) {
 TEST(LockstepGate, HoldsASampleUntilItsDependenciesArrive) {
   LockstepGate gate;
   gate.offer(imu(7, 2, 3, 4));
-  EXPECT_TRUE(gate.is_new(Stream::kRotorSpeeds, 4));
+  EXPECT_TRUE(gate.is_new(&Inputs::rotor_speeds, 4));
   EXPECT_FALSE(gate.take().has_value());
-  EXPECT_TRUE(gate.is_new(Stream::kPose, 2));
+  EXPECT_TRUE(gate.is_new(&Inputs::mocap_pose, 2));
   EXPECT_FALSE(gate.take().has_value());
-  EXPECT_TRUE(gate.is_new(Stream::kBattery, 2));
+  EXPECT_TRUE(gate.is_new(&Inputs::battery, 2));
   EXPECT_FALSE(gate.take().has_value()) << "older than the one required";
-  EXPECT_TRUE(gate.is_new(Stream::kBattery, 3));
+  EXPECT_TRUE(gate.is_new(&Inputs::battery, 3));
   EXPECT_TRUE(gate.take().has_value());
 }
 
 TEST(LockstepGate, RecognisesOldSamplesPerStream) {
   LockstepGate gate;
-  EXPECT_FALSE(gate.is_new(Stream::kPose, 0)) << "0 is no sample";
-  EXPECT_TRUE(gate.is_new(Stream::kPose, 5));
-  EXPECT_FALSE(gate.is_new(Stream::kPose, 5));
-  EXPECT_FALSE(gate.is_new(Stream::kPose, 4));
-  EXPECT_TRUE(gate.is_new(Stream::kBattery, 4)) << "each stream has its own counter";
+  EXPECT_FALSE(gate.is_new(&Inputs::mocap_pose, 0)) << "0 is no sample";
+  EXPECT_TRUE(gate.is_new(&Inputs::mocap_pose, 5));
+  EXPECT_FALSE(gate.is_new(&Inputs::mocap_pose, 5));
+  EXPECT_FALSE(gate.is_new(&Inputs::mocap_pose, 4));
+  EXPECT_TRUE(gate.is_new(&Inputs::battery, 4)) << "each stream has its own counter";
 }
 
 }  // namespace swiftlet::services::lockstep_gate_test

@@ -18,7 +18,7 @@ TEST(VehicleSample, HasWhatTheMessagesShare) {
   const VehicleSample sample = vehicle_sample(message);
   EXPECT_EQ(sample.stamp_ns(), message.stamp_ns());
   EXPECT_EQ(sample.sequence(), message.sequence_number());
-  EXPECT_EQ(sample.battery_sequence, 4U);
+  EXPECT_EQ(sample.lockstep.battery, 4U);
   EXPECT_EQ(sample.obeyed.term, 7U);
   EXPECT_TRUE(std::get<plant::OdometrySample>(sample.motion).position_valid);
 }

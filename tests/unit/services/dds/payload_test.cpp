@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/services/messages/all_topics.hpp"
+#include "swiftlet/services/messages/topics.hpp"
 
 namespace swiftlet::dds::payload_test {
 

@@ -297,6 +297,20 @@ inline msg::Trajectory example() {
   return message;
 }
 template <>
+inline msg::ControlSettings example() {
+  msg::ControlSettings message = to_message(settings_request());
+  message.client(3);
+  message.id(4);
+  return message;
+}
+template <>
+inline msg::SimulationClock example() {
+  msg::SimulationClock message;
+  message.sequence_number(6);
+  message.advance_to_ns(100'000'000);
+  return message;
+}
+template <>
 inline msg::Estimate example() {
   control::Estimate estimate;
   estimate.stamp_ns = 1008;
