@@ -25,24 +25,16 @@ struct Duration {
   double max_s;
 };
 constexpr std::array<Duration, plant::kFaultKinds> kDurations = {{
-    {FaultKind::kMocapStop, 0.02, 5.0},
-    {FaultKind::kMocapFreeze, 0.02, 5.0},
-    {FaultKind::kMocapUntracked, 0.02, 5.0},
-    {FaultKind::kMocapJump, 0.01, 3.0},
-    {FaultKind::kMocapSwap, 0.01, 3.0},
-    {FaultKind::kMocapLatency, 0.1, 5.0},
-    {FaultKind::kImuStop, 0.002, 1.0},
-    {FaultKind::kImuNan, 0.002, 1.0},
-    {FaultKind::kImuStuck, 0.002, 0.3},
-    {FaultKind::kImuBias, 0.05, 3.0},
-    {FaultKind::kBatteryStop, 0.1, 20.0},
-    {FaultKind::kRotorSpeedsStop, 0.1, 20.0},
-    {FaultKind::kBatteryDrop, 0.1, 5.0},
-    {FaultKind::kRotorThrust, 0.05, 3.0},
-    {FaultKind::kPush, 0.02, 0.2},
-    {FaultKind::kWind, 0.5, 10.0},
-    {FaultKind::kCommandsStop, 0.002, 1.0},
-    {FaultKind::kCommandsDelay, 0.02, 2.0},
+    {FaultKind::kMocapStop, 0.02, 5.0},      {FaultKind::kMocapFreeze, 0.02, 5.0},
+    {FaultKind::kMocapUntracked, 0.02, 5.0}, {FaultKind::kMocapJump, 0.01, 3.0},
+    {FaultKind::kMocapSwap, 0.01, 3.0},      {FaultKind::kMocapLatency, 0.1, 5.0},
+    {FaultKind::kImuStop, 0.002, 1.0},       {FaultKind::kImuNan, 0.002, 1.0},
+    {FaultKind::kImuStuck, 0.002, 0.3},      {FaultKind::kImuBias, 0.05, 3.0},
+    {FaultKind::kBatteryStop, 0.1, 20.0},    {FaultKind::kRotorSpeedsStop, 0.1, 20.0},
+    {FaultKind::kBatteryDrop, 0.1, 5.0},     {FaultKind::kRotorThrust, 0.05, 3.0},
+    {FaultKind::kPush, 0.02, 0.2},           {FaultKind::kWind, 0.5, 10.0},
+    {FaultKind::kCommandsStop, 0.002, 1.0},  {FaultKind::kCommandsDelay, 0.02, 2.0},
+    {FaultKind::kOdometryJump, 0.01, 3.0},  // without effect on a vehicle that motion capture follows
 }};
 
 Vector3d inside(const control::Limits& limits, RandomStream& random) {

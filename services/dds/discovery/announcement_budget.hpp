@@ -14,8 +14,8 @@ namespace swiftlet::dds {
 // announcements in a row are lost once in hours.
 constexpr int kEndpointCopies = 6;
 constexpr int kAnnouncementCopies = 4;
-// Of a message of the handshake of DDS Security. Fast DDS drops the answer that arrives while it still sends the copies, and repeats
-// the message after 1 s.
+// A message of the handshake of DDS Security is sent so often. Fast DDS drops the answer that arrives while it still sends the copies, and
+// repeats the message after 1 s.
 constexpr int kHandshakeCopies = 2;
 
 // Announcements that a process takes in from all others together, per second: these processes share the rate.
