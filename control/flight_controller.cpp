@@ -1,21 +1,13 @@
 #include "swiftlet/control/flight_controller.hpp"
 
-#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "swiftlet/control/design/control_design.hpp"
-#include "swiftlet/control/flight_controller_impl.hpp"
+#include "swiftlet/math/time.hpp"
 
 namespace swiftlet::control {
 namespace {
-
-using Eigen::Vector3d;
-
-// Fraction of the weight: above this specific force that the rotors do not explain, something else carries
-// the vehicle, on its legs or on its side.
-constexpr double kStandingLift = 0.5;
 
 ControlDesign flyable_design(const plant::Vehicle& vehicle, const ControlSettings& settings) {
   ControlDesign gains = design(vehicle, settings);
@@ -27,140 +19,177 @@ ControlDesign flyable_design(const plant::Vehicle& vehicle, const ControlSetting
 }  // namespace
 
 FlightController::FlightController(const plant::Vehicle& vehicle, const ControlSettings& settings)
-    : impl_(std::make_unique<Impl>(vehicle, settings, flyable_design(vehicle, settings))) {}
+    : FlightController(vehicle, settings, flyable_design(vehicle, settings)) {}
 
-FlightController::~FlightController() = default;
-FlightController::FlightController(FlightController&&) noexcept = default;
-FlightController& FlightController::operator=(FlightController&&) noexcept = default;
+FlightController::FlightController(const plant::Vehicle& vehicle, const ControlSettings& settings,
+                                   const ControlDesign& design)
+    : failsafe_(settings.failsafe),
+      observers_(vehicle, settings),
+      supervisor_({settings.limits, settings.arming, settings.failsafe}),
+      laws_(vehicle, settings, design) {}
 
 const plant::VehicleCommand& FlightController::on_imu(const plant::ImuSample& sample) {
-  return on_imu(sample, impl_->no_clients);
+  return on_imu(sample, no_clients_);
 }
 
 const plant::VehicleCommand& FlightController::on_imu(const plant::ImuSample& sample, ClientInputs& clients) {
-  Impl& c = *impl_;
-  c.restart_if_clock_went_back(sample.stamp_ns);
-  c.brings_odometry = false;
-  return c.step(sample, c.predict(sample), clients);
+  restart_if_clock_went_back(sample.stamp_ns);
+  return step(sample, observers_.predict(sample, laws_.rotor_state()), clients);
 }
 
 const plant::VehicleCommand& FlightController::on_odometry(const plant::OdometrySample& sample) {
-  return on_odometry(sample, impl_->no_clients);
+  return on_odometry(sample, no_clients_);
 }
 
 const plant::VehicleCommand& FlightController::on_odometry(const plant::OdometrySample& sample,
                                                            ClientInputs& clients) {
-  Impl& c = *impl_;
-  c.restart_if_clock_went_back(sample.stamp_ns);
-  c.brings_odometry = true;
-  const std::optional<plant::ImuSample> motion = c.predict(sample);
-  if (motion) return c.step(*motion, true, clients);
+  restart_if_clock_went_back(sample.stamp_ns);
+  const std::optional<plant::ImuSample> motion = observers_.predict(sample, laws_.rotor_state(), situation());
+  if (motion) return step(*motion, true, clients);
   plant::ImuSample unusable;
   unusable.stamp_ns = sample.stamp_ns;
   unusable.sequence = sample.sequence;
-  return c.step(unusable, false, clients);
+  return step(unusable, false, clients);
+}
+
+// A restarted vehicle counts its time from 0 again. This is accepted while the rotors are off.
+void FlightController::restart_if_clock_went_back(std::int64_t stamp_ns) {
+  if (stamp_ns >= observers_.stamp_ns() || laws_.rotor_state() != plant::RotorState::kOff) return;
+  observers_.restart();
+  resets_seen_ = 0;
+  vehicle_fault_since_ns_ = 0;
+  saturated_ns_ = -1;
+}
+
+// The estimate has been propagated to the sample, unless it is not usable.
+const plant::VehicleCommand& FlightController::step(const plant::ImuSample& sample, bool usable,
+                                                    ClientInputs& clients) {
+  const double unusable_s = observers_.count_unusable(usable, sample.stamp_ns);
+  if (!usable && unusable_s < failsafe_.imu_timeout_s) {
+    answer(clients);
+    return answer_sample(sample);
+  }
+  const double dt_s = usable ? observers_.store_sample(sample, laws_.command(), level_) : 0.0;
+
+  // Supervision decides the mode, guidance generates the reference.
+  const SupervisorInputs now = inputs();
+  const ControlSetpoint setpoint = supervisor_.step(now, clients);
+  resets_seen_ = now.estimate->resets;
+  reference_ = setpoint.reference;
+  begin_gain_changes(clients);
+  if (laws_.update_gains(observers_.stamp_ns(), rotors_off(supervisor_.mode())))
+    observers_.set_gains(laws_.gains());
+
+  // The control laws and the command.
+  const Situation situation = this->situation();
+  observers_.observe(setpoint, dt_s, situation);
+  laws_.step(setpoint, observers_, situation, dt_s);
+  if (laws_.saturated()) saturated_ns_ = sample.stamp_ns;
+  report(now);
+  return answer_sample(sample);
+}
+
+const plant::VehicleCommand& FlightController::answer_sample(const plant::ImuSample& sample) {
+  observers_.sent(sample.stamp_ns, laws_.thrust_n());
+  return laws_.answer(sample, observers_.pose_sequence(), level_);
+}
+
+Situation FlightController::situation() const {
+  const SupervisorState& state = supervisor_.state();
+  return {level_, state.guidance.ground_z_ned, state.contact_since_ns != 0};
+}
+
+SupervisorInputs FlightController::inputs() const {
+  SupervisorInputs inputs = observers_.supervisor_inputs(situation());
+  const std::int64_t now_ns = observers_.stamp_ns();
+  inputs.pose_jumped = inputs.estimate->resets != resets_seen_;
+  inputs.level = level_;
+  inputs.accepted_levels = accepted_levels_;
+  inputs.rotors_running = rotors_running_ || level_ == plant::ControlLevel::kActuators;
+  if (vehicle_refusal_[0] != '\0') inputs.vehicle_refusal = vehicle_refusal_.data();
+  if (level_ != plant::ControlLevel::kActuators && vehicle_fault_[0] != '\0') {
+    inputs.vehicle_fault = vehicle_fault_.data();
+    inputs.vehicle_fault_s = math::seconds(now_ns - vehicle_fault_since_ns_);
+  }
+  const GainChange& change = laws_.gain_change();
+  inputs.gains = &change.to;
+  inputs.gains_progress = change.progress(now_ns);
+  inputs.gains_changing_s = change.remaining_s(now_ns);
+  if (saturated_ns_ >= 0) inputs.unsaturated_s = math::seconds(now_ns - saturated_ns_);
+  return inputs;
+}
+
+// The supervisor has accepted the request: the gains change from those of this step on.
+void FlightController::begin_gain_change(const Request& request, const Outcome& outcome) {
+  if (request.kind != RequestKind::kSettings || !outcome.accepted) return;
+  laws_.begin_gain_change(*request.gains, observers_.stamp_ns());
+}
+
+void FlightController::begin_gain_changes(const ClientInputs& clients) {
+  for (std::size_t i = 0; i < clients.request_count; ++i)
+    begin_gain_change(*clients.requests[i].request, *clients.requests[i].outcome);
+}
+
+void FlightController::report(const SupervisorInputs& inputs) {
+  status_.mode = supervisor_.mode();
+  status_.reason = supervisor_.reason();
+  status_.saturated = laws_.saturated();
+  status_.has_pose = inputs.has_estimate && inputs.pose_age_s <= failsafe_.mocap_timeout_s;
+  status_.pose_age_s = inputs.pose_age_s;
+  status_.airborne = supervisor_.airborne();
+  status_.level = level_;
+  status_.ground_links = supervisor_.ground_links();
+  status_.supply_voltage_v = inputs.supply_voltage_v;
+  status_.odometry = {};
+  if (const EstimateSource* const odometry = observers_.odometry()) {
+    status_.odometry = {odometry->is_vehicles(), odometry->distance_m(), odometry->angle_rad(),
+                        odometry->resets_followed()};
+  }
+  status_.mission = supervisor_.mission();
+  status_.settings = laws_.gain_change().name;
+  status_.gains_progress = laws_.gain_change().progress(observers_.stamp_ns());
 }
 
 void FlightController::set_vehicle_fault(const VehicleFault& fault) {
-  if (impl_->vehicle_fault[0] == '\0') impl_->vehicle_fault_since_ns = impl_->last_stamp_ns;
-  impl_->vehicle_fault = fault;
+  if (vehicle_fault_[0] == '\0') vehicle_fault_since_ns_ = observers_.stamp_ns();
+  vehicle_fault_ = fault;
 }
-
-void FlightController::set_vehicle_refusal(const VehicleFault& refusal) { impl_->vehicle_refusal = refusal; }
-
-void FlightController::set_rotors_running(bool running) { impl_->rotors_running = running; }
-
-void FlightController::set_obeyed(const plant::ObeyedCommand& obeyed) { impl_->obeyed = obeyed; }
 
 void FlightController::set_levels(plant::ControlLevels accepted, std::optional<plant::ControlLevel> wanted) {
-  Impl& c = *impl_;
-  const bool obeyed = c.command.rotor_state == plant::RotorState::kRunning && accepted.has(c.level);
-  c.accepted_levels = accepted;
+  const bool obeyed = laws_.rotor_state() == plant::RotorState::kRunning && accepted.has(level_);
+  accepted_levels_ = accepted;
   const plant::ControlLevel level = wanted.value_or(accepted.lowest());
-  if (obeyed || level == c.level) return;
-  c.level = level;
-  c.command.throttle = plant::PerRotor{};
-  c.send_idle();
-}
-
-void FlightController::on_pose(const plant::PoseSample& sample) {
-  const std::int64_t now_ns = impl_->estimator.estimate().stamp_ns;
-  if (now_ns > 0 && impl_->poses_ahead.keep(sample, now_ns)) return;
-  impl_->estimator.correct(sample, impl_->command.rotor_state);
-}
-
-void FlightController::on_battery(const plant::BatterySample& sample) {
-  if (!impl_->allocator.supply_at(sample.voltage_v).plausible) return;
-  impl_->has_battery = true;
-  impl_->battery_stamp_ns = sample.stamp_ns;
-  impl_->supply_voltage_v = sample.voltage_v;
-  impl_->supply_observer.correct(sample.voltage_v);
-}
-
-void FlightController::on_rotor_speeds(const plant::RotorSpeedSample& sample) {
-  impl_->rotors.correct(sample);
-}
-
-bool FlightController::on_ground_heartbeat(const GroundHeartbeat& heartbeat) {
-  return impl_->supervisor.ground_heartbeat(heartbeat);
+  if (obeyed || level == level_) return;
+  level_ = level;
+  laws_.idle(observers_, level);
 }
 
 void FlightController::answer(ClientInputs& clients) {
-  impl_->supervisor.answer(clients, impl_->inputs());
-  impl_->begin_gain_changes(clients);
+  supervisor_.answer(clients, inputs());
+  begin_gain_changes(clients);
 }
 
 Outcome FlightController::request(const Request& request) {
-  const Outcome outcome = impl_->supervisor.request(request, impl_->inputs());
-  impl_->begin_gain_change(request, outcome);
+  const Outcome outcome = supervisor_.request(request, inputs());
+  begin_gain_change(request, outcome);
   return outcome;
 }
 
 Outcome FlightController::on_setpoint(const Setpoint& setpoint) {
-  return impl_->supervisor.setpoint(setpoint, impl_->inputs());
+  return supervisor_.setpoint(setpoint, inputs());
 }
 
 FlightState FlightController::state() const {
-  const Impl& l = *impl_;
-  return {l.supervisor.state(), l.position.integral(), l.command.rotor_state,
-          l.command.throttle,   l.gain_change,         l.lift.lifted_off() ? l.lift.ratio() : 0.0};
+  return {supervisor_.state(),      laws_.position_integral(), laws_.rotor_state(),
+          laws_.command().throttle, laws_.gain_change(),       observers_.lift_ratio()};
 }
 
 void FlightController::adopt(const FlightState& state, const Mission* mission, const Trajectory* trajectory) {
-  Impl& l = *impl_;
-  l.supervisor.adopt(state.supervisor, mission, trajectory);
-  l.position.adopt(state.position_integral);
-  l.command.rotor_state = state.rotor_state;
-  l.command.throttle = state.throttle;
-  l.gain_change = state.gains;
-  l.gains_are_constant = false;
-  l.lift.reset();
-  if (state.lift_ratio > 0.0) {
-    l.lift.adopt(state.lift_ratio);
-    l.lift_off_ns = state.supervisor.now_ns;
-  }
+  supervisor_.adopt(state.supervisor, mission, trajectory);
+  laws_.adopt(state);
+  observers_.adopt(state.lift_ratio, state.supervisor.now_ns);
 }
 
-bool FlightController::detects_airborne() const {
-  const Impl& l = *impl_;
-  const Vector3d lift_frd(0.0, 0.0, -l.lift_now());
-  const Vector3d unexplained = l.specific_force_frd - l.estimate().accelerometer_bias - lift_frd;
-  return unexplained.norm() < kStandingLift * plant::kGravity;
-}
-
-bool FlightController::engage_in_flight() {
-  return impl_->supervisor.engage_in_flight(impl_->inputs()).accepted;
-}
-
-const Estimate& FlightController::estimate() const { return impl_->estimate(); }
-ErrorState FlightController::estimate_deviation() const {
-  return impl_->brings_odometry ? impl_->estimate_source.standard_deviation(impl_->estimator)
-                                : impl_->estimator.standard_deviation();
-}
-const Reference& FlightController::reference() const { return impl_->reference; }
-const AttitudeSetpoint& FlightController::attitude_setpoint() const { return impl_->attitude_setpoint; }
-const Status& FlightController::status() const { return impl_->status; }
-const ControlGains& FlightController::gains() const { return impl_->gains; }
-const RequestStatuses& FlightController::requests() const { return impl_->supervisor.requests(); }
+bool FlightController::engage_in_flight() { return supervisor_.engage_in_flight(inputs()).accepted; }
 
 }  // namespace swiftlet::control

@@ -1,14 +1,19 @@
 // The whole controller as pure code: samples and requests in, commands of the vehicle out. No clock, no I/O, no
 // threads, no heap allocation after construction. Time is the samples' stamps. One thread calls it.
+//
+// A step: Observers estimate, Supervisor decides the mode and the setpoint, ControlLaws form the command.
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 
+#include "swiftlet/control/control_laws.hpp"
+#include "swiftlet/control/design/control_design.hpp"
 #include "swiftlet/control/estimation/estimator.hpp"
 #include "swiftlet/control/flight_state.hpp"
+#include "swiftlet/control/observers.hpp"
 #include "swiftlet/control/supervision/request_status.hpp"
+#include "swiftlet/control/supervision/supervisor.hpp"
 #include "swiftlet/control/types/gains.hpp"
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/control/types/reference.hpp"
@@ -21,22 +26,11 @@
 
 namespace swiftlet::control {
 
-// The setpoint of the inner loop in each step, for plots and logs.
-struct AttitudeSetpoint {
-  Eigen::Vector3d body_z_ned = Eigen::Vector3d::UnitZ();  // unit length
-  double yaw_rad = 0.0;
-  double thrust_n = 0.0;
-  Eigen::Vector3d moment_frd = Eigen::Vector3d::Zero();  // N m
-};
-
 class FlightController {
  public:
   // Designs all gains. Throws std::invalid_argument with a sentence if the vehicle or the settings break a
   // rule.
   FlightController(const plant::Vehicle& vehicle, const ControlSettings& settings);
-  ~FlightController();
-  FlightController(FlightController&&) noexcept;
-  FlightController& operator=(FlightController&&) noexcept;
 
   // One step of the inner loop. Returns the command for this sample. A sample that is not finite or not
   // newer than the last is not used, and the last command is repeated. The returned reference stays valid
@@ -66,21 +60,23 @@ class FlightController {
   // flight is stopped after 0.5 s of one, and none begins.
   void set_vehicle_fault(const VehicleFault& fault);
   // Why the vehicle must not be armed, a sentence; empty: it may. Has no effect in flight.
-  void set_vehicle_refusal(const VehicleFault& refusal);
+  void set_vehicle_refusal(const VehicleFault& refusal) { vehicle_refusal_ = refusal; }
 
   // What the vehicle reports of its rotors in vehicle_info, from the next step on. At other levels than actuators a take-off begins
   // when they run: a vehicle with an arming of its own starts them later than it is told to. Without a call they run when told to.
-  void set_rotors_running(bool running);
+  void set_rotors_running(bool running) { rotors_running_ = running; }
 
   // The command that the vehicle obeyed when it took the next sample, as it reports with it. Without a call, or without that report, it
   // is taken to obey the newest one: over a link with delay the lift that is learnt is then wrong.
-  void set_obeyed(const plant::ObeyedCommand& obeyed);
+  void set_obeyed(const plant::ObeyedCommand& obeyed) { observers_.set_obeyed(obeyed); }
 
-  void on_pose(const plant::PoseSample& sample);
-  void on_battery(const plant::BatterySample& sample);
-  void on_rotor_speeds(const plant::RotorSpeedSample& sample);
+  void on_pose(const plant::PoseSample& sample) { observers_.on_pose(sample, laws_.rotor_state()); }
+  void on_battery(const plant::BatterySample& sample) { observers_.on_battery(sample); }
+  void on_rotor_speeds(const plant::RotorSpeedSample& sample) { observers_.on_rotor_speeds(sample); }
   // Returns false if the link-loss failsafe is on for too many other clients already.
-  bool on_ground_heartbeat(const GroundHeartbeat& heartbeat);
+  bool on_ground_heartbeat(const GroundHeartbeat& heartbeat) {
+    return supervisor_.ground_heartbeat(heartbeat);
+  }
 
   // While simulated time stands still: answers clients as on_imu() does, at the last sample.
   void answer(ClientInputs& clients);
@@ -93,23 +89,49 @@ class FlightController {
   FlightState state() const;
   void adopt(const FlightState& state, const Mission* mission, const Trajectory* trajectory);
   // True if the vehicle flies, by accelerometer and rotor speeds: nothing but the rotors carries it.
-  bool detects_airborne() const;
+  bool detects_airborne() const { return observers_.airborne(situation()); }
   // Brings a vehicle that is already flying into hold. Returns false without a pose, and changes nothing.
   bool engage_in_flight();
 
   // Values of the last step.
-  const Estimate& estimate() const;
-  ErrorState estimate_deviation() const;  // Estimator::standard_deviation()
-  const Reference& reference() const;
-  const AttitudeSetpoint& attitude_setpoint() const;
-  const Status& status() const;
-  const ControlGains& gains() const;  // in force
+  const Estimate& estimate() const { return observers_.estimate(); }
+  ErrorState estimate_deviation() const { return observers_.estimate_deviation(); }
+  const Reference& reference() const { return reference_; }
+  const AttitudeSetpoint& attitude_setpoint() const { return laws_.attitude_setpoint(); }
+  const Status& status() const { return status_; }
+  const ControlGains& gains() const { return laws_.gains(); }  // in force
   // Current status of the requests that were accepted last.
-  const RequestStatuses& requests() const;
+  const RequestStatuses& requests() const { return supervisor_.requests(); }
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  FlightController(const plant::Vehicle& vehicle, const ControlSettings& settings,
+                   const ControlDesign& design);
+
+  void restart_if_clock_went_back(std::int64_t stamp_ns);
+  const plant::VehicleCommand& step(const plant::ImuSample& sample, bool usable, ClientInputs& clients);
+  const plant::VehicleCommand& answer_sample(const plant::ImuSample& sample);
+  Situation situation() const;
+  SupervisorInputs inputs() const;
+  void begin_gain_change(const Request& request, const Outcome& outcome);
+  void begin_gain_changes(const ClientInputs& clients);
+  void report(const SupervisorInputs& inputs);
+
+  FailsafeSettings failsafe_;
+  Observers observers_;
+  Supervisor supervisor_;
+  ControlLaws laws_;
+  ClientInputs no_clients_;  // stays empty
+
+  plant::ControlLevel level_ = plant::ControlLevel::kActuators;
+  plant::ControlLevels accepted_levels_ = plant::ControlLevel::kActuators;
+  VehicleFault vehicle_fault_{};
+  VehicleFault vehicle_refusal_{};
+  std::int64_t vehicle_fault_since_ns_ = 0;  // of the first step with it
+  bool rotors_running_ = true;               // as the vehicle reports
+  std::uint32_t resets_seen_ = 0;            // resets of the estimate that the supervisor has processed
+  std::int64_t saturated_ns_ = -1;           // of the last saturated command; -1: none
+  Reference reference_;
+  Status status_;
 };
 
 }  // namespace swiftlet::control

@@ -14,21 +14,12 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-// Longest interval of one covariance propagation, in which F takes f and R as constant.
-constexpr std::int64_t kInterval_ns = 20'000'000;
-constexpr std::uint64_t kIntervalEntries = 32;  // history entries per covariance propagation
-constexpr double kUnitTolerance = 0.01;         // allowed deviation of a quaternion's length from 1
-constexpr double kMaxFallSpeed = 1e3;           // m/s before the first pose; above it precision is lost
+constexpr double kUnitTolerance = 0.01;  // allowed deviation of a quaternion's length from 1
+constexpr double kMaxFallSpeed = 1e3;    // m/s before the first pose; above it precision is lost
 
 double squared(double x) { return x * x; }
 
 Vector3d bounded(const Vector3d& v, double limit) { return v.cwiseMax(-limit).cwiseMin(limit); }
-
-// Weighted mean of two attitudes that are close to each other, whatever the signs of the quaternions.
-Quaterniond mean(const Quaterniond& a, double part_a, const Quaterniond& b, double part_b) {
-  const double sign = a.dot(b) < 0.0 ? -1.0 : 1.0;
-  return Quaterniond((part_a * a.coeffs() + sign * part_b * b.coeffs()).eval()).normalized();
-}
 
 }  // namespace
 
@@ -97,19 +88,22 @@ bool Estimator::predict(const plant::ImuSample& sample, const MeanMotion& mean) 
   const Vector3d mean_rates = mean.body_rates_frd - now_.gyro_bias;
   const Vector3d mean_force = mean.specific_force_frd - now_.accelerometer_bias;
   const Quaterniond half_turn = math::rotation(0.5 * dt * mean_rates);
-  const Quaterniond q_mid = path_.q_ned_from_frd * half_turn;
+  NominalState state = history_.newest();
+  const Quaterniond q_mid = state.q_ned_from_frd * half_turn;
   const Vector3d acceleration = q_mid * mean_force + Vector3d(0.0, 0.0, plant::kGravity);
-  path_.stamp_ns = sample.stamp_ns;
-  path_.position_ned += dt * path_.velocity_ned + (0.5 * dt * dt) * acceleration;
-  path_.velocity_ned += dt * acceleration;
-  path_.q_ned_from_frd = math::renormalised(q_mid * half_turn);
-  if (!initialised_ && path_.velocity_ned.norm() > kMaxFallSpeed) {  // restart: the start is arbitrary
-    path_.position_ned.setZero();
-    path_.velocity_ned.setZero();
-    next_ = 0;
+  state.stamp_ns = sample.stamp_ns;
+  state.position_ned += dt * state.velocity_ned + (0.5 * dt * dt) * acceleration;
+  state.velocity_ned += dt * acceleration;
+  state.q_ned_from_frd = math::renormalised(q_mid * half_turn);
+  if (initialised_) {
+    history_.make_room([this](const ErrorInterval& interval) { propagate(covariance_, interval); });
+  } else if (state.velocity_ned.norm() > kMaxFallSpeed) {  // restart: the start is arbitrary
+    state.position_ned.setZero();
+    state.velocity_ned.setZero();
+    history_.clear();
   }
-  store_history();
-  if (initialised_) publish_path();
+  history_.append(state);
+  if (initialised_) publish();
   last_imu_ = sample;
   return true;
 }
@@ -133,7 +127,7 @@ PoseFault Estimator::fuse(const plant::PoseSample& pose, plant::RotorState rotor
     continuity_.update(pose);
     return PoseFault::kUntimely;
   }
-  if (initialised_ && (pose.stamp_ns <= pose_stamp_ns_ || pose.stamp_ns < anchor_.stamp_ns))
+  if (initialised_ && (pose.stamp_ns <= pose_stamp_ns_ || pose.stamp_ns < history_.anchor().stamp_ns))
     return PoseFault::kUntimely;
   stuck_pose_.update(pose, rotors);
   continuity_.update(pose);
@@ -166,18 +160,15 @@ PoseFault Estimator::fuse(const plant::PoseSample& pose, plant::RotorState rotor
 
 // z = y - h(x) of Sola's Eq. (275) at the pose's own stamp, to which the covariance is propagated.
 PoseInnovation Estimator::compare(const plant::PoseSample& pose) {
-  std::uint64_t first_newer = next_;
-  while (first_newer > first_after_anchor_ && history_at(first_newer - 1).stamp_ns > pose.stamp_ns)
-    --first_newer;
-  const StateSnapshot snapshot = state_at(std::min(pose.stamp_ns, now_.stamp_ns), first_newer);
-  advance(covariance_, anchor_, first_after_anchor_, snapshot);
-  anchor_at(snapshot, first_newer);
+  history_.move_anchor(pose.stamp_ns,
+                       [this](const ErrorInterval& interval) { propagate(covariance_, interval); });
+  const NominalState& then = history_.anchor();
 
   // A pose ahead of the IMU is compared with the extrapolated estimate.
-  const double ahead_s = math::seconds(pose.stamp_ns - snapshot.stamp_ns);
-  const Quaterniond q_ned_from_frd = snapshot.q_ned_from_frd * math::rotation(ahead_s * now_.body_rates_frd);
+  const double ahead_s = math::seconds(pose.stamp_ns - then.stamp_ns);
+  const Quaterniond q_ned_from_frd = then.q_ned_from_frd * math::rotation(ahead_s * now_.body_rates_frd);
   PoseInnovation innovation;
-  innovation.position = pose.position_ned - (snapshot.position_ned + ahead_s * snapshot.velocity_ned);
+  innovation.position = pose.position_ned - (then.position_ned + ahead_s * then.velocity_ned);
   innovation.rotation = math::rotation_vector(pose.q_ned_from_frd.normalized() * q_ned_from_frd.conjugate());
   return innovation;
 }
@@ -256,20 +247,8 @@ PoseFault Estimator::disagree(const plant::PoseSample& pose, const PoseInnovatio
 
 // Applies an error-state step at the anchor to the nominal state, there and since.
 void Estimator::apply(const ErrorState& step) {
-  const Eigen::Matrix3d r = anchor_.q_ned_from_frd.toRotationMatrix();
-  if (next_ > first_after_anchor_ &&
-      corrections_made_ - history_at(first_after_anchor_).corrections >= kCorrections)
-    replay();
-  Correction& correction = corrections_[corrections_made_++ % kCorrections];
-  correction.at = anchor_;
-  correction.position = step.segment<3>(0);
-  correction.velocity = step.segment<3>(3);
-  correction.rotation = step.segment<3>(6);
-  correction.rate = r * step.segment<3>(9);
-  correction.acceleration = r * step.segment<3>(12);
-  correction.apply_to(anchor_);
-  correction.apply_to(path_);
-  publish_path();
+  history_.apply(step);
+  publish();
 
   const Vector3d gyro_bias = bounded(now_.gyro_bias + step.segment<3>(9), settings_.gyro_bias_limit);
   now_.body_rates_frd += now_.gyro_bias - gyro_bias;
@@ -278,43 +257,18 @@ void Estimator::apply(const ErrorState& step) {
       bounded(now_.accelerometer_bias + step.segment<3>(12), settings_.accelerometer_bias_limit);
 }
 
-// F of error_covariance.hpp, with the attitude step as a rotation: Sola's Eq. (314c), q <- rotation(step) q.
-// The covariance's reset, Eq. (316) and (317), P <- G P G' with G = I + [step / 2]x, is left out: G differs
-// from I by half a step of attitude, some mrad.
-void Estimator::Correction::apply_to(StateSnapshot& snapshot) const {
-  const ErrorInterval since = interval(at, snapshot);
-  const double t = since.duration_s;
-  snapshot.position_ned += position + t * velocity - since.position_change.cross(rotation - (t / 3) * rate) -
-                           (t * t / 2) * acceleration;
-  snapshot.velocity_ned +=
-      velocity - since.velocity_change.cross(rotation - (t / 2) * rate) - t * acceleration;
-  snapshot.q_ned_from_frd = (math::rotation(rotation - t * rate) * snapshot.q_ned_from_frd).normalized();
-  ++snapshot.corrections;
-}
-
-Estimator::StateSnapshot Estimator::snapshot_at(std::uint64_t number) const {
-  StateSnapshot snapshot = history_at(number);
-  while (snapshot.corrections < corrections_made_)
-    corrections_[snapshot.corrections % kCorrections].apply_to(snapshot);
-  return snapshot;
-}
-
-void Estimator::replay() {
-  for (std::uint64_t number = first_after_anchor_; number < next_; ++number)
-    history_[number % kHistory] = snapshot_at(number);
-}
-
-void Estimator::publish_path() {
-  now_.position_ned = path_.position_ned;
-  now_.velocity_ned = path_.velocity_ned;
-  now_.q_ned_from_frd = path_.q_ned_from_frd;
+void Estimator::publish() {
+  const NominalState& newest = history_.newest();
+  now_.position_ned = newest.position_ned;
+  now_.velocity_ned = newest.velocity_ned;
+  now_.q_ned_from_frd = newest.q_ned_from_frd;
 }
 
 // Resets position, velocity and attitude to a continuous stream of poses.
 void Estimator::restart_at(const plant::PoseSample& pose, const PoseInnovation& innovation) {
   ErrorState step = ErrorState::Zero();
   step.segment<3>(0) = innovation.position;
-  step.segment<3>(3) = continuity_.velocity_ned() - anchor_.velocity_ned;
+  step.segment<3>(3) = continuity_.velocity_ned() - history_.anchor().velocity_ned;
   step.segment<3>(6) = innovation.rotation;
   apply(step);
   ErrorState sigma;
@@ -332,30 +286,9 @@ void Estimator::restart_at(const plant::PoseSample& pose, const PoseInnovation& 
 // Moves the IMU-propagated path since the pose onto the pose. The vehicle is assumed at rest there, within
 // settings.start_speed.
 void Estimator::start_at(const plant::PoseSample& pose) {
-  first_after_anchor_ = next_ - std::min<std::uint64_t>(next_, kHistory);
-  anchor_ = history_at(first_after_anchor_);
-  std::uint64_t first_newer = next_;
-  while (first_newer > first_after_anchor_ && history_at(first_newer - 1).stamp_ns > pose.stamp_ns)
-    --first_newer;
-  const bool in_history = pose.stamp_ns > anchor_.stamp_ns;
-  const StateSnapshot propagated =
-      in_history ? state_at(std::min(pose.stamp_ns, path_.stamp_ns), first_newer) : anchor_;
-  const StateSnapshot start = {std::min(pose.stamp_ns, path_.stamp_ns), pose.position_ned, Vector3d::Zero(),
-                               pose.q_ned_from_frd.normalized(), 0};
-  const Quaterniond turn = start.q_ned_from_frd * propagated.q_ned_from_frd.conjugate();
-  const auto shift_to_pose = [&](StateSnapshot& snapshot) {
-    const ErrorInterval since = interval(propagated, snapshot);
-    const double t = math::seconds(snapshot.stamp_ns - start.stamp_ns);
-    const Vector3d fall(0.0, 0.0, t * plant::kGravity);
-    snapshot.position_ned = start.position_ned + 0.5 * t * fall + turn * since.position_change;
-    snapshot.velocity_ned = fall + turn * since.velocity_change;
-    snapshot.q_ned_from_frd = (turn * snapshot.q_ned_from_frd).normalized();
-  };
-  for (std::uint64_t number = first_newer; number < next_; ++number)
-    shift_to_pose(history_[number % kHistory]);
-  shift_to_pose(path_);
-  publish_path();
-  anchor_at(start, first_newer);
+  history_.begin_at({std::min(pose.stamp_ns, now_.stamp_ns), pose.position_ned, Vector3d::Zero(),
+                     pose.q_ned_from_frd.normalized()});
+  publish();
   initialised_ = true;
   accept(pose);
   ErrorState sigma;
@@ -365,72 +298,13 @@ void Estimator::start_at(const plant::PoseSample& pose) {
   covariance_.reset(sigma);
 }
 
-// Propagates the covariance before the history entries that it needs are overwritten.
-void Estimator::store_history() {
-  if (initialised_ && next_ - first_after_anchor_ >= kHistory - kIntervalEntries) {
-    const std::uint64_t number = first_after_anchor_ + kIntervalEntries / 2;
-    const StateSnapshot snapshot = snapshot_at(number);
-    advance(covariance_, anchor_, first_after_anchor_, snapshot);
-    anchor_at(snapshot, number + 1);
-  }
-  history_[next_++ % kHistory] = path_;
-}
-
-void Estimator::anchor_at(const StateSnapshot& snapshot, std::uint64_t first_newer) {
-  anchor_ = snapshot;
-  first_after_anchor_ = first_newer;
-}
-
-Estimator::StateSnapshot Estimator::state_at(std::int64_t stamp_ns, std::uint64_t first_newer) const {
-  const StateSnapshot before = first_newer > first_after_anchor_ ? snapshot_at(first_newer - 1) : anchor_;
-  StateSnapshot snapshot = before;
-  if (before.stamp_ns == stamp_ns) return snapshot;
-  snapshot.stamp_ns = stamp_ns;
-  const StateSnapshot after = snapshot_at(first_newer);
-  const double part =
-      math::seconds(stamp_ns - before.stamp_ns) / math::seconds(after.stamp_ns - before.stamp_ns);
-  snapshot.position_ned += part * (after.position_ned - before.position_ned);
-  snapshot.velocity_ned += part * (after.velocity_ned - before.velocity_ned);
-  snapshot.q_ned_from_frd = mean(before.q_ned_from_frd, 1.0 - part, after.q_ned_from_frd, part);
-  return snapshot;
-}
-
-ErrorInterval Estimator::interval(const StateSnapshot& from, const StateSnapshot& to) {
-  ErrorInterval out;
-  out.duration_s = math::seconds(to.stamp_ns - from.stamp_ns);
-  const Vector3d fall = {0.0, 0.0, out.duration_s * plant::kGravity};
-  out.velocity_change = to.velocity_ned - from.velocity_ned - fall;
-  out.position_change =
-      to.position_ned - from.position_ned - out.duration_s * (from.velocity_ned + 0.5 * fall);
-  return out;
-}
-
-void Estimator::advance_step(ErrorCovariance& covariance, const StateSnapshot& from,
-                             const StateSnapshot& to) const {
-  ErrorInterval step = interval(from, to);
-  step.r_ned_from_frd = mean(from.q_ned_from_frd, 0.5, to.q_ned_from_frd, 0.5).toRotationMatrix();
-  covariance.advance(step, noise_);
-  const double t = step.duration_s;
+void Estimator::propagate(ErrorCovariance& covariance, const ErrorInterval& interval) const {
+  covariance.advance(interval, noise_);
+  const double t = interval.duration_s;
   const ImuSilenceSettings& silence = detectors_.imu_silence;
   if (t <= 1.5 * silence.from_s) return;
   const double speed = silence.acceleration * t;
   covariance.add_motion(squared(0.5 * t * speed), squared(speed), squared(silence.body_rate * t));
-}
-
-void Estimator::advance(ErrorCovariance& covariance, StateSnapshot from, std::uint64_t first,
-                        const StateSnapshot& to) const {
-  std::uint64_t number = first;
-  while (from.stamp_ns + kInterval_ns < to.stamp_ns && number < next_) {
-    // To the last state within the interval, or across the gap to the next.
-    std::uint64_t last = number;
-    while (last + 1 < next_ && history_at(last + 1).stamp_ns <= from.stamp_ns + kInterval_ns) ++last;
-    if (history_at(last).stamp_ns >= to.stamp_ns) break;
-    const StateSnapshot snapshot = snapshot_at(last);
-    advance_step(covariance, from, snapshot);
-    from = snapshot;
-    number = last + 1;
-  }
-  if (from.stamp_ns != to.stamp_ns) advance_step(covariance, from, to);
 }
 
 ErrorCovariance Estimator::covariance() const {
@@ -439,7 +313,7 @@ ErrorCovariance Estimator::covariance() const {
     covariance.reset(ErrorState::Constant(std::numeric_limits<double>::infinity()));
     return covariance;
   }
-  advance(covariance, anchor_, first_after_anchor_, path_);
+  history_.for_each_interval([&](const ErrorInterval& interval) { propagate(covariance, interval); });
   return covariance;
 }
 

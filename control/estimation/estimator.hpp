@@ -8,7 +8,6 @@
 // through the stored history. So latency does not destabilise the filter.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include <Eigen/Core>
@@ -17,6 +16,7 @@
 #include "swiftlet/control/estimation/error_covariance.hpp"
 #include "swiftlet/control/estimation/pose_imu_consistency.hpp"
 #include "swiftlet/control/estimation/pose_stream.hpp"
+#include "swiftlet/control/estimation/state_history.hpp"
 #include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/plant/model/samples.hpp"
 
@@ -100,35 +100,10 @@ class Estimator {
   // Normalised innovation squared of the last pose that was compared: chi-square with 6 degrees of freedom.
   double normalised_innovation() const { return normalised_innovation_; }
 
-  static constexpr int kHistory = 256;  // IMU samples: 0.5 s at 500 Hz
-
  private:
-  struct StateSnapshot {
-    std::int64_t stamp_ns = 0;
-    Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();
-    Eigen::Vector3d velocity_ned = Eigen::Vector3d::Zero();
-    Eigen::Quaterniond q_ned_from_frd = Eigen::Quaterniond::Identity();
-    std::uint64_t corrections = 0;  // number of corrections that it includes
-  };
-  // A correction of the error state at one time, and its effect on the states before and after.
-  struct Correction {
-    StateSnapshot at;  // the state before the correction
-    Eigen::Vector3d position = Eigen::Vector3d::Zero();
-    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
-    Eigen::Vector3d rotation = Eigen::Vector3d::Zero();
-    Eigen::Vector3d rate = Eigen::Vector3d::Zero();          // subtracted from the rotation's rate
-    Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // subtracted from the velocity's rate
-    void apply_to(StateSnapshot& snapshot) const;
-  };
-
-  // History entries are corrected when they are read: of most, only the stamp ever is.
-  static constexpr std::uint64_t kCorrections = 32;
-  const StateSnapshot& history_at(std::uint64_t number) const { return history_[number % kHistory]; }
   bool is_usable(const plant::ImuSample& sample) const;
-  StateSnapshot snapshot_at(std::uint64_t number) const;
   void start_at(const plant::PoseSample& pose);
-  void publish_path();
-  void store_history();
+  void publish();
   PoseFault fuse(const plant::PoseSample& pose, plant::RotorState rotors);
   PoseInnovation compare(const plant::PoseSample& pose);
   PoseFault disagree(const plant::PoseSample& pose, const PoseInnovation& innovation,
@@ -139,24 +114,14 @@ class Estimator {
   double outlier_rotation() const;  // rad
   bool trusted_after_silence(const plant::PoseSample& pose, const PoseInnovation& innovation);
   void apply(const ErrorState& step);
-  void replay();
   void restart_at(const plant::PoseSample& pose, const PoseInnovation& innovation);
-
-  static ErrorInterval interval(const StateSnapshot& from, const StateSnapshot& to);
-  // Propagates the covariance from one state to another. first: number of the first history entry after
-  // `from`.
-  void advance(ErrorCovariance& covariance, StateSnapshot from, std::uint64_t first,
-               const StateSnapshot& to) const;
-  void advance_step(ErrorCovariance& covariance, const StateSnapshot& from, const StateSnapshot& to) const;
-  // The nominal state at a stamp after the anchor's.
-  StateSnapshot state_at(std::int64_t stamp_ns, std::uint64_t first_newer) const;
-  void anchor_at(const StateSnapshot& snapshot, std::uint64_t first_newer);
+  // Propagates the covariance, with the motion that an IMU silence may hide.
+  void propagate(ErrorCovariance& covariance, const ErrorInterval& interval) const;
 
   EstimatorSettings settings_;
   DetectorSettings detectors_;  // copy of settings_.detectors
   ErrorNoise noise_;
   Estimate now_;
-  StateSnapshot path_;  // IMU propagation at the newest sample; before the first pose from an arbitrary start
   plant::ImuSample last_imu_;
   bool initialised_ = false;
   std::int64_t received_stamp_ns_ = 0;  // of the last pose received
@@ -171,15 +136,8 @@ class Estimator {
   int refused_in_a_row_ = 0;
   int contradictions_ = 0;  // in a row, of fused poses
 
-  // The covariance at the anchor: the state at the last pose, or a later one.
-  ErrorCovariance covariance_;
-  StateSnapshot anchor_;
-  std::uint64_t first_after_anchor_ = 0;  // number of a history entry
-
-  std::array<StateSnapshot, kHistory> history_;
-  std::uint64_t next_ = 0;  // number of the next history entry
-  std::array<Correction, kCorrections> corrections_;
-  std::uint64_t corrections_made_ = 0;
+  StateHistory history_;        // before the first pose from an arbitrary start
+  ErrorCovariance covariance_;  // at its anchor: the state at the last pose, or a later one
 };
 
 }  // namespace swiftlet::control

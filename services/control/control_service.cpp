@@ -5,6 +5,9 @@
 #include <random>
 #include <utility>
 
+#include "swiftlet/services/control/failover.hpp"
+#include "swiftlet/services/control/lockstep_driver.hpp"
+#include "swiftlet/services/control/realtime_driver.hpp"
 #include "swiftlet/services/messages/wire_version.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
@@ -16,10 +19,6 @@ namespace msg = messages::msg;
 namespace topics = messages::topics;
 using dds::Delivery;
 using namespace std::chrono_literals;
-
-// Without IMU samples and without an active controller for this long, requests are answered: they are
-// refused, with that reason.
-constexpr std::int64_t kIsolationNs = 1'000'000'000;
 
 constexpr std::int64_t kConditionsPeriodNs = 100'000'000;  // as control_status
 
@@ -43,70 +42,63 @@ ControlService::ControlService(const plant::Vehicle& vehicle, const control::Con
                                std::optional<plant::ControlLevel> level)
     : controller_(random_number()),
       clock_(clock),
-      realtime_(realtime),
       loop_(vehicle, settings),
       command_server_(loop_, vehicle, settings, GainDesigner(vehicle, settings, std::move(fixed)), wake_),
       telemetry_(loop_, command_server_, settings.failsafe, node, controller_,
                  control::observed_rotors(vehicle.motor.time_constant_s, settings)),
-      failover_(controller_, failover_priority),
-      reports_(node.publish(topics::kControllerState)),
       commands_(node, vehicle.rotor_count()),
       rotor_count_(vehicle.rotor_count()),
       wanted_level_(level),
-      command_term_(failover_.next_term()),
-      active_heard_ns_(runtime::monotonic_ns()) {
-  report_.controller = controller_;
-  report_.failover_priority = failover_priority;
-  report_.rotor_count = vehicle.rotor_count();
+      answers_(loop_, commands_, wake_, node, controller_, failover_priority, rotor_count_) {
+  if (clock == runtime::Clock::kLockstep) {
+    const std::uint32_t term = Failover(controller_, failover_priority).next_term();
+    driver_ = std::make_unique<LockstepDriver>(term, answers_, wake_);
+  } else {
+    driver_ = std::make_unique<RealtimeDriver>(controller_, failover_priority, loop_, command_server_,
+                                               answers_, wake_, node, realtime);
+    telemetry_.watch_imu();
+  }
   loop_.levels.put({plant::ControlLevel::kActuators, wanted_level_});
-  command_server_.set_active(clock == runtime::Clock::kLockstep);
-  subscribe(node, clock);
+  subscribe(node);
 }
 
-void ControlService::subscribe_sensors(dds::Node& node, runtime::Clock clock) {
+void ControlService::subscribe_sensors(dds::Node& node) {
   using Inputs = plant::LockstepInputs;
   // In real time no other topic may delay IMU and poses. In lockstep threads of their own only cost wake-ups.
-  const Delivery delivery = clock == runtime::Clock::kLockstep ? Delivery::kShared : Delivery::kSensors;
-  if (clock == runtime::Clock::kRealtime) telemetry_.watch_imu();
-  const auto take_pose = deliver_sensor<msg::MocapPose>(loop_.pose, pose_faults_, &Inputs::mocap_pose);
-  const auto take_battery = deliver_sensor<msg::Battery>(loop_.battery, battery_faults_, &Inputs::battery);
-  const auto take_rotor_speeds =
-      deliver_sensor<msg::RotorSpeeds>(loop_.rotor_speeds, rotor_speed_faults_, &Inputs::rotor_speeds);
-
-  // Poses are needed to hold position: their thread has real-time priority, like the IMU's.
+  const Delivery delivery = clock_ == runtime::Clock::kLockstep ? Delivery::kShared : Delivery::kSensors;
   sensors_.push_back({"poses", node.subscribe<msg::MocapPose>(
                                    topics::kMocapPose,
-                                   [this, take_pose](const auto& message) {
-                                     pose_thread_.enter(realtime_);
+                                   [this](const auto& message) {
                                      // 0: a heartbeat of motion capture in lockstep, which is no pose
                                      if (message.sequence_number() == 0) return;
                                      note(pose_arrivals_, message);
-                                     take_pose(message);
+                                     deliver(message, &Inputs::mocap_pose, loop_.pose, pose_faults_);
                                    },
                                    delivery, dds::kSourceSilence)});
   sensors_.push_back({"battery samples", node.subscribe<msg::Battery>(
                                              topics::kBattery,
-                                             [this, take_battery](const auto& message) {
+                                             [this](const auto& message) {
                                                note(battery_arrivals_, message);
-                                               take_battery(message);
+                                               deliver(message, &Inputs::battery, loop_.battery,
+                                                       battery_faults_);
                                              },
                                              Delivery::kShared, kBatterySourceSilence)});
   // Rotor speeds can be as many as IMU samples. In the shared thread they would hold up the requests.
   sensors_.push_back({"rotor speeds", node.subscribe<msg::RotorSpeeds>(
                                           topics::kRotorSpeeds,
-                                          [this, take_rotor_speeds](const auto& message) {
-                                            rotor_speed_thread_.enter(realtime_);
-                                            take_rotor_speeds(message);
+                                          [this](const auto& message) {
+                                            deliver(message, &Inputs::rotor_speeds, loop_.rotor_speeds,
+                                                    rotor_speed_faults_);
                                           },
                                           delivery, dds::kSourceSilence)});
 }
 
-void ControlService::subscribe(dds::Node& node, runtime::Clock clock) {
-  subscribe_sensors(node, clock);
+void ControlService::subscribe(dds::Node& node) {
+  subscribe_sensors(node);
   subscriptions_.push_back(node.subscribe<msg::VehicleInfo>(
       topics::kVehicleInfo, [this](const auto& message) { on_vehicle_info(message); }));
   subscriptions_.push_back(node.subscribe<msg::Setpoint>(
-      topics::kSetpoint, deliver<msg::Setpoint>(loop_.setpoint, setpoint_faults_)));
+      topics::kSetpoint, [this](const auto& message) { put(message, loop_.setpoint, setpoint_faults_); }));
   subscriptions_.push_back(node.subscribe<msg::GroundLink>(
       topics::kGroundLink, [this](const auto& message) { on_ground_link(message); }));
   subscriptions_.push_back(node.subscribe<msg::Command>(
@@ -117,14 +109,11 @@ void ControlService::subscribe(dds::Node& node, runtime::Clock clock) {
       topics::kTrajectory, deliver_to_worker(&CommandServer::on_trajectory), Delivery::kPlans));
   subscriptions_.push_back(node.subscribe<msg::ControlSettings>(
       topics::kControlSettings, deliver_to_worker(&CommandServer::on_control_settings), Delivery::kPlans));
-  if (clock == runtime::Clock::kRealtime) {
+  if (clock_ == runtime::Clock::kRealtime) {
     subscriptions_.push_back(node.subscribe<msg::Mission>(
         topics::kFlownMission, deliver_to_worker(&CommandServer::on_flown_mission), Delivery::kPlans));
     subscriptions_.push_back(node.subscribe<msg::Trajectory>(
         topics::kFlownTrajectory, deliver_to_worker(&CommandServer::on_flown_trajectory), Delivery::kPlans));
-    subscriptions_.push_back(node.subscribe<msg::ControllerState>(
-        topics::kControllerState, [this](const auto& message) { on_controller_state(message); },
-        Delivery::kPlans));
   }
   subscribe_motion(node, topics::kVehicleOdometry, "vehicle_odometry samples",
                    AnsweredSamples::Kind::kOdometry);
@@ -135,17 +124,12 @@ void ControlService::subscribe(dds::Node& node, runtime::Clock clock) {
 template <class Message>
 void ControlService::subscribe_motion(dds::Node& node, const messages::Topic<Message>& topic,
                                       const char* samples, AnsweredSamples::Kind kind) {
-  const bool lockstep = clock_ == runtime::Clock::kLockstep;
-  const auto take = [this, kind, lockstep](const Message& message) {
+  const auto take = [this, kind](const Message& message) {
     if (!answered_samples_.admit(kind, runtime::monotonic_ns())) return;
     note(imu_arrivals_, message);
-    if (lockstep) {
-      on_sample_in_lockstep(vehicle_sample(message));
-    } else {
-      on_sample(vehicle_sample(message));
-    }
+    driver_->on_sample(vehicle_sample(message));
   };
-  const Delivery delivery = lockstep ? Delivery::kShared : Delivery::kSamples;
+  const Delivery delivery = clock_ == runtime::Clock::kLockstep ? Delivery::kShared : Delivery::kSamples;
   sensors_.push_back({samples, node.subscribe<Message>(topic, take, delivery, dds::kSourceSilence)});
 }
 
@@ -154,16 +138,20 @@ void ControlService::note(Arrivals& arrivals, const Message& message) {
   arrivals.note(message.stamp_ns(), message.sequence_number(), runtime::monotonic_ns());
 }
 
-// Returns a callback that passes valid samples to the inner loop and warns of invalid ones.
 template <class Message, class Sample>
-std::function<void(const Message&)> ControlService::deliver(runtime::LatestValue<Sample>& latest,
-                                                            dds::ThrottledWarning& faults) {
-  return [&latest, &faults](const Message& message) {
-    Sample sample;
-    const messages::Fault fault = messages::from_message(message, sample);
-    if (fault) return faults.note(fault);
-    latest.put(sample);
-  };
+void ControlService::put(const Message& message, runtime::LatestValue<Sample>& latest,
+                         dds::ThrottledWarning& faults) {
+  Sample sample;
+  const messages::Fault fault = messages::from_message(message, sample);
+  if (fault) return faults.note(fault);
+  latest.put(sample);
+}
+
+template <class Message, class Sample>
+void ControlService::deliver(const Message& message, StepDriver::Stream stream,
+                             runtime::LatestValue<Sample>& latest, dds::ThrottledWarning& faults) {
+  const auto put_message = [&] { put(message, latest, faults); };
+  driver_->on_sensor(stream, message.sequence_number(), std::ref(put_message));  // std::ref: no allocation
 }
 
 template <class Message>
@@ -174,98 +162,6 @@ std::function<void(const Message&)> ControlService::deliver_to_worker(
   };
 }
 
-template <class Message, class Sample>
-std::function<void(const Message&)> ControlService::deliver_sensor(runtime::LatestValue<Sample>& latest,
-                                                                   dds::ThrottledWarning& faults,
-                                                                   LockstepGate::Stream stream) {
-  if (clock_ == runtime::Clock::kRealtime) return deliver<Message>(latest, faults);
-  return [this, stream, take = deliver<Message>(latest, faults)](const Message& message) {
-    const std::lock_guard<std::mutex> lock(gate_mutex_);
-    if (!gate_.is_new(stream, message.sequence_number())) return;
-    take(message);
-    if (const auto sample = gate_.take()) answer(*sample, take_role_in_lockstep(*sample));
-  };
-}
-
-// The hot path: from the sample to its command. A plant in lockstep repeats a sample while its time stands still: the
-// pending requests are answered, and the same command is published again.
-void ControlService::on_sample(const VehicleSample& sample) {
-  imu_thread_.enter(realtime_);
-  const bool repeated = sample.stamp_ns() == answered_.stamp_ns && sample.sequence() == answered_.sequence;
-  if (!repeated) {
-    answered_ = {sample.stamp_ns(), sample.sequence()};
-    return answer(sample, take_role(sample));
-  }
-  loop_.answer_requests();
-  if (failover_.role() == Role::kActive && !loop_.detecting_airborne()) commands_.publish(last_answer_);
-  if (loop_.finish(runtime::monotonic_ns(), failover_.loop_delay().figures())) wake_.post();
-}
-
-// The inner loop uses the other controllers' states from the next IMU sample on.
-void ControlService::on_controller_state(const msg::ControllerState& message) {
-  if (message.controller() == controller_) return;
-  messages::ControllerReport other;
-  const messages::Fault fault = messages::from_message(message, other);
-  if (fault) return controller_faults_.note(fault);
-  const std::int64_t now_ns = runtime::monotonic_ns();
-  if (other.active) {
-    active_heard_ns_.store(now_ns, std::memory_order_relaxed);
-    if (!active_.load(std::memory_order_relaxed)) {
-      FailoverState failover_state;
-      failover_state.term = other.term;
-      failover_state.flight = other.flight;
-      command_server_.follow(failover_state);
-    }
-  }
-  heartbeats_.push({other.controller, other.failover_priority, other.term,
-                    other.active ? Role::kActive : Role::kStandby, now_ns});
-}
-
-Role ControlService::take_role(const VehicleSample& sample) {
-  const Role before = failover_.role();
-  heartbeats_.consume_all([this](const Heartbeat& beat) { failover_.heard(beat); });
-  const std::int64_t now_ns = runtime::monotonic_ns();
-  const Role role = failover_.sample(sample.stamp_ns(), sample.obeyed, now_ns);
-  const bool active = role == Role::kActive;
-  command_server_.set_active(active);
-  active_.store(active, std::memory_order_relaxed);
-  command_term_.store(active ? failover_.term() : failover_.next_term(), std::memory_order_relaxed);
-  if (role != before) {
-    const bool flew = sample.obeyed.reported && sample.obeyed.any;
-    if (active && flew && !failover_.continues()) loop_.attempt_restart_in_air();
-  }
-  Takeover takeover;
-  if (failover_.take_takeover(takeover)) {
-    takeover_.put(takeover);
-    wake_.post();
-  }
-  return role;
-}
-
-// A lockstep controller is active from the first sample on. Another term in a sample reveals a rival.
-Role ControlService::take_role_in_lockstep(const VehicleSample& sample) {
-  if (sample.obeyed.any && sample.obeyed.term != failover_.next_term()) {
-    rival_.store(true, std::memory_order_relaxed);
-    wake_.post();
-    return Role::kStandby;
-  }
-  return Role::kActive;
-}
-
-// While simulated time stands still, the plant repeats a sample that was answered before: the pending
-// requests are answered, and the same command is published again.
-void ControlService::on_sample_in_lockstep(const VehicleSample& sample) {
-  const std::lock_guard<std::mutex> lock(gate_mutex_);
-  if (!levels_known_.load(std::memory_order_acquire)) return;  // the plant sends the sample again
-  if (!gate_.offer(sample)) {
-    loop_.answer_requests();
-    commands_.publish(last_answer_);
-    if (loop_.finish(runtime::monotonic_ns())) wake_.post();
-  } else if (const auto complete = gate_.take()) {
-    answer(*complete, take_role_in_lockstep(*complete));
-  }
-}
-
 // A heartbeat that finds the queue full is lost; the tool repeats it.
 void ControlService::on_ground_link(const msg::GroundLink& message) {
   control::GroundHeartbeat heartbeat;
@@ -274,42 +170,19 @@ void ControlService::on_ground_link(const msg::GroundLink& message) {
   loop_.ground_heartbeats.push(heartbeat);
 }
 
-void ControlService::answer(const VehicleSample& sample, Role role) {
-  const std::int64_t arrived_ns = runtime::monotonic_ns();
-  loop_.set_obeyed(sample.obeyed);
-  last_answer_ = std::visit(
-      [&](const auto& motion) { return loop_.step(motion, arrived_ns, role, failover_.followed_term()); },
-      sample.motion);
-  plant::header_of(last_answer_).term =
-      clock_ == runtime::Clock::kLockstep ? failover_.next_term() : failover_.term();
-  if (role == Role::kActive && !loop_.detecting_airborne()) commands_.publish(last_answer_);
-  if (loop_.finish(runtime::monotonic_ns(), failover_.loop_delay().figures())) wake_.post();
-  if (loop_.report_due()) report(sample.stamp_ns());
-}
-
-void ControlService::report(std::int64_t stamp_ns) {
-  report_.stamp_ns = stamp_ns;
-  ++report_.sequence;
-  report_.term = plant::header_of(last_answer_).term;
-  loop_.report(report_);
-  reports_.publish(messages::to_message(report_));
-}
-
 void ControlService::run(const std::atomic<bool>& stop) {
   std::int64_t conditions_due_ns = 0;
   while (!stop.load(std::memory_order_relaxed)) {
     adopt_levels();
-    Takeover takeover;
-    if (takeover_.take(takeover)) runtime::log_warning("{}", to_string(takeover));
+    driver_->attend();
     const StreamAges ages = stream_ages();
     publish_pending_stop(ages);
     telemetry_.set_ages(ages);
     if (const std::int64_t now_ns = runtime::monotonic_ns(); now_ns >= conditions_due_ns) {
-      telemetry_.set_conditions(is_realtime(), source_conflict());
+      telemetry_.set_conditions(driver_->is_realtime(), source_conflict());
       conditions_due_ns = now_ns + kConditionsPeriodNs;
     }
     telemetry_.publish_due();
-    activate_if_isolated();
     wake_.wait_for(50ms);
   }
 }
@@ -341,7 +214,7 @@ void ControlService::refuse_vehicle(const std::string& why) {
   control::VehicleFault refusal{};
   std::copy_n(why.c_str(), std::min(why.size(), refusal.size() - 1), refusal.begin());
   loop_.vehicle_refusal.put(refusal);
-  levels_known_.store(true, std::memory_order_release);
+  driver_->levels_known();
 }
 
 // Opens the topic of the level before the inner loop commands at it.
@@ -359,7 +232,7 @@ void ControlService::adopt_levels() {
         plant::to_string(level), levels.names().data());
   }
   loop_.levels.put({levels, wanted_level_});
-  levels_known_.store(true, std::memory_order_release);
+  driver_->levels_known();
 }
 
 // A stop request that no IMU sample lets the inner loop evaluate: commands rotors off until one does. In
@@ -374,7 +247,7 @@ void ControlService::publish_pending_stop(const StreamAges& ages) {
   header.stamp_ns = imu_arrivals_.stamp_ns();
   header.sequence = imu_arrivals_.sequence();
   header.imu_sequence = imu_arrivals_.sequence();
-  header.term = command_term_.load(std::memory_order_relaxed);
+  header.term = driver_->command_term();
   commands_.publish(plant::rotors_off(loop_.level(), header, rotor_count_));
 }
 
@@ -400,16 +273,6 @@ std::string ControlService::source_conflict() const {
   if (const char* const ignored = answered_samples_.ignored(runtime::monotonic_ns()))
     return std::string(ignored) + " is ignored: the vehicle brings both imu and vehicle_odometry";
   return {};
-}
-
-bool ControlService::is_realtime() const {
-  return imu_thread_.is_realtime() && (pose_thread_.is_realtime() || !pose_thread_.has_entered());
-}
-
-void ControlService::activate_if_isolated() {
-  const std::int64_t last_ns =
-      std::max(loop_.last_arrival_ns(), active_heard_ns_.load(std::memory_order_relaxed));
-  if (runtime::monotonic_ns() - last_ns > kIsolationNs) command_server_.set_active(true);
 }
 
 }  // namespace swiftlet::services

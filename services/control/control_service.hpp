@@ -4,20 +4,18 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <mutex>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <boost/lockfree/spsc_queue.hpp>
-
 #include "swiftlet/services/control/arrivals.hpp"
 #include "swiftlet/services/control/command_publisher.hpp"
 #include "swiftlet/services/control/command_server.hpp"
-#include "swiftlet/services/control/failover.hpp"
 #include "swiftlet/services/control/inner_loop.hpp"
-#include "swiftlet/services/control/lockstep_gate.hpp"
+#include "swiftlet/services/control/sample_answers.hpp"
 #include "swiftlet/services/control/semaphore.hpp"
+#include "swiftlet/services/control/step_driver.hpp"
 #include "swiftlet/services/control/telemetry.hpp"
 #include "swiftlet/services/control/worker.hpp"
 #include "swiftlet/services/dds/node.hpp"
@@ -35,10 +33,12 @@ namespace swiftlet::services {
 // Of each sensor topic the samples of one process are used. If another one sends them too, control_status
 // reports both.
 //
+// A driver decides when a sample is answered, and in which role: RealtimeDriver or LockstepDriver.
+//
 // Threads: the thread of the IMU subscription runs the inner loop and publishes the command before its
 // callback returns. Poses and rotor speeds, and missions, trajectories and controller states have one each; the other topics
-// share one: all of these serve every vehicle of the process. run() is the telemetry thread. In lockstep the inner loop runs in the thread that receives the
-// last sample of a step.
+// share one: all of these serve every vehicle of the process. run() is the telemetry thread. In lockstep the inner loop runs in
+// the thread that receives the last sample of a step.
 class ControlService {
  public:
   // Throws std::invalid_argument as FlightController does, std::runtime_error as Node does.
@@ -55,26 +55,17 @@ class ControlService {
   void wake() { wake_.post(); }
 
   // Lockstep: true if another controller commands the vehicle too.
-  bool has_rival() const { return rival_.load(std::memory_order_relaxed); }
+  bool has_rival() const { return driver_->has_rival(); }
 
   const Snapshot& last() const { return telemetry_.last(); }  // once run() has returned
 
  private:
-  void subscribe(dds::Node& node, runtime::Clock clock);
-  void subscribe_sensors(dds::Node& node, runtime::Clock clock);
+  void subscribe(dds::Node& node);
+  void subscribe_sensors(dds::Node& node);
   template <class Message>
   void subscribe_motion(dds::Node& node, const messages::Topic<Message>& topic, const char* samples,
                         AnsweredSamples::Kind kind);
-  void on_sample(const VehicleSample& sample);
-  void on_sample_in_lockstep(const VehicleSample& sample);
   void on_ground_link(const messages::msg::GroundLink& message);
-  void on_controller_state(const messages::msg::ControllerState& message);
-  Role take_role(const VehicleSample& sample);
-  Role take_role_in_lockstep(const VehicleSample& sample);
-  void answer(const VehicleSample& sample, Role role);
-  void report(std::int64_t stamp_ns);
-  void activate_if_isolated();
-  bool is_realtime() const;
   template <class Message>
   static void note(Arrivals& arrivals, const Message& message);
   StreamAges stream_ages() const;
@@ -85,61 +76,38 @@ class ControlService {
   void adopt_levels();
   template <class Message>
   std::function<void(const Message&)> deliver_to_worker(void (CommandServer::*take)(const Message&));
+  // Passes a valid sample to the inner loop, and warns of an invalid one.
   template <class Message, class Sample>
-  std::function<void(const Message&)> deliver(runtime::LatestValue<Sample>& latest,
-                                              dds::ThrottledWarning& faults);
+  static void put(const Message& message, runtime::LatestValue<Sample>& latest,
+                  dds::ThrottledWarning& faults);
+  // The same when the driver says so.
   template <class Message, class Sample>
-  std::function<void(const Message&)> deliver_sensor(runtime::LatestValue<Sample>& latest,
-                                                     dds::ThrottledWarning& faults,
-                                                     LockstepGate::Stream stream);
+  void deliver(const Message& message, StepDriver::Stream stream, runtime::LatestValue<Sample>& latest,
+               dds::ThrottledWarning& faults);
 
   const std::uint64_t controller_;
   const runtime::Clock clock_;
-  runtime::RealtimeSettings realtime_;
   Semaphore wake_;
   InnerLoop loop_;
   CommandServer command_server_;
   Telemetry telemetry_;
-
-  // Used by the inner loop's thread only.
-  Failover failover_;
-  dds::Publisher<messages::msg::ControllerState> reports_;
-  messages::ControllerReport report_;
-  plant::VehicleCommand last_answer_;
-  struct Answered {
-    std::int64_t stamp_ns = -1;
-    std::uint64_t sequence = 0;
-  };
-  Answered answered_;  // the last sample, in real time
-
   CommandPublisher commands_;
   const int rotor_count_;
   const std::optional<plant::ControlLevel> wanted_level_;
   std::atomic<std::uint8_t> reported_levels_{
-      0};                                  // by vehicle_info, as ControlLevels::bits(); 0: not known yet
-  std::uint8_t adopted_levels_ = 0;        // used by the thread of run() only
-  bool refused_vehicle_ = false;           // used by the thread of vehicle_info only
-  std::atomic<bool> levels_known_{false};  // the inner loop has them, or will at its next step
+      0};                            // by vehicle_info, as ControlLevels::bits(); 0: not known yet
+  std::uint8_t adopted_levels_ = 0;  // used by the thread of run() only
+  bool refused_vehicle_ = false;     // used by the thread of vehicle_info only
+  SampleAnswers answers_;
+  std::unique_ptr<StepDriver> driver_;  // by the clock
   AnsweredSamples answered_samples_;
   Arrivals imu_arrivals_, pose_arrivals_, battery_arrivals_;
-  boost::lockfree::spsc_queue<Heartbeat, boost::lockfree::capacity<64>> heartbeats_;
-  runtime::LatestValue<Takeover> takeover_;  // to the thread of run()
-  std::atomic<bool> active_{false};
-  std::atomic<std::uint32_t> command_term_;  // of a command that is sent now; standby: that of its takeover
-  std::atomic<std::int64_t> active_heard_ns_{0};  // last of another active one; monotonic
-  std::atomic<bool> rival_{false};
-
-  runtime::RealtimeThread imu_thread_, pose_thread_, rotor_speed_thread_;
   Worker worker_;  // checks plans and designs gains
-
-  std::mutex gate_mutex_;  // lockstep: guards the inner loop and its inputs
-  LockstepGate gate_;
 
   dds::ThrottledWarning pose_faults_{"mocap_pose"};
   dds::ThrottledWarning battery_faults_{"battery"};
   dds::ThrottledWarning rotor_speed_faults_{"rotor_speeds"};
   dds::ThrottledWarning setpoint_faults_{"setpoint"};
-  dds::ThrottledWarning controller_faults_{"controller_state"};
   dds::ThrottledWarning ground_link_faults_{"ground_link"};
 
   struct Sensor {

@@ -268,7 +268,7 @@ TEST(Estimator, RefusesAPoseOlderThanItsHistory) {
   Motion motion;
   ASSERT_TRUE(estimator.predict(motion.imu(kStep_ns)));
   ASSERT_TRUE(estimator.correct(Motion::pose(kStep_ns, 1)));
-  for (int i = 0; i < 2 * Estimator::kHistory; ++i)
+  for (int i = 0; i < 2 * StateHistory::kCapacity; ++i)
     estimator.predict(motion.imu(estimator.estimate().stamp_ns + kStep_ns));
   EXPECT_FALSE(estimator.correct(Motion::pose(3 * kStep_ns, 2)));
 }
