@@ -44,8 +44,8 @@ void RealtimeDriver::on_sample(const VehicleSample& sample) {
 
 // Poses are needed to hold position: their thread has real-time priority, like the IMU's.
 void RealtimeDriver::on_sensor(Stream stream, std::uint64_t /*sequence*/, const std::function<void()>& put) {
-  if (stream == Stream::kPose) pose_thread_.enter(realtime_);
-  if (stream == Stream::kRotorSpeeds) rotor_speed_thread_.enter(realtime_);
+  if (stream == &plant::LockstepInputs::mocap_pose) pose_thread_.enter(realtime_);
+  if (stream == &plant::LockstepInputs::rotor_speeds) rotor_speed_thread_.enter(realtime_);
   put();
 }
 
