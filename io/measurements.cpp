@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
+#include "swiftlet/io/column.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/text.hpp"
@@ -13,41 +13,24 @@ namespace swiftlet::io {
 
 namespace {
 
-constexpr double kStandardGravity = 9.80665;  // m/s^2, defines the gram-force
-
-struct Unit {
-  const char* name;
-  double factor;  // to SI
-  std::vector<const char*> also;
-};
-
 struct QuantityKind {
   Quantity quantity;
   std::vector<std::string> names;  // accepted names, first the written one
-  std::vector<Unit> units;         // accepted units, first the SI one
+  Units units;                     // accepted units, first the SI one
 };
 
-const std::vector<Unit> kSeconds = {
-    {"s", 1.0, {"sec"}}, {"ms", 1e-3, {}}, {"us", 1e-6, {"\xc2\xb5s", "\xce\xbcs"}}};
-const std::vector<Unit> kVolts = {{"V", 1.0, {"volt"}}, {"mV", 1e-3, {}}};
-const std::vector<Unit> kMetres = {{"m", 1.0, {}}, {"cm", 1e-2, {}}, {"mm", 1e-3, {}}};
+const Units kVolts = {{"V", 1.0, {"volt"}}, {"mV", 1e-3, {}}};
 const std::vector<std::string> kCommandNames = {"throttle", "delta",       "command",
                                                 "pwm",      "pulse_width", "pulse"};
 
-const std::vector<Unit> kRates = {{"rad/s", 1.0, {"rads/s", "rad s^-1"}},
-                                  {"deg/s", M_PI / 180.0, {"dps", "\xc2\xb0/s"}},
-                                  {"mrad/s", 1e-3, {}}};
-const std::vector<Unit> kAccelerations = {{"m/s^2", 1.0, {"m/s2", "m/s\xc2\xb2", "m s^-2"}},
-                                          {"g", kStandardGravity, {"G"}},
-                                          {"mg", 1e-3 * kStandardGravity, {"milli-g"}}};
-const std::vector<Unit> kShares = {{"1", 1.0, {"-", "0..1"}},
-                                   {"%", 1e-2, {"percent"}},
-                                   {"0..65535", 1.0 / 65535.0, {"uint16", "16 bit"}},
-                                   {"0..255", 1.0 / 255.0, {"uint8", "8 bit"}}};
-const std::vector<Unit> kPulses = {{"us", 1.0, {"\xc2\xb5s", "\xce\xbcs"}}, {"ms", 1e3, {}}};
-const std::vector<Unit> kSpeeds = {{"rad/s", 1.0, {"rads/s", "rad s^-1"}},
-                                   {"rpm", 2.0 * M_PI / 60.0, {"RPM", "1/min", "rev/min"}},
-                                   {"rev/s", 2.0 * M_PI, {"Hz", "rps"}}};
+const Units kShares = {{"1", 1.0, {"-", "0..1"}},
+                       {"%", 1e-2, {"percent"}},
+                       {"0..65535", 1.0 / 65535.0, {"uint16", "16 bit"}},
+                       {"0..255", 1.0 / 255.0, {"uint8", "8 bit"}}};
+const Units kPulses = {{"us", 1.0, {"\xc2\xb5s", "\xce\xbcs"}}, {"ms", 1e3, {}}};
+const Units kSpeeds = {{"rad/s", 1.0, {"rads/s", "rad s^-1"}},
+                       {"rpm", 2.0 * M_PI / 60.0, {"RPM", "1/min", "rev/min"}},
+                       {"rev/s", 2.0 * M_PI, {"Hz", "rps"}}};
 
 // Combines each name with each ending: {"acc_x"}, {"_frd", ""} -> acc_x_frd, acc_x.
 std::vector<std::string> with_endings(const std::vector<std::string>& names,
@@ -144,39 +127,6 @@ const QuantityKind& kind_of(Quantity quantity) {
                        [&](const QuantityKind& kind) { return kind.quantity == quantity; });
 }
 
-template <typename Names>
-bool is_one_of(const std::string& text, const Names& names) {
-  return std::any_of(names.begin(), names.end(), [&](const auto& name) { return text == name; });
-}
-
-std::optional<double> factor_of(const QuantityKind& kind, const std::string& unit) {
-  for (const Unit& candidate : kind.units) {
-    if (unit == candidate.name || is_one_of(unit, candidate.also)) return candidate.factor;
-  }
-  return std::nullopt;
-}
-
-// "speed [rad/s]" -> "speed" and "rad/s"; no unit without brackets.
-struct Declaration {
-  std::string name;
-  std::optional<std::string> unit;
-};
-
-Declaration declaration_of(const std::string& header) {
-  const std::size_t open = header.find('[');
-  if (open == std::string::npos || header.back() != ']')
-    return {lower(std::string(trimmed(header))), std::nullopt};
-  return {lower(std::string(trimmed(header.substr(0, open)))),
-          std::string(trimmed(header.substr(open + 1, header.size() - open - 2)))};
-}
-
-std::string one_of(const std::vector<std::string>& choices) {
-  std::string text;
-  for (std::size_t i = 0; i < choices.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == choices.size() ? " or " : ", ") + choices[i];
-  return text;
-}
-
 std::vector<std::string> choices_of(const std::string& name,
                                     const std::vector<const QuantityKind*>& candidates) {
   std::vector<std::string> choices;
@@ -192,10 +142,13 @@ struct Column {
 };
 
 Column resolve(const std::string& header, const std::string& file, const std::vector<Quantity>& allowed) {
-  const Declaration declared = declaration_of(header);
+  Declaration declared = declaration_of(header);
+  declared.name = lower(declared.name);
   std::vector<const QuantityKind*> candidates;
   for (const Quantity quantity : allowed) {
-    if (is_one_of(declared.name, kind_of(quantity).names)) candidates.push_back(&kind_of(quantity));
+    const QuantityKind& kind = kind_of(quantity);
+    if (std::find(kind.names.begin(), kind.names.end(), declared.name) != kind.names.end())
+      candidates.push_back(&kind);
   }
   if (candidates.empty()) {
     std::vector<std::string> known;
@@ -207,7 +160,8 @@ Column resolve(const std::string& header, const std::string& file, const std::ve
   const std::string unit = declared.unit.value_or(declared.name);
   std::vector<Column> meant;
   for (const QuantityKind* kind : candidates) {
-    if (const auto factor = factor_of(*kind, unit)) meant.push_back({kind->quantity, *factor});
+    if (const Unit* const known = unit_of(kind->units, unit))
+      meant.push_back({kind->quantity, known->factor});
   }
   if (meant.size() == 1) return meant.front();
   const std::string choices = one_of(choices_of(declared.name, candidates));
@@ -240,7 +194,7 @@ const std::string& Measurements::header(Quantity quantity) const {
 
 Measurements parse_measurements(std::string_view text, const std::string& file_name,
                                 const std::vector<Quantity>& allowed) {
-  const CsvTable table = parse_csv_as_headed(text, file_name);
+  const Table table = parse_csv_as_headed(text, file_name);
   Measurements out;
   out.file_ = file_name;
   for (std::size_t row = 0; row < table.row_count(); ++row) out.lines_.push_back(table.line(row));

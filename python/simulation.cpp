@@ -165,9 +165,9 @@ py::dict simulate_batch(const PlannedFlight& planned, std::size_t runs, std::siz
 }
 
 // The table of a file with these columns.
-io::CsvTable table_of(const std::string& name, std::vector<std::string> columns,
-                      const std::vector<std::vector<double>>& rows) {
-  io::CsvTable table(name, std::move(columns));
+io::Table table_of(const std::string& name, std::vector<std::string> columns,
+                   const std::vector<std::vector<double>>& rows) {
+  io::Table table(name, std::move(columns));
   int number = 0;
   for (const std::vector<double>& row : rows) table.add_row(++number, row, {});
   return table;

@@ -70,7 +70,7 @@ std::vector<std::string> state_columns(int rotor_count) {
   return columns;
 }
 
-std::vector<PulseWidths> read_pulses(const io::CsvTable& table, const plant::Vehicle& vehicle) {
+std::vector<PulseWidths> read_pulses(const io::Table& table, const plant::Vehicle& vehicle) {
   const io::Bounds range =
       io::between(vehicle.esc.pulse_min_us, vehicle.esc.pulse_min_us + vehicle.esc.pulse_range_us);
   std::vector<PulseWidths> pulses(table.row_count());
@@ -95,7 +95,7 @@ std::vector<PulseWidths> read_pulses(const io::CsvTable& table, const plant::Veh
   return pulses;
 }
 
-plant::VehicleState read_state(const io::CsvTable& table, int rotor_count) {
+plant::VehicleState read_state(const io::Table& table, int rotor_count) {
   if (table.row_count() != 1) table.fail(1, "", "is a second row, the limit is one row");
   const auto value = [&](std::size_t column) {
     return table.number(0, column, io::between(-kLargest, kLargest));

@@ -29,8 +29,8 @@ std::vector<std::string> state_columns(int rotor_count);
 // of Eq. (8), times that do not increase, a run longer than 600 s, a quaternion whose length differs from 1
 // by more than 1e-3 (otherwise it is normalised), a negative rotor speed, and a number of states other than
 // one.
-std::vector<PulseWidths> read_pulses(const io::CsvTable& table, const plant::Vehicle& vehicle);
-plant::VehicleState read_state(const io::CsvTable& table, int rotor_count);
+std::vector<PulseWidths> read_pulses(const io::Table& table, const plant::Vehicle& vehicle);
+plant::VehicleState read_state(const io::Table& table, int rotor_count);
 
 struct MotionRow {
   std::int64_t time_ns = 0;

@@ -1,7 +1,6 @@
 #include "swiftlet/analysis/identify/bench_files.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <set>
 
 #include "swiftlet/io/atomic_write.hpp"
@@ -10,6 +9,7 @@
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/csv_writer.hpp"
 #include "swiftlet/io/measurements.hpp"
+#include "swiftlet/io/text.hpp"
 
 namespace swiftlet::analysis {
 namespace {
@@ -27,35 +27,66 @@ std::vector<std::string> experiment_names() {
   return names;
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name + ".csv";
-  return text;
-}
-
 void refuse_unknown_tables(const fs::path& folder) {
   const std::vector<std::string> known = experiment_names();
+  const std::string choices = io::joined(known, ".csv, ") + ".csv";
   std::set<fs::path> tables;
   std::error_code fault;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
-    std::string extension = entry.path().extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (extension == ".csv") tables.insert(entry.path());
+    if (io::lower(entry.path().extension().string()) == ".csv") tables.insert(entry.path());
   }
   if (fault) throw io::InputError(folder.string() + ": cannot be read: " + fault.message());
   for (const fs::path& table : tables) {
     if (table.extension() != ".csv" ||
         std::find(known.begin(), known.end(), table.stem().string()) == known.end())
-      throw io::InputError(table.string() + ": is not a known experiment, must be one of " + joined(known));
+      throw io::InputError(table.string() + ": is not a known experiment, must be one of " + choices);
   }
   if (tables.empty())
     throw io::InputError(folder.string() + ": contains no experiment, must contain at least one of " +
-                         joined(known));
+                         choices);
 }
 
-std::vector<double> column_or_nothing(const Measurements& table, Quantity quantity) {
-  return table.has(quantity) ? table.column(quantity) : std::vector<double>();
+// A column of an experiment, and where its values are.
+struct BenchColumn {
+  Quantity quantity;
+  std::vector<double>* values;
+  bool may_be_missing = false;
+};
+using BenchColumns = std::vector<BenchColumn>;
+
+// Calls use(name, data, columns of the data) for each experiment but the pendulums.
+template <typename Use>
+void for_each_experiment(BenchData& data, const Use& use) {
+  use(identification::kMassName, data.mass_kg, [](auto& d) { return BenchColumns{{Quantity::kMass, &d}}; });
+  use(identification::kEscName, data.esc, [](auto& d) {
+    return BenchColumns{{Quantity::kSupplyVoltage, &d.supply_voltage_v},
+                        {Quantity::kThrottle, &d.throttle},
+                        {Quantity::kMotorVoltage, &d.motor_voltage_v}};
+  });
+  use(identification::kThrustTorqueName, data.thrust_torque, [](auto& d) {
+    return BenchColumns{{Quantity::kSpeed, &d.speed_rad_s},
+                        {Quantity::kThrust, &d.thrust_n, true},
+                        {Quantity::kTorque, &d.torque_n_m, true}};
+  });
+  use(identification::kSteadyMotorName, data.steady_motor, [](auto& d) {
+    return BenchColumns{{Quantity::kMotorVoltage, &d.motor_voltage_v}, {Quantity::kSpeed, &d.speed_rad_s}};
+  });
+  use(identification::kMotorStepName, data.motor_step, [](auto& d) {
+    return BenchColumns{{Quantity::kTime, &d.time_s},
+                        {Quantity::kMotorVoltage, &d.motor_voltage_v, true},
+                        {Quantity::kSpeed, &d.speed_rad_s}};
+  });
+  use(identification::kThrottleThrustName, data.throttle_thrust, [](auto& d) {
+    return BenchColumns{{Quantity::kSupplyVoltage, &d.supply_voltage_v},
+                        {Quantity::kThrottle, &d.throttle},
+                        {Quantity::kThrust, &d.thrust_n}};
+  });
+}
+
+BenchColumns columns_of(identification::BifilarData& data) {
+  return {{Quantity::kLength, &data.length_m},
+          {Quantity::kSeparation, &data.separation_m},
+          {Quantity::kPeriod, &data.period_s}};
 }
 
 // Throttle delta of Eq. (8), from the column of throttles or of pulse widths.
@@ -85,58 +116,47 @@ class Loader {
  public:
   Loader(fs::path folder, const plant::Esc& esc) : folder_(std::move(folder)), esc_(esc) {}
 
-  template <typename Use>
-  void read(const char* name, const std::vector<Quantity>& allowed, const Use& use) {
-    const fs::path file = folder_ / (std::string(name) + ".csv");
-    if (!fs::exists(file)) return;
-    const Measurements table = io::load_measurements(file.string(), allowed);
-    use(table);
-    BenchFile& note = bench.files[name];
-    note.file = file.string();
-    for (std::size_t row = 0; row < table.row_count(); ++row) note.lines.push_back(table.line(row));
-  }
-
   void read_all() {
-    BenchData& data = bench.data;
-    read(identification::kMassName, {Quantity::kMass},
-         [&](const Measurements& t) { data.mass_kg = t.column(Quantity::kMass); });
-    read(identification::kEscName,
-         {Quantity::kSupplyVoltage, Quantity::kThrottle, Quantity::kPulseWidth, Quantity::kMotorVoltage},
-         [&](const Measurements& t) {
-           data.esc = {t.column(Quantity::kSupplyVoltage), throttles(t, esc_),
-                       t.column(Quantity::kMotorVoltage)};
-         });
-    read(identification::kThrustTorqueName, {Quantity::kSpeed, Quantity::kThrust, Quantity::kTorque},
-         [&](const Measurements& t) {
-           data.thrust_torque = {t.column(Quantity::kSpeed), column_or_nothing(t, Quantity::kThrust),
-                                 column_or_nothing(t, Quantity::kTorque)};
-         });
-    read(identification::kSteadyMotorName, {Quantity::kMotorVoltage, Quantity::kSpeed},
-         [&](const Measurements& t) {
-           data.steady_motor = {t.column(Quantity::kMotorVoltage), t.column(Quantity::kSpeed)};
-         });
-    read(identification::kMotorStepName, {Quantity::kTime, Quantity::kSpeed, Quantity::kMotorVoltage},
-         [&](const Measurements& t) {
-           data.motor_step = {t.column(Quantity::kTime), t.column(Quantity::kSpeed),
-                              column_or_nothing(t, Quantity::kMotorVoltage)};
-         });
-    read(identification::kThrottleThrustName,
-         {Quantity::kSupplyVoltage, Quantity::kThrottle, Quantity::kPulseWidth, Quantity::kThrust},
-         [&](const Measurements& t) {
-           data.throttle_thrust = {t.column(Quantity::kSupplyVoltage), throttles(t, esc_),
-                                   t.column(Quantity::kThrust)};
-         });
+    for_each_experiment(bench.data, [&](const char* name, auto& data, const auto& columns_in) {
+      if (!fs::exists(file_of(name))) return;
+      const BenchColumns columns = columns_in(data.emplace());
+      std::vector<Quantity> allowed;
+      for (const BenchColumn& column : columns) {
+        allowed.push_back(column.quantity);
+        if (column.quantity == Quantity::kThrottle) allowed.push_back(Quantity::kPulseWidth);
+      }
+      fill(columns, read(name, allowed));
+    });
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      read(identification::kInertiaNames[axis],
-           {Quantity::kLength, Quantity::kSeparation, Quantity::kArm, Quantity::kPeriod},
-           [&](const Measurements& t) { data.inertia[axis] = inertia(t); });
+      const char* const name = identification::kInertiaNames[axis];
+      if (!fs::exists(file_of(name))) continue;
+      bench.data.inertia[axis] =
+          inertia(read(name, {Quantity::kLength, Quantity::kSeparation, Quantity::kArm, Quantity::kPeriod}));
     }
   }
 
   Bench bench;
 
  private:
-  static identification::InertiaData inertia(const Measurements& t) {
+  fs::path file_of(const char* name) const { return folder_ / (std::string(name) + ".csv"); }
+
+  Measurements read(const char* name, const std::vector<Quantity>& allowed) {
+    Measurements table = io::load_measurements(file_of(name).string(), allowed);
+    BenchFile& note = bench.files[name];
+    note.file = table.file();
+    for (std::size_t row = 0; row < table.row_count(); ++row) note.lines.push_back(table.line(row));
+    return table;
+  }
+
+  void fill(const BenchColumns& columns, const Measurements& table) const {
+    for (const BenchColumn& column : columns) {
+      if (column.may_be_missing && !table.has(column.quantity)) continue;
+      *column.values =
+          column.quantity == Quantity::kThrottle ? throttles(table, esc_) : table.column(column.quantity);
+    }
+  }
+
+  identification::InertiaData inertia(const Measurements& t) const {
     const bool strings = t.has(Quantity::kLength) || t.has(Quantity::kSeparation);
     if (strings == t.has(Quantity::kArm)) {
       throw io::ConfigError(
@@ -145,9 +165,9 @@ class Loader {
     }
     if (!strings)
       return {{}, identification::SwingData{t.column(Quantity::kArm), t.column(Quantity::kPeriod)}};
-    return {identification::BifilarData{t.column(Quantity::kLength), t.column(Quantity::kSeparation),
-                                        t.column(Quantity::kPeriod)},
-            {}};
+    identification::BifilarData data;
+    fill(columns_of(data), t);
+    return {std::move(data), {}};
   }
 
   fs::path folder_;
@@ -159,14 +179,13 @@ std::optional<double> spread_of(const io::ConfigNode& instruments, const char* k
   return node ? std::optional<double>(node->quantity(unit).number(io::above(0.0))) : std::nullopt;
 }
 
-void write_table(const fs::path& file,
-                 const std::vector<std::pair<Quantity, const std::vector<double>*>>& columns) {
+void write_table(const fs::path& file, const BenchColumns& columns) {
   std::vector<std::string> names;
   names.reserve(columns.size());
-  for (const auto& [quantity, values] : columns) names.push_back(io::header_of(quantity));
+  for (const BenchColumn& column : columns) names.push_back(io::header_of(column.quantity));
   io::CsvWriter csv(file, names);
-  for (std::size_t row = 0; row < columns.front().second->size(); ++row) {
-    for (const auto& [quantity, values] : columns) csv.exact((*values)[row]);
+  for (std::size_t row = 0; row < columns.front().values->size(); ++row) {
+    for (const BenchColumn& column : columns) csv.exact((*column.values)[row]);
     csv.end_row();
   }
   csv.finish();
@@ -211,44 +230,15 @@ Bench load_bench(const fs::path& folder, const BenchSettings& settings, const pl
   return std::move(loader.bench);
 }
 
-void write_bench(const fs::path& folder, const BenchData& data, const std::string& settings_yaml) {
+void write_bench(const fs::path& folder, BenchData data, const std::string& settings_yaml) {
   fs::create_directories(folder);
   const auto file = [&](const char* name) { return folder / (std::string(name) + ".csv"); };
-  if (data.mass_kg) write_table(file(identification::kMassName), {{Quantity::kMass, &*data.mass_kg}});
-  if (data.esc) {
-    write_table(file(identification::kEscName), {{Quantity::kSupplyVoltage, &data.esc->supply_voltage_v},
-                                                 {Quantity::kThrottle, &data.esc->throttle},
-                                                 {Quantity::kMotorVoltage, &data.esc->motor_voltage_v}});
-  }
-  if (data.thrust_torque) {
-    write_table(file(identification::kThrustTorqueName),
-                {{Quantity::kSpeed, &data.thrust_torque->speed_rad_s},
-                 {Quantity::kThrust, &data.thrust_torque->thrust_n},
-                 {Quantity::kTorque, &data.thrust_torque->torque_n_m}});
-  }
-  if (data.steady_motor) {
-    write_table(file(identification::kSteadyMotorName),
-                {{Quantity::kMotorVoltage, &data.steady_motor->motor_voltage_v},
-                 {Quantity::kSpeed, &data.steady_motor->speed_rad_s}});
-  }
-  if (data.motor_step) {
-    write_table(file(identification::kMotorStepName),
-                {{Quantity::kTime, &data.motor_step->time_s},
-                 {Quantity::kMotorVoltage, &data.motor_step->motor_voltage_v},
-                 {Quantity::kSpeed, &data.motor_step->speed_rad_s}});
-  }
-  if (data.throttle_thrust) {
-    write_table(file(identification::kThrottleThrustName),
-                {{Quantity::kSupplyVoltage, &data.throttle_thrust->supply_voltage_v},
-                 {Quantity::kThrottle, &data.throttle_thrust->throttle},
-                 {Quantity::kThrust, &data.throttle_thrust->thrust_n}});
-  }
+  for_each_experiment(data, [&](const char* name, auto& experiment, const auto& columns_in) {
+    if (experiment) write_table(file(name), columns_in(*experiment));
+  });
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!data.inertia[axis] || !data.inertia[axis]->bifilar) continue;
-    const identification::BifilarData& strings = *data.inertia[axis]->bifilar;
-    write_table(file(identification::kInertiaNames[axis]), {{Quantity::kLength, &strings.length_m},
-                                                            {Quantity::kSeparation, &strings.separation_m},
-                                                            {Quantity::kPeriod, &strings.period_s}});
+    write_table(file(identification::kInertiaNames[axis]), columns_of(*data.inertia[axis]->bifilar));
   }
   io::write_atomically(folder / kBenchSettingsFile, settings_yaml);
 }

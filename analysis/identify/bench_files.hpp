@@ -63,7 +63,7 @@ Bench load_bench(const std::filesystem::path& folder, const BenchSettings& setti
 
 // Writes the experiments of data to folder and creates it if necessary. Writes no physical pendulum data.
 // Throws std::runtime_error.
-void write_bench(const std::filesystem::path& folder, const identification::BenchData& data,
+void write_bench(const std::filesystem::path& folder, identification::BenchData data,
                  const std::string& settings_yaml);
 
 }  // namespace swiftlet::analysis

@@ -107,11 +107,11 @@ io::SetpointSource open(const StreamOptions& options) {
   std::istream& in = piped ? std::cin : *file;
   std::string first;
   std::getline(in, first);
-  const std::vector<std::string> header = io::table_header(first, name);
+  const std::vector<std::string> header = io::first_csv_line(first, name);
   if (header.empty()) throw io::ConfigError(name, 0, "", "is empty, must hold setpoints such as t,x,y,z");
   std::vector<io::TimedSetpoint> rows;
   if (io::is_flight_csv(header)) {
-    const io::CsvTable reference = io::reference_of_flight(first + "\n" + rest_of(in), name);
+    const io::Table reference = io::reference_of_flight(first + "\n" + rest_of(in), name);
     say(name, io::extent_of(reference));
     rows = io::setpoints_of(reference, options.frame);
   } else {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -14,6 +13,8 @@
 
 #include "swiftlet/io/byte_reader.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/math/angles.hpp"
 
 namespace swiftlet::io {
@@ -143,11 +144,8 @@ class CrazyflieReader {
     if (known == std::string_view::npos)
       fail(fmt::format("has the variable {}, must be a name and one of the types {} in brackets",
                        text.substr(0, 60), kTypes));
-    Variable variable{text.substr(0, size - 3), text[size - 2]};
-    std::transform(variable.name.begin(), variable.name.end(), variable.name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     type.bytes += kBytes[known];
-    type.variables.push_back(std::move(variable));
+    type.variables.push_back({lower(text.substr(0, size - 3)), text[size - 2]});
   }
 
   std::vector<Event> events_of(std::uint16_t wanted) {
@@ -210,23 +208,24 @@ bool is_crazyflie_log(std::string_view bytes) {
   return !bytes.empty() && static_cast<std::uint8_t>(bytes.front()) == kMagic;
 }
 
-CrazyflieLog read_crazyflie_log(std::string_view bytes, const std::string& file_name) {
+MissionTable read_crazyflie_log(std::string_view bytes, const std::string& file_name) {
   const auto [type, events] = CrazyflieReader(bytes, file_name).read();
   Heading heading{type.find("stateestimate.yaw"),
                   {type.find("stateestimate.qw"), type.find("stateestimate.qx"),
                    type.find("stateestimate.qy"), type.find("stateestimate.qz")}};
   const bool turns = heading.yaw_deg || heading.has_quaternion();
-  CrazyflieLog log;
-  log.table = turns ? "t,x,y,z,yaw\n" : "t,x,y,z\n";
+  MissionTable log{{file_name, turns ? std::vector<std::string>{"t", "x", "y", "z", "yaw"}
+                                     : std::vector<std::string>{"t", "x", "y", "z"}},
+                   {}};
   for (std::size_t i = 0; i < events.size(); ++i) {
     const std::vector<double>& values = events[i].values;
-    std::string row = fmt::format("{:.6f}", events[i].time_s);
+    std::vector<std::string> row = {fmt::format("{:.6f}", events[i].time_s)};
     for (const char* const axis : {"x", "y", "z"})
-      row += fmt::format(",{:.6f}", values[*type.find(std::string("stateestimate.") + axis)]);
-    if (turns) row += fmt::format(",{:.5f}", std::remainder(heading.of(values), 2.0 * M_PI));
-    if (row.find("nan") != std::string::npos || row.find("inf") != std::string::npos)
+      row.push_back(fmt::format("{:.6f}", values[*type.find(std::string("stateestimate.") + axis)]));
+    if (turns) row.push_back(fmt::format("{:.5f}", std::remainder(heading.of(values), 2.0 * M_PI)));
+    if (!std::all_of(row.begin(), row.end(), is_number))
       throw ConfigError(file_name, 0, "", fmt::format("event {} has an estimate that is not finite", i + 1));
-    log.table += row + "\n";
+    log.table.add_row(static_cast<int>(i) + 2, std::vector<std::string_view>(row.begin(), row.end()));
   }
   log.assumptions.push_back(fmt::format(
       "a log of a Crazyflie: the estimated position{} of its {} events {}; line n of messages is event n - 1",

@@ -10,19 +10,16 @@
 
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "swiftlet/io/missions/mission_table.hpp"
 
 namespace swiftlet::io {
 
 bool is_crazyflie_log(std::string_view bytes);
 
-struct CrazyflieLog {
-  // t,x,y,z and, if it is logged, yaw: s since the first row, m and rad, of stateEstimate, a row for each event
-  std::string table;
-  std::vector<std::string> assumptions;
-};
-
+// Returns the columns t, x, y, z and, if it is logged, yaw: s since the first row, m and rad, of stateEstimate, a row for
+// each event.
 // Throws io::ConfigError for a log that is cut or damaged, of another version, or without the estimated position.
-CrazyflieLog read_crazyflie_log(std::string_view bytes, const std::string& file_name);
+MissionTable read_crazyflie_log(std::string_view bytes, const std::string& file_name);
 
 }  // namespace swiftlet::io

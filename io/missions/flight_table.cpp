@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
 
 #include <fmt/core.h>
 
-#include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
 
 namespace swiftlet::io {
@@ -60,8 +59,8 @@ std::vector<std::size_t> places(const std::vector<std::string>& header, const st
 
 struct Row {
   int line = 0;
-  std::vector<double> numbers;      // in the order of kFlightColumns
-  std::vector<std::string> fields;  // as they are written
+  std::vector<double> numbers;           // in the order of kFlightColumns
+  std::vector<std::string_view> fields;  // as they are written
 
   double speed() const { return std::hypot(numbers[kVx], numbers[kVx + 1], numbers[kVx + 2]); }
   bool is_between_takeoff_and_landing() const {
@@ -69,28 +68,21 @@ struct Row {
   }
 };
 
-// The rows that have a reference.
-std::vector<Row> rows_of(std::istream& in, const std::vector<std::string>& header,
+// The rows that have a reference. lines: the first is the header.
+std::vector<Row> rows_of(const std::vector<CsvLine>& lines, const std::vector<std::string>& header,
                          const std::vector<std::size_t>& places, const std::string& file_name) {
   std::vector<Row> rows;
-  int line = 1;
-  for (std::string text; std::getline(in, text);) {
-    ++line;
-    const std::vector<std::string> fields = io::first_csv_line(text, file_name, line);
-    if (fields.empty()) continue;
-    if (fields.size() != header.size()) {
-      throw ConfigError(file_name, line, "",
-                        fmt::format("has {} fields, must have {}", fields.size(), header.size()));
-    }
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const auto& [number, text] = lines[i];
+    const std::vector<std::string_view> fields = csv_fields(text, header.size());
+    require_fields(fields, header, file_name, number);
     if (fields[places[1]].empty()) continue;
-    Row row{line, {}, {}};
+    Row& row = rows.emplace_back();
+    row.line = number;
     for (const std::size_t place : places) {
-      const auto number = io::parse_number(fields[place]);
-      if (!number) throw ConfigError(file_name, line, header[place], "is not a finite number");
-      row.numbers.push_back(*number);
+      row.numbers.push_back(csv_number(fields[place], header[place], file_name, number));
       row.fields.push_back(fields[place]);
     }
-    rows.push_back(std::move(row));
   }
   return rows;
 }
@@ -110,19 +102,11 @@ void stop(std::vector<double>& numbers) {
 
 }  // namespace
 
-std::vector<std::string> table_header(std::string_view text, const std::string& file_name) {
-  std::vector<std::string> header = io::first_csv_line(text, file_name);
-  if (header.size() > 1 && header.back().empty()) header.pop_back();
-  return header;
-}
-
-io::CsvTable reference_of_flight(const std::string& text, const std::string& file_name) {
-  std::istringstream in(text);
-  std::string first;
-  std::getline(in, first);
-  const std::vector<std::string> header = table_header(first, file_name);
+Table reference_of_flight(std::string_view text, const std::string& file_name) {
+  const std::vector<CsvLine> lines = csv_lines(text, file_name);
+  const std::vector<std::string> header = first_csv_line(text, file_name);
   const std::vector<std::size_t> at = places(header, file_name);
-  std::vector<Row> rows = rows_of(in, header, at, file_name);
+  std::vector<Row> rows = rows_of(lines, header, at, file_name);
   const auto flown = [](const Row& row) { return row.is_between_takeoff_and_landing(); };
   const auto begin = calmest(std::find_if(rows.begin(), rows.end(), flown), rows.end());
   const auto end = calmest(std::find_if(rows.rbegin(), rows.rend(), flown), rows.rend()).base();
@@ -136,14 +120,12 @@ io::CsvTable reference_of_flight(const std::string& text, const std::string& fil
   stop((end - 1)->numbers);
   std::vector<std::string> columns;
   for (std::size_t i = 0; i < at.size(); ++i) columns.emplace_back(kFlightColumns[i].header);
-  io::CsvTable table(file_name, columns);
-  std::for_each(begin, end, [&](const Row& row) {
-    table.add_row(row.line, row.numbers, {row.fields.begin(), row.fields.end()});
-  });
+  Table table(file_name, columns);
+  std::for_each(begin, end, [&](const Row& row) { table.add_row(row.line, row.numbers, row.fields); });
   return table;
 }
 
-std::string extent_of(const io::CsvTable& reference) {
+std::string extent_of(const Table& reference) {
   return fmt::format(
       "the reference of a recorded flight between take-off and landing, t = {:.2f} to {:.2f} s, in NED",
       reference.number(0, 0), reference.number(reference.row_count() - 1, 0));

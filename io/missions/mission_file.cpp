@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <stdexcept>
 
 #include <fmt/core.h>
 
@@ -12,6 +11,8 @@
 #include "swiftlet/io/config.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/missions/mission_items.hpp"
+#include "swiftlet/io/missions/whole_flight.hpp"
+#include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::io {
 namespace {
@@ -160,52 +161,36 @@ bool MissionFile::lands() const {
   return !mission.items.empty() && mission.items.back().kind == MissionItemKind::kLand;
 }
 
-MissionFile load_mission_file(const std::string& path, const control::Limits& settings,
-                              const FileOptions& options) {
-  const Source source = read_source(path, options);
+MissionFile parse_any_mission_file(const std::string& text, const std::string& file_name,
+                                   const control::Limits& settings, const FileOptions& options) {
+  const Source source = parse_source(text, file_name, options);
   const control::MissionBounds bounds = fence_of(options, settings);
   const control::Limits limits = control::tightened(settings, bounds);
-  const auto with = [&](MissionFile file) {
+  MissionFile file;
+  if (auto path = path_of(source, limits, options)) {
+    file = whole_flight(file_name, std::move(*path), limits);
+  } else if (source.plan) {
+    file = time_scaled(mission_of(*source.plan, limits, options.placement), limits, options, file_name);
     file.assumptions.insert(file.assumptions.begin(), source.assumptions.begin(), source.assumptions.end());
-    say_placement(options, file.assumptions);
-    if (source.format != MissionFormat::kYaml) file.mission.bounds = bounds;
-    return file;
-  };
-  switch (source.format) {
-    case MissionFormat::kYaml:
-      return with(
-          time_scaled(parse_mission_file(source.text, path, settings, options), settings, options, path));
-    case MissionFormat::kPolynomialCsv:
-      return with(parse_polynomial_csv(source.text, path, limits, options, source.first_line));
-    case MissionFormat::kSampledCsv:
-      return with(parse_sampled_csv(source.text, path, limits, options, source.first_line));
-    case MissionFormat::kWaypointCsv:
-      return with(parse_waypoint_csv(source.text, path, limits, options, source.first_line));
-    case MissionFormat::kQGroundControlPlan:
-      return with(
-          time_scaled(parse_qgroundcontrol_plan(source.text, path, limits, options), limits, options, path));
+  } else {
+    file = time_scaled(parse_mission_file(text, file_name, settings, options), settings, options, file_name);
   }
-  throw std::logic_error("a format that is not read");
+  if (source.format != MissionFormat::kYaml) file.mission.bounds = bounds;
+  say_placement(options, file.assumptions);
+  return file;
+}
+
+MissionFile load_mission_file(const std::string& path, const control::Limits& settings,
+                              const FileOptions& options) {
+  return parse_any_mission_file(read_text_file(path), path, settings, options);
 }
 
 TrajectoryFile load_trajectory_file(const std::string& path, const control::Limits& settings,
                                     const FileOptions& options) {
-  const Source source = read_source(path, options);
   const control::Limits limits = control::tightened(settings, fence_of(options, settings));
-  const auto with = [&](TrajectoryFile file) {
-    file.assumptions.insert(file.assumptions.begin(), source.assumptions.begin(), source.assumptions.end());
-    say_placement(options, file.assumptions);
-    return file;
-  };
-  switch (source.format) {
-    case MissionFormat::kPolynomialCsv:
-      return with(read_polynomial_csv(source.text, path, limits, options, source.first_line));
-    case MissionFormat::kSampledCsv:
-      return with(read_sampled_csv(source.text, path, limits, options, source.first_line));
-    case MissionFormat::kWaypointCsv:
-      return with(read_waypoint_csv(source.text, path, limits, options, source.first_line));
-    default:
-      break;
+  if (auto file = path_of(read_source(path, options), limits, options)) {
+    say_placement(options, file->assumptions);
+    return std::move(*file);
   }
   MissionFile file = load_mission_file(path, settings, options);
   const auto is_trajectory = [](const control::MissionItem& item) {

@@ -48,12 +48,15 @@ struct MissionFile {
   bool lands() const;
 };
 
-// Both throw io::ConfigError with file, line, key, value and limit for a violation of the format, the
-// limits or the fence. load_mission_file() reads any supported format, parse_mission_file() YAML only.
+// All throw io::ConfigError with file, line, key, value and limit for a violation of the format, the
+// limits or the fence. load_mission_file() and parse_any_mission_file() read any supported format,
+// parse_mission_file() YAML only.
 // Trajectory files are searched in the folder of file_name. Options that do not apply to the format of the file
 // are refused.
 MissionFile load_mission_file(const std::string& path, const control::Limits& limits,
                               const FileOptions& options = {});
+MissionFile parse_any_mission_file(const std::string& text, const std::string& file_name,
+                                   const control::Limits& limits, const FileOptions& options = {});
 MissionFile parse_mission_file(const std::string& text, const std::string& file_name,
                                const control::Limits& limits, const FileOptions& options = {});
 

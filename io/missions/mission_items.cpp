@@ -171,20 +171,12 @@ class ItemReader {
     options.placement = placement_;
     options.time_scale = time_scale_;
     const Source source = read_source(path, options);
-    const auto with = [&](TrajectoryFile file) {
-      for (control::PolynomialSegment& segment : file.segments)
-        segment = control::stretched(segment, 1.0 / time_scale_);
-      file.assumptions.insert(file.assumptions.begin(), source.assumptions.begin(), source.assumptions.end());
-      return file;
-    };
-    switch (source.format) {
-      case MissionFormat::kPolynomialCsv:
-        return with(read_polynomial_csv(source.text, path, limits_, options, source.first_line));
-      case MissionFormat::kSampledCsv:
-        return with(read_sampled_csv(source.text, path, limits_, options, source.first_line));
-      default:
-        name.fail("is " + name.text() + ", must be a trajectory: polynomials or samples as CSV");
-    }
+    if (source.format != MissionFormat::kPolynomialCsv && source.format != MissionFormat::kSampledCsv)
+      name.fail("is " + name.text() + ", must be a trajectory: polynomials or samples as CSV");
+    TrajectoryFile file = *path_of(source, limits_, options);
+    for (control::PolynomialSegment& segment : file.segments)
+      segment = control::stretched(segment, 1.0 / time_scale_);
+    return file;
   }
 
   // Adds the segments to those of the mission.

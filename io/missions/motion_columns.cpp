@@ -4,82 +4,53 @@
 #include <cmath>
 
 #include "swiftlet/io/config_error.hpp"
-#include "swiftlet/io/text.hpp"
-#include "swiftlet/math/angles.hpp"
 
 namespace swiftlet::io {
 namespace {
 
-constexpr double kStandardGravity = 9.80665;  // m/s^2, one g
-
-struct Unit {
-  const char* name;
-  double factor;  // to SI
-};
-const std::vector<Unit> kSeconds = {{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}};
-const std::vector<Unit> kMetres = {{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}};
-const std::vector<Unit> kSpeeds = {{"m/s", 1.0}, {"cm/s", 1e-2}};
-const std::vector<Unit> kAccelerations = {{"m/s^2", 1.0}, {"m/s2", 1.0}, {"g", kStandardGravity}};
-const std::vector<Unit> kAngles = {{"rad", 1.0}, {"deg", math::kRadPerDeg}};
-const std::vector<Unit> kRates = {{"rad/s", 1.0}, {"deg/s", math::kRadPerDeg}};
-
 enum class Axes { kNone, kWorld, kBody };
+
+// Names in tables of other programs, in lower case. * is the axis.
+using Names = std::vector<std::string>;
+const Names kTimes = {"t", "time", "times", "timestamp", "stamp", "time_s", "t_s", "sec", "secs", "seconds"};
+const Names kPositions = {"*",          "p_*", "p*",       "pos_*",          "position_*",
+                          "position.*", "t*",  "p_rs_r_*", "stateestimate.*"};
+const Names kVelocities = {"v*", "v_*", "vel_*", "velocity_*", "v_rs_r_*", "stateestimate.v*"};
+const Names kLinear = {"a*", "a_*", "a_lin_*", "acc_*", "acceleration_*"};
+const Names kYaws = {"yaw", "heading", "psi"};
+const Names kYawRates = {"yaw_rate", "yawrate", "yaw_dot"};
+const Names kNoNames;
 
 struct Known {
   const char* name;
-  const std::vector<Unit>* units;  // first the SI one
-  Axes axes;                       // what the ending of the name may say
+  const Units* units;
+  Axes axes;  // what the ending of the name may say
+  const Names* foreign;
 };
 // Indexed by Motion.
-const std::array<Known, 18> kKnownColumns = {{{"t", &kSeconds, Axes::kNone},
-                                              {"x", &kMetres, Axes::kWorld},
-                                              {"y", &kMetres, Axes::kWorld},
-                                              {"z", &kMetres, Axes::kWorld},
-                                              {"vx", &kSpeeds, Axes::kWorld},
-                                              {"vy", &kSpeeds, Axes::kWorld},
-                                              {"vz", &kSpeeds, Axes::kWorld},
-                                              {"ax", &kAccelerations, Axes::kWorld},
-                                              {"ay", &kAccelerations, Axes::kWorld},
-                                              {"az", &kAccelerations, Axes::kWorld},
-                                              {"yaw", &kAngles, Axes::kWorld},
-                                              {"yaw_rate", &kRates, Axes::kWorld},
-                                              {"roll", &kAngles, Axes::kNone},
-                                              {"pitch", &kAngles, Axes::kNone},
-                                              {"p", &kRates, Axes::kBody},
-                                              {"q", &kRates, Axes::kBody},
-                                              {"r", &kRates, Axes::kBody},
-                                              {"thrust", &kAccelerations, Axes::kNone}}};
+const std::array<Known, 18> kKnownColumns = {{{"t", &kSeconds, Axes::kNone, &kTimes},
+                                              {"x", &kMetres, Axes::kWorld, &kPositions},
+                                              {"y", &kMetres, Axes::kWorld, &kPositions},
+                                              {"z", &kMetres, Axes::kWorld, &kPositions},
+                                              {"vx", &kMetresPerSecond, Axes::kWorld, &kVelocities},
+                                              {"vy", &kMetresPerSecond, Axes::kWorld, &kVelocities},
+                                              {"vz", &kMetresPerSecond, Axes::kWorld, &kVelocities},
+                                              {"ax", &kAccelerations, Axes::kWorld, &kLinear},
+                                              {"ay", &kAccelerations, Axes::kWorld, &kLinear},
+                                              {"az", &kAccelerations, Axes::kWorld, &kLinear},
+                                              {"yaw", &kRadians, Axes::kWorld, &kYaws},
+                                              {"yaw_rate", &kRates, Axes::kWorld, &kYawRates},
+                                              {"roll", &kRadians, Axes::kNone, &kNoNames},
+                                              {"pitch", &kRadians, Axes::kNone, &kNoNames},
+                                              {"p", &kRates, Axes::kBody, &kNoNames},
+                                              {"q", &kRates, Axes::kBody, &kNoNames},
+                                              {"r", &kRates, Axes::kBody, &kNoNames},
+                                              {"thrust", &kAccelerations, Axes::kNone, &kNoNames}}};
 
 const Known& known(Motion column) { return kKnownColumns[static_cast<std::size_t>(column)]; }
 
 [[noreturn]] void refuse(const std::string& file, const std::string& message) {
   throw io::ConfigError(file, 1, "header", message);
-}
-
-bool ends_with(const std::string& text, const std::string& ending) {
-  return text.size() > ending.size() && text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
-}
-
-// "x_ned [m]" -> "x", "_ned" and "m".
-struct Declaration {
-  std::string name;
-  std::string axes;  // "_ned", "_enu", "_frd" or none
-  std::optional<std::string> unit;
-};
-
-Declaration declaration_of(const std::string& header) {
-  Declaration out;
-  const std::size_t open = header.find('[');
-  if (open != std::string::npos && header.back() == ']')
-    out.unit = io::trimmed(header.substr(open + 1, header.size() - open - 2));
-  out.name = io::trimmed(header.substr(0, open));
-  for (const char* axes : {"_ned", "_enu", "_nwu", "_frd"}) {
-    if (!ends_with(out.name, axes)) continue;
-    out.axes = axes;
-    out.name.resize(out.name.size() - out.axes.size());
-    break;
-  }
-  return out;
 }
 
 bool may_end_in(const Known& column, const std::string& axes) {
@@ -94,17 +65,47 @@ std::string full_header_of(const Known& column) {
 }
 
 std::string all_headers() {
-  std::string text;
-  for (std::size_t i = 0; i < kKnownColumns.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == kKnownColumns.size() ? " or " : ", ") + full_header_of(kKnownColumns[i]);
-  return text;
+  std::vector<std::string> headers;
+  for (const Known& column : kKnownColumns) headers.push_back(full_header_of(column));
+  return one_of(headers);
 }
 
 constexpr std::array<MissionFrame, 3> kFrames = {MissionFrame::kNed, MissionFrame::kEnu, MissionFrame::kNwu};
 
 }  // namespace
 
-std::string motion_name(const std::string& header) { return declaration_of(header).name; }
+MotionDeclaration motion_declaration_of(const std::string& header) {
+  Declaration declared = declaration_of(header);
+  MotionDeclaration out{std::move(declared.name), "", std::move(declared.unit)};
+  const std::size_t ending = out.name.size() > 4 ? out.name.size() - 4 : 0;
+  for (const char* const axes : {"_ned", "_enu", "_nwu", "_frd"}) {
+    if (ending == 0 || out.name.compare(ending, 4, axes) != 0) continue;
+    out.axes = axes;
+    out.name.resize(ending);
+    break;
+  }
+  return out;
+}
+
+bool is_motion(const std::string& header) {
+  const std::string name = motion_declaration_of(header).name;
+  return std::any_of(kKnownColumns.begin(), kKnownColumns.end(),
+                     [&](const Known& candidate) { return name == candidate.name; });
+}
+
+std::optional<Motion> motion_of(const std::string& foreign_name) {
+  for (std::size_t i = 0; i < kKnownColumns.size(); ++i) {
+    for (std::string name : *kKnownColumns[i].foreign) {
+      std::replace(name.begin(), name.end(), '*', std::string_view(kKnownColumns[i].name).back());
+      if (name == foreign_name) return static_cast<Motion>(i);
+    }
+  }
+  return std::nullopt;
+}
+
+std::string name_of(Motion column) { return known(column).name; }
+
+const Units& units_of(Motion column) { return *known(column).units; }
 
 std::string header_of(Motion column) {
   return std::string(known(column).name) + " [" + known(column).units->front().name + "]";
@@ -113,12 +114,12 @@ std::string header_of(Motion column) {
 MotionColumns::MotionColumns(const std::vector<std::string>& header, const std::string& file_name,
                              std::optional<MissionFrame> frame) {
   declares_units_ = std::any_of(header.begin(), header.end(), [](const std::string& column) {
-    return declaration_of(column).unit.has_value();
+    return motion_declaration_of(column).unit.has_value();
   });
   std::optional<MissionFrame> named;
   for (const std::string& column : header) {
     read(column, file_name);
-    const std::string axes = declaration_of(column).axes;
+    const std::string axes = motion_declaration_of(column).axes;
     const auto its = std::find_if(kFrames.begin(), kFrames.end(), [&](MissionFrame candidate) {
       return axes == std::string("_") + frame_name(candidate);
     });
@@ -132,7 +133,7 @@ MotionColumns::MotionColumns(const std::vector<std::string>& header, const std::
 }
 
 void MotionColumns::read(const std::string& header, const std::string& file_name) {
-  const Declaration declared = declaration_of(header);
+  const MotionDeclaration declared = motion_declaration_of(header);
   const auto found = std::find_if(kKnownColumns.begin(), kKnownColumns.end(), [&](const Known& candidate) {
     return declared.name == candidate.name && may_end_in(candidate, declared.axes);
   });
@@ -140,11 +141,9 @@ void MotionColumns::read(const std::string& header, const std::string& file_name
     refuse(file_name, "has the column " + header + ", must be " + all_headers());
   const auto column = static_cast<Motion>(found - kKnownColumns.begin());
   if (has(column)) refuse(file_name, "has the column " + declared.name + " twice, must have it once");
-  const std::vector<Unit>& units = *found->units;
-  const std::string unit = declared.unit.value_or(units.front().name);
-  const auto meant =
-      std::find_if(units.begin(), units.end(), [&](const Unit& candidate) { return unit == candidate.name; });
-  if (meant == units.end() || declared.unit.has_value() != declares_units_) {
+  const Units& units = *found->units;
+  const Unit* const meant = unit_of(units, declared.unit.value_or(units.front().name));
+  if (meant == nullptr || declared.unit.has_value() != declares_units_) {
     std::string choices;
     for (const Unit& choice : units)
       choices += (choices.empty() ? "" : " or ") + declared.name + declared.axes + " [" + choice.name + "]";
@@ -243,10 +242,9 @@ void require_columns(const MotionColumns& columns, const std::string& file_name,
 }
 
 std::string list_of(const std::vector<Motion>& columns) {
-  std::string text;
-  for (std::size_t i = 0; i < columns.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == columns.size() ? " and " : ", ") + header_of(columns[i]);
-  return text;
+  std::vector<std::string> headers;
+  for (const Motion column : columns) headers.push_back(header_of(column));
+  return one_of(headers, " and ");
 }
 
 }  // namespace swiftlet::io

@@ -18,6 +18,7 @@
 
 #include <Eigen/Core>
 
+#include "swiftlet/io/column.hpp"
 #include "swiftlet/io/missions/mission_frame.hpp"
 
 namespace swiftlet::io {
@@ -43,8 +44,22 @@ enum class Motion : int {
   kThrust,  // m/s^2
 };
 
-// The name of a column without frame and unit: "x_ned [m]" -> "x".
-std::string motion_name(const std::string& header);
+// "x_ned [m]" -> "x", "_ned" and "m".
+struct MotionDeclaration {
+  std::string name;
+  std::string axes;  // "_ned", "_enu", "_nwu", "_frd" or none
+  std::optional<std::string> unit;
+};
+MotionDeclaration motion_declaration_of(const std::string& header);
+
+// True if the name is one of those above, with any frame and unit.
+bool is_motion(const std::string& header);
+
+// What a name in lower case means in tables of other programs: "tx" -> kX. Nothing if it is not known.
+std::optional<Motion> motion_of(const std::string& foreign_name);
+
+std::string name_of(Motion column);  // "x"
+const Units& units_of(Motion column);
 
 // "x [m]", with the unit to which values are converted.
 std::string header_of(Motion column);

@@ -5,6 +5,8 @@
 
 #include <fmt/core.h>
 
+#include "swiftlet/io/csv.hpp"
+
 namespace swiftlet::io {
 namespace {
 
@@ -14,7 +16,7 @@ constexpr double kGap = 3.0;      // usual steps
 constexpr double kJitter = 0.05;  // of the usual step
 constexpr int kMaxListed = 3;
 
-void require_rising(const io::CsvTable& table, std::size_t column, double factor) {
+void require_rising(const Table& table, std::size_t column, double factor) {
   for (std::size_t row = 1; row < table.row_count(); ++row) {
     const double before = table.number(row - 1, column);
     const double now = table.number(row, column);
@@ -46,7 +48,7 @@ void make_even(std::vector<double>& time_s) {
   for (std::size_t i = 0; i < time_s.size(); ++i) time_s[i] = step_s * static_cast<double>(i);
 }
 
-void remark_on_steps(const io::CsvTable& table, const std::vector<double>& steps_s, SampleTimes& times) {
+void remark_on_steps(const Table& table, const std::vector<double>& steps_s, SampleTimes& times) {
   int gaps = 0;
   std::size_t shortest = 0;
   std::size_t longest = 0;  // that is no gap
@@ -80,7 +82,7 @@ std::string SampleTimes::rate() const {
   return fmt::format("{:.4g} Hz", rate_hz);
 }
 
-SampleTimes sample_times(const io::CsvTable& table, std::size_t column, double factor) {
+SampleTimes sample_times(const Table& table, std::size_t column, double factor) {
   require_rising(table, column, factor);
   SampleTimes times;
   for (std::size_t row = 0; row < table.row_count(); ++row) {

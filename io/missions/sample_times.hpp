@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/table.hpp"
 
 namespace swiftlet::io {
 
@@ -20,6 +20,6 @@ struct SampleTimes {
 // column: that of the stamps; factor: from its unit to s. Stamps that are even but for the rounding of their
 // last digit become even. Throws io::ConfigError with the line of a stamp that repeats, decreases or comes
 // more than an hour after the one before.
-SampleTimes sample_times(const io::CsvTable& table, std::size_t column, double factor);
+SampleTimes sample_times(const Table& table, std::size_t column, double factor);
 
 }  // namespace swiftlet::io

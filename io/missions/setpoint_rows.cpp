@@ -66,12 +66,6 @@ const Form& form_of(const std::string& file, const MotionColumns& columns) {
   return *form;
 }
 
-double finite_number(const std::string& text, const std::string& file, int line, const std::string& column) {
-  const auto number = io::parse_number(text);
-  if (!number) throw ConfigError(file, line, column, "is '" + text + "', must be a finite number");
-  return *number;
-}
-
 double between(double a, double b, double part) { return a + part * (b - a); }
 Eigen::Vector3d between(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double part) {
   return a + part * (b - a);
@@ -122,18 +116,9 @@ Setpoint SetpointRows::setpoint_of(const std::vector<double>& row) const {
 }
 
 std::optional<TimedSetpoint> SetpointRows::read(const std::string& line) {
-  ++line_;
-  const std::vector<std::string> fields = io::first_csv_line(line, file_, line_);
-  if (fields.empty()) return std::nullopt;
-  if (fields.size() != names_.size()) {
-    throw ConfigError(
-        file_, line_, "row",
-        "has " + std::to_string(fields.size()) + " fields, must have " + std::to_string(names_.size()));
-  }
-  std::vector<double> row;
-  for (std::size_t i = 0; i < fields.size(); ++i)
-    row.push_back(finite_number(fields[i], file_, line_, names_[i]));
-  return setpoint(row, line_);
+  const std::vector<CsvLine> lines = csv_lines(line, file_, ++line_);
+  if (lines.empty()) return std::nullopt;
+  return setpoint(csv_numbers(csv_fields(lines.front().text, names_.size()), names_, file_, line_), line_);
 }
 
 TimedSetpoint SetpointRows::setpoint(const std::vector<double>& row, int line) {
@@ -152,7 +137,7 @@ TimedSetpoint SetpointRows::setpoint(const std::vector<double>& row, int line) {
   return TimedSetpoint{time_s, setpoint};
 }
 
-std::vector<TimedSetpoint> setpoints_of(const io::CsvTable& table, std::optional<MissionFrame> frame) {
+std::vector<TimedSetpoint> setpoints_of(const Table& table, std::optional<MissionFrame> frame) {
   SetpointRows reader(table.columns(), table.file(), frame);
   std::vector<TimedSetpoint> rows;
   for (std::size_t row = 0; row < table.row_count(); ++row)

@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "swiftlet/control/types/request.hpp"
-#include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/missions/motion_columns.hpp"
+#include "swiftlet/io/table.hpp"
 
 namespace swiftlet::io {
 
@@ -57,7 +57,7 @@ class SetpointRows {
 };
 
 // The rows of a table whose columns name their frame. Throws io::ConfigError as SetpointRows does.
-std::vector<TimedSetpoint> setpoints_of(const io::CsvTable& table, std::optional<MissionFrame> frame);
+std::vector<TimedSetpoint> setpoints_of(const Table& table, std::optional<MissionFrame> frame);
 
 // Returns the next row; nothing at the end.
 using SetpointSource = std::function<std::optional<TimedSetpoint>()>;

@@ -9,7 +9,7 @@
 
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/planning/feasibility.hpp"
-#include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/missions/mission_table.hpp"
 #include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::bench {
@@ -105,12 +105,7 @@ Path minimum_jerk_square() {
 }
 
 Path figure_of_eight(const std::string& file, int laps) {
-  std::vector<std::string> columns{"duration"};
-  for (const char* axis : {"x", "y", "z", "yaw"}) {
-    for (int power = 0; power < control::kPolynomialCoefficients; ++power)
-      columns.push_back(std::string(axis) + "^" + std::to_string(power));
-  }
-  const io::CsvTable table = io::parse_csv(io::read_text_file(file), file, columns, 1, {true, true});
+  const io::Table table = io::read_mission_table(io::read_text_file(file), file, "").table;
   Path path{"fig8", {}, {}, 0.0, 0.0};
   for (int lap = 0; lap < laps; ++lap) {
     for (std::size_t row = 0; row < table.row_count(); ++row) {

@@ -1,10 +1,8 @@
-// Fuzzes mission files of every format: YAML, CSV of polynomials, samples and waypoints, and QGroundControl
-// plans. SWIFTLET_FUZZED_PARSER selects the format of each program.
+// Fuzzes mission files of this project.
 #include <cmath>
 
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
-#include "swiftlet/io/missions/mission_format.hpp"
 #include "tests/fuzz/refusal.hpp"
 
 using namespace swiftlet;
@@ -12,9 +10,8 @@ using namespace swiftlet;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const control::Limits limits;
   const std::string text(tests::text_of(data, size));
-  tests::is_read([&] { io::detect_format(text, tests::kFuzzedFile); });
   tests::is_read([&] {
-    const io::MissionFile file = io::SWIFTLET_FUZZED_PARSER(text, tests::kFuzzedFile, limits);
+    const io::MissionFile file = io::parse_mission_file(text, tests::kFuzzedFile, limits);
     const control::Outcome outcome = control::check(file.mission, limits);
     if (!outcome.accepted) std::fprintf(stderr, "%s\n", outcome.reason);
     tests::demand(outcome.accepted, "control accepts a mission that was read");

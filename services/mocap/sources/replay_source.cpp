@@ -125,7 +125,7 @@ void ReplaySource::add_frame(const NatNetSession& session, std::int64_t arrived_
 }
 
 void ReplaySource::read_table(const std::string& text, const std::string& file) {
-  const io::CsvTable table = io::parse_csv(text, file, kColumns);
+  const io::Table table = io::parse_csv(text, file, kColumns);
   const std::size_t body = *body_of(std::filesystem::path(file).stem().string(), 0);
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     Recorded recorded;

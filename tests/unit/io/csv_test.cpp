@@ -11,7 +11,7 @@ namespace swiftlet::io::csv_test {
 
 using tests::refusal;
 
-CsvTable read(std::string_view text, std::size_t min_rows = 1) {
+Table read(std::string_view text, std::size_t min_rows = 1) {
   return parse_csv(text, "f.csv", {"t", "a"}, min_rows);
 }
 
@@ -23,7 +23,7 @@ TEST(Csv, ReadsRowsOfNumbers) {
   for (const std::string_view text :
        {"t,a\n0,1.5\n+1e-3,-2\n", "t,a\r\n0,1.5\r\n+1e-3,-2\r\n", "t,a\n0,1.5\n+1e-3,-2",
         " t ,\ta\n 0 , 1.5\t\n+1e-3,-2\n\n \n", "\xef\xbb\xbft,a\n0,1.5\n+1e-3,-2\n"}) {
-    const CsvTable table = read(text);
+    const Table table = read(text);
     ASSERT_EQ(table.row_count(), 2U) << text;
     EXPECT_EQ(table.column_count(), 2U);
     EXPECT_EQ(table.number(0, 0), 0.0);
@@ -77,7 +77,7 @@ TEST(Csv, RequiresAMinimumOfRows) {
 }
 
 TEST(Csv, ChecksBounds) {
-  const CsvTable table = read("t,a\n0,1\n1,2000.5\n");
+  const Table table = read("t,a\n0,1\n1,2000.5\n");
   EXPECT_EQ(table.number(1, 1, between(1000, 2001), "us"), 2000.5);
   EXPECT_EQ(refusal([&] { table.number(1, 1, between(1000, 2000), "us"); }),
             "f.csv:3: a: is 2000.5, must be at least 1000 and at most 2000 us");
@@ -87,11 +87,11 @@ TEST(Csv, ChecksBounds) {
 }
 
 TEST(Csv, KnowsTheLastDigitOfANumber) {
-  const CsvTable decimals = read("t,a\n0,0.5\n1.25,12.345\n");
+  const Table decimals = read("t,a\n0,0.5\n1.25,12.345\n");
   EXPECT_NEAR(decimals.last_digit(0, 0), 0.01, 1e-15);
   EXPECT_NEAR(decimals.last_digit(0, 1), 0.001, 1e-15);
   EXPECT_NEAR(decimals.last_digit(1, 1), 0.001, 1e-15);
-  const CsvTable significant = read("t,a\n0.12345,1.2345e-3\n123.45,-1.2345e+02\n0,0\n");
+  const Table significant = read("t,a\n0.12345,1.2345e-3\n123.45,-1.2345e+02\n0,0\n");
   for (const std::size_t column : {0U, 1U}) EXPECT_NEAR(significant.last_digit(1, column), 0.01, 1e-12);
   EXPECT_NEAR(significant.last_digit(0, 0), 1e-5, 1e-15);
   EXPECT_NEAR(significant.last_digit(0, 1), 1e-7, 1e-15);

@@ -10,7 +10,7 @@
 #include "swiftlet/control/planning/feasibility.hpp"
 #include "swiftlet/control/planning/spline.hpp"
 #include "swiftlet/io/configuration.hpp"
-#include "swiftlet/io/missions/mission_format.hpp"
+#include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/simulation_file.hpp"
@@ -145,12 +145,13 @@ TEST(SampledFlight, AddsAtMostAMillimetreToTheError) {
     const bool derivatives = uniform(random, 0.0, 1.0) < 0.5;
     SCOPED_TRACE(fmt::format("case {}: {} Hz, {} decimals{}, {:.1f} s", i, rate_hz, decimals,
                              derivatives ? ", with derivatives" : "", duration_s(path)));
-    io::TrajectoryFile file;
-    ASSERT_NO_THROW(file = io::read_sampled_csv(sampled(path, rate_hz, decimals, derivatives), "s.csv",
-                                                lab().control.limits, {io::MissionFrame::kNed, {}}));
-    EXPECT_TRUE(lab().can_fly(file.segments));
+    Path read;
+    ASSERT_NO_THROW(read = io::parse_any_mission_file(sampled(path, rate_hz, decimals, derivatives), "s.csv",
+                                                      lab().control.limits, {io::MissionFrame::kNed, {}})
+                               .mission.segments);
+    EXPECT_TRUE(lab().can_fly(read));
     const Error original = fly(path, path, 1);
-    const Error again = fly(file.segments, path, 1);
+    const Error again = fly(read, path, 1);
     EXPECT_LT(again.rms_m, original.rms_m + 1e-3);
     const double rounding_m = std::sqrt(3.0) * 0.5 * std::pow(10.0, -decimals);  // of a place
     EXPECT_LT(again.peak_m, original.peak_m + 1e-3 + rounding_m);

@@ -11,52 +11,60 @@ namespace swiftlet::io::mission_format_test {
 
 using Eigen::Vector3d;
 
+MissionFormat detected(const std::string& text, const std::string& file_name) {
+  return parse_source(text, file_name).format;
+}
+
 TEST(DetectFormat, RecognisesEveryFormat) {
-  EXPECT_EQ(detect_format("duration,x^0\n", "a.csv"), MissionFormat::kPolynomialCsv);
-  EXPECT_EQ(detect_format("t,x,y,z\n", "a.csv"), MissionFormat::kSampledCsv);
-  EXPECT_EQ(detect_format("t,x,y,z\n", "a.txt"), MissionFormat::kSampledCsv);
-  EXPECT_EQ(detect_format("t [ms],x_ned [m]\n", "a.csv"), MissionFormat::kSampledCsv);
-  EXPECT_EQ(detect_format("x,y,z\n", "a.csv"), MissionFormat::kWaypointCsv);
-  EXPECT_EQ(detect_format("x_enu [cm],y_enu [cm],z_enu [cm]\n", "a.csv"), MissionFormat::kWaypointCsv);
-  EXPECT_EQ(detect_format("yaw_ned [deg],y_ned [m],x_ned [m],z_ned [m]\n", "a.csv"),
+  EXPECT_EQ(detected(kPolynomialHeader + "\n", "a.csv"), MissionFormat::kPolynomialCsv);
+  EXPECT_EQ(detected("t,x,y,z\n", "a.csv"), MissionFormat::kSampledCsv);
+  EXPECT_EQ(detected("t,x,y,z\n", "a.txt"), MissionFormat::kSampledCsv);
+  EXPECT_EQ(detected("t [ms],x_ned [m]\n", "a.csv"), MissionFormat::kSampledCsv);
+  EXPECT_EQ(detected("x,y,z\n", "a.csv"), MissionFormat::kWaypointCsv);
+  EXPECT_EQ(detected("x_enu [cm],y_enu [cm],z_enu [cm]\n", "a.csv"), MissionFormat::kWaypointCsv);
+  EXPECT_EQ(detected("yaw_ned [deg],y_ned [m],x_ned [m],z_ned [m]\n", "a.csv"), MissionFormat::kWaypointCsv);
+  EXPECT_EQ(detected("\xef\xbb\xbf"
+                     "0.0, 1.5,2e-1\r\n",
+                     "a.csv"),
             MissionFormat::kWaypointCsv);
-  EXPECT_EQ(detect_format("\xef\xbb\xbf"
-                          "0.0, 1.5,2e-1\r\n",
-                          "a.csv"),
-            MissionFormat::kWaypointCsv);
-  EXPECT_EQ(detect_format("0,1,2,0.5\n", "a"), MissionFormat::kWaypointCsv);
-  EXPECT_EQ(detect_format("\n  {\"fileType\": \"Plan\"}", "a.json"), MissionFormat::kQGroundControlPlan);
-  EXPECT_EQ(detect_format("", "a.plan"), MissionFormat::kQGroundControlPlan);
-  EXPECT_EQ(detect_format("frame: ned\n", "a.yaml"), MissionFormat::kYaml);
-  EXPECT_EQ(detect_format("frame: ned\n", "a"), MissionFormat::kYaml);
+  EXPECT_EQ(detected("0,1,2,0.5\n", "a"), MissionFormat::kWaypointCsv);
+  const std::string plan =
+      "{\"fileType\": \"Plan\", \"mission\": {\"items\": [{\"type\": \"SimpleItem\", \"command\": 20, "
+      "\"params\": [0, 0, 0, 0, 0, 0, 0]}]}}";
+  EXPECT_EQ(detected("\n  " + plan, "a.json"), MissionFormat::kQGroundControlPlan);
+  EXPECT_EQ(detected(plan, "a.plan"), MissionFormat::kQGroundControlPlan);
+  EXPECT_EQ(refusal([] { detected("", "a.plan"); }).rfind("a.plan:1: column 1: the file is empty", 0), 0U);
+  EXPECT_EQ(detected("frame: ned\n", "a.yaml"), MissionFormat::kYaml);
+  EXPECT_EQ(detected("frame: ned\n", "a"), MissionFormat::kYaml);
 }
 
 TEST(DetectFormat, ErrorListsTheKnownCsvHeaders) {
   const std::string known =
       "duration,x^0,... (polynomials), t,x,y,z,... (samples) or x,y,z[,yaw] (waypoints, also without a "
       "header); x may be x_ned [m]";
-  EXPECT_EQ(refusal([] { detect_format("", "a.csv"); }), "a.csv: is empty, must hold " + known);
-  EXPECT_EQ(refusal([] { detect_format("1,2,3,4,5\n", "a.csv"); }),
-            "a.csv:1: has 5 fields, of which the first is 1; must begin with " + known);
-  EXPECT_EQ(refusal([] { detect_format("north,east\n", "a.CSV"); }),
+  EXPECT_EQ(refusal([] { detected("", "a.csv"); }), "a.csv: is empty, must hold " + known);
+  EXPECT_EQ(refusal([] { detected("1,2,3,4,5\n", "a.csv"); }),
+            "a.csv:1: has no header; 5 columns may be many things: --columns names them in order, such as "
+            "--columns t,x,y,z,qx,qy,qz,qw");
+  EXPECT_EQ(refusal([] { detected("north,east\n", "a.CSV"); }),
             "a.CSV:1: has 2 fields, of which the first is north; must begin with " + known);
 }
 
 TEST(CsvFrame, OfAPathBelowTheGroundIsSuspected) {
   EXPECT_EQ(
-      refusal([] { parse_waypoint_csv("0,0,-1\n1,0,-1.5\n", "w.csv", control::Limits()); }),
+      refusal([] { parse_any_mission_file("0,0,-1\n1,0,-1.5\n", "w.csv", control::Limits()); }),
       "w.csv: the whole path is below the ground, at heights of -1.50 to -1.00 m: z is read as up (ENU); "
       "if it points down in this file, the frame is NED: --frame ned");
   EXPECT_EQ(
       refusal([] {
-        parse_sampled_csv("t [s],x_ned [m],y_ned [m],z_ned [m]\n0,0,0,1\n1,0,0,1\n", "s.csv",
-                          control::Limits());
+        parse_any_mission_file("t [s],x_ned [m],y_ned [m],z_ned [m]\n0,0,0,1\n1,0,0,1\n", "s.csv",
+                               control::Limits());
       }),
       "s.csv: the whole path is below the ground, at heights of -1.00 to -1.00 m: z is read as down (NED); "
       "if it points up in this file, the frame is ENU: --frame enu");
   EXPECT_EQ(refusal([] {
-              parse_polynomial_csv(kPolynomialHeader + "\n" + polynomial_row(4.0, 0.0, 1.0, -1.0), "p.csv",
-                                   control::Limits());
+              parse_any_mission_file(kPolynomialHeader + "\n" + polynomial_row(4.0, 0.0, 1.0, -1.0), "p.csv",
+                                     control::Limits());
             }).rfind("p.csv: the whole path is below the ground, at heights of -1.00 to -1.00 m", 0),
             0U);
 }
@@ -76,20 +84,21 @@ TEST(LoadTrajectoryFile, AddsNeitherTakeOffNorLanding) {
 TEST(CsvFrame, OfAFileThatNamesNoneIsThatOfTheOption) {
   const control::Limits limits;
   const FileOptions ned = {MissionFrame::kNed, {}};
-  EXPECT_LT(
-      (at_path_start(parse_sampled_csv("t,x,y,z\n0,1,2,-1\n4,1,2,-1\n", "s.csv", limits, ned)).position_ned -
-       Vector3d(1, 2, -1))
-          .norm(),
-      1e-9);
-  EXPECT_EQ(at_path_start(parse_waypoint_csv("1,2,-1\n1,1,-1\n", "w.csv", limits, ned)).position_ned,
+  EXPECT_LT((at_path_start(parse_any_mission_file("t,x,y,z\n0,1,2,-1\n4,1,2,-1\n", "s.csv", limits, ned))
+                 .position_ned -
+             Vector3d(1, 2, -1))
+                .norm(),
+            1e-9);
+  EXPECT_EQ(at_path_start(parse_any_mission_file("1,2,-1\n1,1,-1\n", "w.csv", limits, ned)).position_ned,
             Vector3d(1, 2, -1));
-  EXPECT_EQ(at_path_start(parse_waypoint_csv("x_ned [cm],y_ned [cm],z_ned [cm]\n100,200,-100\n100,100,-100\n",
-                                             "w.csv", limits))
-                .position_ned,
-            Vector3d(1, 2, -1));
+  EXPECT_EQ(
+      at_path_start(parse_any_mission_file("x_ned [cm],y_ned [cm],z_ned [cm]\n100,200,-100\n100,100,-100\n",
+                                           "w.csv", limits))
+          .position_ned,
+      Vector3d(1, 2, -1));
   EXPECT_LT(
-      (at_path_start(parse_polynomial_csv(kPolynomialHeader + "\n" + polynomial_row(4.0, 0.5, 1.0, -1.5),
-                                          "p.csv", limits, ned))
+      (at_path_start(parse_any_mission_file(kPolynomialHeader + "\n" + polynomial_row(4.0, 0.5, 1.0, -1.5),
+                                            "p.csv", limits, ned))
            .position_ned -
        Vector3d(0.5, 0, -1.5))
           .norm(),

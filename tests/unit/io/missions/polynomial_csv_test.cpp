@@ -16,7 +16,7 @@ using control::MissionItemKind;
 using Eigen::Vector3d;
 
 MissionFile polynomials(const std::string& text) {
-  return parse_polynomial_csv(text, "p.csv", control::Limits());
+  return parse_any_mission_file(text, "p.csv", control::Limits());
 }
 
 TEST(PolynomialCsv, ConvertsEnuToNed) {
@@ -77,7 +77,8 @@ std::string repeated_hover(int rows) {
 INSTANTIATE_TEST_SUITE_P(
     , BadPolynomialCsv,
     testing::Values(
-        tests::Fault{"empty", "", "p.csv: is empty, must begin with the header " + kPolynomialHeader},
+        tests::Fault{"another_header", "duration,x\n1,2\n",
+                     "p.csv:1: header: is duration,x, must be " + kPolynomialHeader},
         tests::Fault{"no_rows", kPolynomialHeader + "\n",
                      "p.csv: has 0 rows behind the header, must have at least 1"},
         tests::Fault{"missing_column", kPolynomialHeader + "\n" + kRow.substr(0, kRow.rfind(',')) + "\n",

@@ -23,7 +23,7 @@ std::string plan(const std::string& items, const std::string& home = "47.4, 8.5,
          home + "],\n\"items\": [\n" + items + "\n]}}\n";
 }
 MissionFile qgc(const std::string& text, const control::Limits& limits = control::Limits()) {
-  return parse_qgroundcontrol_plan(text, "q.plan", limits);
+  return parse_any_mission_file(text, "q.plan", limits);
 }
 
 TEST(QGroundControlPlan, ReadsThePx4BoxMission) {

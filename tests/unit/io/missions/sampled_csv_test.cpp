@@ -17,7 +17,9 @@ namespace swiftlet::io::sampled_csv_test {
 
 using Eigen::Vector3d;
 
-MissionFile samples(const std::string& text) { return parse_sampled_csv(text, "s.csv", control::Limits()); }
+MissionFile samples(const std::string& text) {
+  return parse_any_mission_file(text, "s.csv", control::Limits());
+}
 
 // Minimum jerk from (0, 0, 1) by 1 m east in 4 s, at a rate.
 std::string sampled(double rate_hz, const std::string& columns, bool yaw = false) {
@@ -110,7 +112,7 @@ TEST(SampledCsv, PassesSamplesByAsFarAsItMay) {
     double strongest = 0.0;
     control::Limits limits;
     limits.max_acceleration = 1e9;
-    for (const auto& s : read_sampled_csv(text, "s.csv", limits, {{}, tolerance_m}).segments)
+    for (const auto& s : parse_any_mission_file(text, "s.csv", limits, {{}, tolerance_m}).mission.segments)
       strongest = std::max(strongest, control::evaluate(s, 0.0).acceleration_ned.norm());
     return strongest;
   };
@@ -136,7 +138,8 @@ TEST(SampledCsv, UnwrapsYaw) {
 TEST(SampledCsv, ReadsWhatAStreamOfPositionsHas) {
   const std::string rows = "0,10,20,-100\n1000,10,20,-100\n2000,10,20,-100\n";
   const auto at_start = [&](const std::string& header, std::optional<MissionFrame> frame) {
-    return at_path_start(parse_sampled_csv(header + "\n" + rows, "s.csv", control::Limits(), {frame, {}}));
+    return at_path_start(
+        parse_any_mission_file(header + "\n" + rows, "s.csv", control::Limits(), {frame, {}}));
   };
   const Vector3d there(0.1, 0.2, -1.0);
   EXPECT_LT((at_start("t [ms],x_ned [cm],y_ned [cm],z_ned [cm]", {}).position_ned - there).norm(), 1e-9);

@@ -136,10 +136,12 @@ TEST(SetpointRows, RefuseInvalidColumnsAndRows) {
   const std::string header = "t [s],x_ned [m],y_ned [m],z_ned [m]";
   EXPECT_EQ(refusal(header, {"0,0,0,-1", "0,0,0,-1"}),
             "s.csv:3: t: is 0 s, must be above that of the previous row, 0 s");
-  EXPECT_EQ(refusal(header, {"0,0,0"}), "s.csv:2: row: has 3 fields, must have 4");
+  EXPECT_EQ(refusal(header, {"0,0,0"}),
+            "s.csv:2: has 3 fields, must have 4: t [s],x_ned [m],y_ned [m],z_ned [m]");
   for (const char* text : {"nan", "inf", "up", ""})
-    EXPECT_EQ(refusal(header, {std::string("0,") + text + ",0,-1"}),
-              std::string("s.csv:2: x_ned [m]: is '") + text + "', must be a finite number");
+    EXPECT_EQ(refusal(header, {std::string("0,") + text + ",0,-1"}), std::string("s.csv:2: x_ned [m]: is ") +
+                                                                         (*text == '\0' ? "empty" : text) +
+                                                                         ", must be a finite number");
 }
 
 SetpointSource of(std::vector<TimedSetpoint> rows) {

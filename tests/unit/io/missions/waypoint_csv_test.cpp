@@ -14,7 +14,7 @@ namespace swiftlet::io::waypoint_csv_test {
 using Eigen::Vector3d;
 
 MissionFile waypoints(const std::string& text) {
-  return parse_waypoint_csv(text, "w.csv", control::Limits());
+  return parse_any_mission_file(text, "w.csv", control::Limits());
 }
 
 TEST(WaypointCsv, PassesWaypointsWithoutStopping) {

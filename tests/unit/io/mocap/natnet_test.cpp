@@ -67,7 +67,7 @@ TEST(NatNetCapture, IsReadAsTheVendorsClientReadsIt) {
   EXPECT_TRUE(server.multicast);
   EXPECT_EQ(server.group, kMulticastGroup);
 
-  const io::CsvTable printed =
+  const io::Table printed =
       io::load_csv(kData + "natnet_3.0_sample_client.csv",
                    {"frame", "timestamp_s", "software_latency_ms", "system_latency_ms", "id", "valid", "x",
                     "y", "z", "qx", "qy", "qz", "qw", "markers", "occluded"});

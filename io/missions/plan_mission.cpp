@@ -1,17 +1,12 @@
-// File format: https://docs.qgroundcontrol.com/master/en/qgc-dev-guide/file_formats/plan.html. Commands and
-// frames: https://mavlink.io/en/messages/common.html.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <optional>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "swiftlet/control/planning/checks.hpp"
-#include "swiftlet/io/config.hpp"
-#include "swiftlet/io/missions/mission_format.hpp"
-#include "swiftlet/io/missions/whole_flight.hpp"
+#include "swiftlet/io/missions/plan.hpp"
 #include "swiftlet/math/geodesy.hpp"
 
 namespace swiftlet::io {
@@ -19,7 +14,6 @@ namespace {
 
 using control::MissionItem;
 using control::MissionItemKind;
-using io::ConfigNode;
 
 constexpr double kHomeTolerance_m = 0.1;
 constexpr double kLongestHold_s = 3600.0;
@@ -48,46 +42,18 @@ struct Home {
   double altitude_m = 0.0;
 };
 
-// JSON is valid YAML in flow style, and the YAML reader reports lines. nlohmann::json only checks that it is
-// JSON.
-ConfigNode read_json(std::string text, const std::string& file_name) {
-  try {
-    [[maybe_unused]] const auto valid = nlohmann::json::parse(text);
-  } catch (const nlohmann::json::out_of_range&) {  // such as 1e309; no position given
-    throw io::ConfigError(file_name, 0, "", "holds a number beyond 1.8e308, must hold smaller ones");
-  } catch (const nlohmann::json::parse_error& error) {
-    const std::size_t at = std::min(error.byte, text.size());
-    const auto end = text.begin() + static_cast<std::ptrdiff_t>(at);
-    const auto line = 1 + std::count(text.begin(), end, '\n');
-    const std::size_t line_begin = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
-    const std::size_t column = line_begin == std::string::npos ? at : at - line_begin - 1;
-    throw io::ConfigError(file_name, static_cast<int>(line),
-                          "column " + std::to_string(std::max<std::size_t>(column, 1)),
-                          text.empty() ? "the file is empty, must be a JSON document" : "is invalid JSON");
-  }
-  std::replace(text.begin(), text.end(), '\t', ' ');  // tabs separate values in JSON but not in YAML
-  if (text.back() != '\n') text += '\n';
-  return io::parse_config(text, file_name);
-}
-
-// JSON's null.
-bool is_null(const ConfigNode& node) { return !node.is_map() && !node.is_list() && !node.is_scalar(); }
-
 class PlanReader {
  public:
-  PlanReader(const ConfigNode& root, const control::Limits& limits, const Placement& placement)
-      : root_(root), limits_(limits), placement_(placement) {}
+  PlanReader(const Plan& plan, const control::Limits& limits, const Placement& placement)
+      : plan_(plan), limits_(limits), placement_(placement) {}
 
-  MissionFile read(const std::string& file_name) {
-    if (const ConfigNode type = root_.at("fileType"); type.text() != "Plan")
-      type.fail("is " + type.text() + ", must be Plan");
-    const ConfigNode mission = root_.at("mission");
-    if (const auto home = mission.find("plannedHomePosition")) read_home(*home);
-    read_speed(mission);
-    for (const ConfigNode& item : mission.at("items").items(1, control::kMaxMissionItems)) read_item(item);
+  MissionFile read() {
+    if (plan_.home) read_home(*plan_.home);
+    set_speed(plan_.speed && plan_.speed->value ? plan_.speed->number(io::above(0.0)) : kDefaultSpeed);
+    for (const PlanItem& item : plan_.items) read_item(item);
     complete();
     MissionFile file;
-    file.name = std::filesystem::path(file_name).stem().string();
+    file.name = std::filesystem::path(plan_.place.file).stem().string();
     file.tolerance_m = kHomeTolerance_m;
     file.mission.items = std::move(items_);
     file.assumptions = assumptions();
@@ -95,53 +61,42 @@ class PlanReader {
   }
 
  private:
-  void read_home(const ConfigNode& node) {
-    const std::vector<ConfigNode> values = node.items(3, 3);
+  void read_home(const std::array<PlanNumber, 3>& values) {
     home_ = Home{{values[0].number(io::between(-90.0, 90.0)), values[1].number(io::between(-180.0, 180.0))},
                  values[2].number(io::between(-kHighest_m, kHighest_m))};
   }
 
-  void read_speed(const ConfigNode& mission) {
-    const auto node = mission.find("hoverSpeed");
-    const double wanted = node && !is_null(*node) ? node->number(io::above(0.0)) : kDefaultSpeed;
-    set_speed(wanted);
-  }
   void set_speed(double wanted) {
     speed_ = std::min(wanted, limits_.max_speed);
     if (speed_ < wanted) fastest_wanted_ = std::max(fastest_wanted_, wanted);
   }
 
-  void read_item(const ConfigNode& item) {
-    const ConfigNode type = item.at("type");
-    if (type.text() != "SimpleItem")
-      type.fail("is " + type.text() + ", must be SimpleItem: draw the pattern as waypoints");
-    const ConfigNode command = item.at("command");
-    const std::vector<ConfigNode> params = item.at("params").items(7, 7);
-    if (landed_) item.fail("follows a landing, which must be the last item");
-    switch (command.integer(0, 65535)) {
+  void read_item(const PlanItem& item) {
+    if (landed_) item.place.fail("follows a landing, which must be the last item");
+    switch (const int command = item.command.integer(65535)) {
       case kTakeoff:
-        return add_takeoff(item, params);
+        return add_takeoff(item);
       case kWaypoint:
       case kLoiterTime:
-        return add_waypoint(item, params);
+        return add_waypoint(item);
       case kLand:
-        return add_landing(item, params);
+        return add_landing(item);
       case kReturnToLaunch:
         need_height(item);
         return land_at(item, {0.0, 0.0});
       case kChangeSpeed:
-        return set_speed(params[1].number(io::above(0.0)));
+        return set_speed(item.params[1].number(io::above(0.0)));
       default:
-        command.fail("is " + std::to_string(command.integer()) + ", must be " + kCommands);
+        item.command.place.fail("is " + std::to_string(command) + ", must be " + kCommands);
     }
   }
 
-  void add_takeoff(const ConfigNode& item, const std::vector<ConfigNode>& params) {
-    if (!items_.empty()) item.fail("is a take-off, which must be the first item");
-    const Eigen::Vector3d place = position(item, params, true);
+  void add_takeoff(const PlanItem& item) {
+    if (!items_.empty()) item.place.fail("is a take-off, which must be the first item");
+    const Eigen::Vector3d place = position(item, true);
     const double aside_m = place.head<2>().norm();
     if (aside_m > kTakeoffPlace_m) {
-      item.fail(
+      item.place.fail(
           fmt::format("takes off {:.1f} m from home, must be at most {:.0f} m: the vehicle stands at home",
                       aside_m, kTakeoffPlace_m));
     }
@@ -150,30 +105,30 @@ class PlanReader {
     add({MissionItemKind::kTakeoff, {0.0, 0.0, place.z()}, 0.0, true, speed_, 0.0});
   }
 
-  void add_waypoint(const ConfigNode& item, const std::vector<ConfigNode>& params) {
+  void add_waypoint(const PlanItem& item) {
     MissionItem waypoint;
     waypoint.kind = MissionItemKind::kWaypoint;
-    waypoint.position_ned = position(item, params, false);
+    waypoint.position_ned = position(item, false);
     require_inside(item, waypoint.position_ned);
     waypoint.speed = speed_;
-    if (!is_null(params[0])) waypoint.hold_s = params[0].number(io::between(0.0, kLongestHold_s));
-    if (!is_null(params[3])) {
+    if (item.params[0].value) waypoint.hold_s = item.params[0].number(io::between(0.0, kLongestHold_s));
+    if (item.params[3].value) {
       waypoint.yaw_free = false;
       waypoint.yaw_rad =
-          std::remainder(params[3].number(io::between(-360.0, 360.0)) * M_PI / 180.0, 2.0 * M_PI);
+          std::remainder(item.params[3].number(io::between(-360.0, 360.0)) * M_PI / 180.0, 2.0 * M_PI);
     }
     need_takeoff(waypoint.position_ned.z());
     add(waypoint);
   }
 
-  void add_landing(const ConfigNode& item, const std::vector<ConfigNode>& params) {
+  void add_landing(const PlanItem& item) {
     need_height(item);
-    const bool somewhere = !is_null(params[4]) && !is_null(params[5]);
-    land_at(item, somewhere ? Eigen::Vector2d(position(item, params, true).head<2>()) : at_.head<2>());
+    const bool somewhere = item.params[4].value && item.params[5].value;
+    land_at(item, somewhere ? Eigen::Vector2d(position(item, true).head<2>()) : at_.head<2>());
   }
 
   // Flies to a place at the present height, then lands straight down.
-  void land_at(const ConfigNode& item, const Eigen::Vector2d& place) {
+  void land_at(const PlanItem& item, const Eigen::Vector2d& place) {
     const Eigen::Vector3d above(place.x(), place.y(), at_.z());
     require_inside(item, above);
     if ((above - at_).norm() > kSamePlace_m) add({MissionItemKind::kWaypoint, above, 0.0, true, speed_, 0.0});
@@ -181,8 +136,8 @@ class PlanReader {
     landed_ = true;
   }
 
-  void need_height(const ConfigNode& item) const {
-    if (items_.empty()) item.fail("is the first item, must follow a take-off or a waypoint");
+  void need_height(const PlanItem& item) const {
+    if (items_.empty()) item.place.fail("is the first item, must follow a take-off or a waypoint");
   }
   void need_takeoff(double z_ned) {
     if (!items_.empty()) return;
@@ -190,8 +145,7 @@ class PlanReader {
     takeoff_added_ = true;
   }
   void complete() {
-    if (items_.empty())
-      root_.at("mission").at("items").fail("has no item to fly, must have a take-off or a waypoint");
+    if (items_.empty()) plan_.items_place.fail("has no item to fly, must have a take-off or a waypoint");
     if (landed_) return;
     add({MissionItemKind::kLand, Eigen::Vector3d::Zero(), 0.0, true, speed_, 0.0});
     landing_added_ = true;
@@ -199,7 +153,7 @@ class PlanReader {
 
   void add(const MissionItem& item) {
     if (items_.size() == control::kMaxMissionItems)
-      root_.at("mission").at("items").fail(
+      plan_.items_place.fail(
           fmt::format("has more than {} items with those added", control::kMaxMissionItems));
     MissionItem placed = item;
     placed.position_ned = placement_.position(item.position_ned);
@@ -209,16 +163,15 @@ class PlanReader {
   }
 
   // Returns the position in the plan: in NED from home, m. Take-offs and landings may omit the horizontal position.
-  Eigen::Vector3d position(const ConfigNode& item, const std::vector<ConfigNode>& params,
-                           bool place_optional) {
-    const ConfigNode frame = item.at("frame");
-    const std::int64_t kind = frame.integer(0, 255);
-    const bool placed = !place_optional || (!is_null(params[4]) && !is_null(params[5]));
+  Eigen::Vector3d position(const PlanItem& item, bool place_optional) {
+    const std::vector<PlanNumber>& params = item.params;
+    const int kind = item.frame.integer(255);
+    const bool placed = !place_optional || (item.params[4].value && item.params[5].value);
     switch (kind) {
       case kGlobal:
       case kGlobalRelative: {
         if (!home_)
-          root_.at("mission").fail("has items with geographic coordinates, must have a plannedHomePosition");
+          plan_.place.fail("has items with geographic coordinates, must have a plannedHomePosition");
         global_ = true;
         Eigen::Vector2d north_east = at_.head<2>();
         if (placed) {
@@ -240,24 +193,25 @@ class PlanReader {
         return placed ? given : Eigen::Vector3d(at_.x(), at_.y(), given.z());
       }
       default:
-        frame.fail("is " + std::to_string(kind) +
-                   ", must be 0 or 3 (global, altitude above the sea or above home), 1 (local NED) or 4 "
-                   "(local ENU)");
+        item.frame.place.fail(
+            "is " + std::to_string(kind) +
+            ", must be 0 or 3 (global, altitude above the sea or above home), 1 (local NED) or 4 "
+            "(local ENU)");
     }
   }
 
   // position: in the plan.
-  void require_inside(const ConfigNode& item, const Eigen::Vector3d& position) const {
+  void require_inside(const PlanItem& item, const Eigen::Vector3d& position) const {
     const Eigen::Vector3d position_ned = placement_.position(position);
     const control::Outcome height = control::check_height("in NED", position_ned.z(), limits_);
-    if (!height.accepted) item.fail(height.reason);
+    if (!height.accepted) item.place.fail(height.reason);
     constexpr const char* kAxes[] = {"north", "east", "down"};
     for (int axis = 0; axis < 3; ++axis) {
       const double low = limits_.fence_min_ned[axis];
       const double high = limits_.fence_max_ned[axis];
       if (position_ned[axis] >= low && position_ned[axis] <= high) continue;
-      item.fail(fmt::format("{} is {:.3f} m, must be inside the fence, {:g} to {:g} m", kAxes[axis],
-                            position_ned[axis], low, high));
+      item.place.fail(fmt::format("{} is {:.3f} m, must be inside the fence, {:g} to {:g} m", kAxes[axis],
+                                  position_ned[axis], low, high));
     }
   }
 
@@ -288,7 +242,7 @@ class PlanReader {
     return all;
   }
 
-  const ConfigNode& root_;
+  const Plan& plan_;
   const control::Limits& limits_;
   const Placement& placement_;
   std::optional<Home> home_;
@@ -302,10 +256,8 @@ class PlanReader {
 
 }  // namespace
 
-MissionFile parse_qgroundcontrol_plan(const std::string& text, const std::string& file_name,
-                                      const control::Limits& limits, const FileOptions& options) {
-  const ConfigNode root = read_json(text, file_name);
-  return PlanReader(root, limits, options.placement).read(file_name);
+MissionFile mission_of(const Plan& plan, const control::Limits& limits, const Placement& placement) {
+  return PlanReader(plan, limits, placement).read();
 }
 
 }  // namespace swiftlet::io

@@ -1,4 +1,3 @@
-#include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
 
@@ -7,16 +6,7 @@ namespace {
 
 constexpr double kLongestSegment_s = 3600.0;
 
-std::vector<std::string> columns() {
-  std::vector<std::string> names{"duration"};
-  for (const char* axis : {"x", "y", "z", "yaw"}) {
-    for (int power = 0; power < control::kPolynomialCoefficients; ++power)
-      names.push_back(std::string(axis) + "^" + std::to_string(power));
-  }
-  return names;
-}
-
-control::PolynomialSegment read(const io::CsvTable& table, std::size_t row) {
+control::PolynomialSegment read(const Table& table, std::size_t row) {
   control::PolynomialSegment segment;
   segment.duration_s = table.number(row, 0, {0.0, kLongestSegment_s, true, false}, "s");
   std::size_t column = 1;
@@ -28,10 +18,18 @@ control::PolynomialSegment read(const io::CsvTable& table, std::size_t row) {
 
 }  // namespace
 
-TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& file_name,
-                                   const control::Limits& limits, const FileOptions& options,
-                                   int first_line) {
-  const io::CsvTable table = io::parse_csv(text, file_name, columns(), 1, {true, true, true, first_line});
+std::vector<std::string> polynomial_columns() {
+  std::vector<std::string> names{"duration"};
+  for (const char* axis : {"x", "y", "z", "yaw"}) {
+    for (int power = 0; power < control::kPolynomialCoefficients; ++power)
+      names.push_back(std::string(axis) + "^" + std::to_string(power));
+  }
+  return names;
+}
+
+TrajectoryFile read_polynomials(const Table& table, const control::Limits& limits,
+                                const FileOptions& options) {
+  table.require_rows(1);
   if (table.row_count() > control::kMaxTrajectorySegments) {
     table.fail(control::kMaxTrajectorySegments, "duration",
                "is segment " + std::to_string(control::kMaxTrajectorySegments + 1) + ", at most " +
@@ -45,7 +43,7 @@ TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& f
   std::vector<std::string> assumptions = {std::string("taken as a polynomial trajectory in ") +
                                           frame_title(frame) +
                                           ": m, rad and s, from the origin of motion capture"};
-  const double raise_m = raise_by(heights_of(segments), frame, file_name, assumptions);
+  const double raise_m = raise_by(heights_of(segments), frame, table.file(), assumptions);
   for (control::PolynomialSegment& segment : segments) {
     segment.z[0] -= raise_m;
     segment = options.placement.segment(segment);

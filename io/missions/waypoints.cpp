@@ -5,7 +5,6 @@
 
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/planning/waypoint_path.hpp"
-#include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/missions/motion_columns.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
@@ -13,7 +12,7 @@
 namespace swiftlet::io {
 namespace {
 
-control::WaypointPath read(const io::CsvTable& table, const MotionColumns& columns) {
+control::WaypointPath read(const Table& table, const MotionColumns& columns) {
   control::WaypointPath path;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (row == kMaxPoints)
@@ -33,14 +32,6 @@ control::WaypointPath read(const io::CsvTable& table, const MotionColumns& colum
   return path;
 }
 
-// The columns of the first line, or those that its numbers mean.
-std::vector<std::string> columns_of(const std::vector<std::string>& first, bool has_header) {
-  if (has_header) return first;
-  std::vector<std::string> columns = {"x", "y", "z"};
-  if (first.size() > 3) columns.emplace_back("yaw");
-  return columns;
-}
-
 // Returns the row of the last waypoint at or before the start of a segment.
 std::size_t row_of(const control::PlannedPath& planned, std::size_t segment) {
   std::size_t row = 0;
@@ -50,17 +41,11 @@ std::size_t row_of(const control::PlannedPath& planned, std::size_t segment) {
 
 }  // namespace
 
-TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& file_name,
-                                 const control::Limits& limits, const FileOptions& options, int first_line) {
-  std::vector<std::string> first = io::first_csv_line(text, file_name);
-  if (first.empty()) first.emplace_back();  // parse_csv() refuses the empty file
-  const bool has_header = !first.front().empty() && !io::is_number(first.front());
-  if (first.size() > 1 && first.back().empty()) first.pop_back();
-  const std::vector<std::string> header = columns_of(first, has_header);
-  const MotionColumns columns(header, file_name, options.frame);
-  require_columns(columns, file_name, "a list of waypoints", {Motion::kX, Motion::kY, Motion::kZ},
+TrajectoryFile read_waypoints(const Table& table, const control::Limits& limits, const FileOptions& options) {
+  const MotionColumns columns(table.columns(), table.file(), options.frame);
+  require_columns(columns, table.file(), "a list of waypoints", {Motion::kX, Motion::kY, Motion::kZ},
                   {{Motion::kYaw}});
-  const io::CsvTable table = io::parse_csv(text, file_name, header, 2, {has_header, true, true, first_line});
+  table.require_rows(2);
   control::WaypointPath path = read(table, columns);
   path.limits = reference_limits(limits);
 
@@ -69,7 +54,7 @@ TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& fil
   if (!columns.has(Motion::kYaw)) assumptions.emplace_back("the file has no yaw: the vehicle faces north");
   Heights heights;
   for (const control::PathPoint& point : path.points) heights.add(point.position_ned.z());
-  const double raise_m = raise_by(heights, columns.frame(), file_name, assumptions);
+  const double raise_m = raise_by(heights, columns.frame(), table.file(), assumptions);
   for (std::size_t row = 0; row < path.points.size(); ++row) {
     Eigen::Vector3d& position_ned = path.points[row].position_ned;
     position_ned.z() -= raise_m;
@@ -85,7 +70,7 @@ TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& fil
   try {
     planned = control::plan(path);
   } catch (const std::invalid_argument& fault) {
-    throw io::ConfigError(file_name, 0, "", fault.what());
+    throw io::ConfigError(table.file(), 0, "", fault.what());
   }
   for (control::PolynomialSegment& segment : planned.segments)
     segment = control::stretched(segment, options.time_scale);

@@ -1,20 +1,19 @@
 // Tables in the forms of other projects.
-#include "swiftlet/io/missions/foreign_table.hpp"
+#include "swiftlet/io/missions/mission_table.hpp"
 
 #include <cmath>
 
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include "swiftlet/io/missions/waypoint_list.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
 
-namespace swiftlet::io::foreign_table_test {
+namespace swiftlet::io::mission_table_test {
 
 using Eigen::Vector3d;
 
-class ForeignTableTest : public testing::Test {
+class MissionTableTest : public testing::Test {
  protected:
   MissionFile load(const std::string& name, const std::string& text, const FileOptions& options = {}) const {
     return load_mission_file(folder_.write(name, text), field(), options);
@@ -51,7 +50,7 @@ void expect_still(const MissionFile& file, double yaw_ned) {
   EXPECT_NEAR(duration_s, 2.9, 1e-6);
 }
 
-TEST_F(ForeignTableTest, PolynomialsOfUavTrajectories) {
+TEST_F(MissionTableTest, PolynomialsOfUavTrajectories) {
   const std::string row = polynomial_row(4.0, 0.0, 1.0, 1.0);
   for (const std::string& header : {upper_header(), "# " + kPolynomialHeader, "#" + upper_header()}) {
     const MissionFile file = load("p.csv", "# made by genTrajectory\n\n" + header + "\n" + row + ",\n\n" +
@@ -64,7 +63,7 @@ TEST_F(ForeignTableTest, PolynomialsOfUavTrajectories) {
       << "the line of the file";
 }
 
-TEST_F(ForeignTableTest, Agilicious) {
+TEST_F(MissionTableTest, Agilicious) {
   const MissionFile file =
       load("a.csv",
            "t,p_x,p_y,p_z,q_w,q_x,q_y,q_z,v_x,v_y,v_z,w_x,w_y,w_z,a_lin_x,a_lin_y,a_lin_z,a_rot_x,a_rot_y,"
@@ -76,7 +75,7 @@ TEST_F(ForeignTableTest, Agilicious) {
   EXPECT_TRUE(assumes(file, "not used: w_x, w_y, w_z, a_rot_x"));
 }
 
-TEST_F(ForeignTableTest, EuRoC) {
+TEST_F(MissionTableTest, EuRoC) {
   std::string text =
       "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
       "q_RS_z [], v_RS_R_x [m s^-1], v_RS_R_y [m s^-1], v_RS_R_z [m s^-1], b_w_RS_S_x [rad s^-1]\n";
@@ -90,7 +89,7 @@ TEST_F(ForeignTableTest, EuRoC) {
   EXPECT_TRUE(assumes(load("e.csv", text), "stamps are taken as ns"));
 }
 
-TEST_F(ForeignTableTest, Tum) {
+TEST_F(MissionTableTest, Tum) {
   const std::string list = rows("{} 0.1 0.2 1.5 0 0 0.707107 0.707107");
   expect_still(load("t.txt", list), 0.0);
   expect_still(load("t.txt", "# ground truth trajectory\n# timestamp tx ty tz qx qy qz qw\n" + list), 0.0);
@@ -99,7 +98,7 @@ TEST_F(ForeignTableTest, Tum) {
             "f.csv:1: qw, qx, qy, qz are a quaternion of length 1.273, must be 1");
 }
 
-TEST_F(ForeignTableTest, SeparatorsCommentsAndNames) {
+TEST_F(MissionTableTest, SeparatorsCommentsAndNames) {
   const std::string row = "{};0.1;0.2;1.5;1.5708";
   expect_still(load("s.csv", "time;pos_x;pos_y;pos_z;heading\n" + rows(row)), 0.0);
   expect_still(load("s.csv", "// exported\nTime\tpx\tpy\tpz\tyaw\n" + rows("{}\t0.1\t0.2\t1.5\t1.5708")),
@@ -113,7 +112,7 @@ TEST_F(ForeignTableTest, SeparatorsCommentsAndNames) {
   EXPECT_TRUE(assumes(load("s.csv", "# x y z\n0 0 1\n1 0 1\n0 1 1\n"), "flown without stopping"));
 }
 
-TEST_F(ForeignTableTest, AsksWhatCouldBeTwoThings) {
+TEST_F(MissionTableTest, AsksWhatCouldBeTwoThings) {
   const std::string timed = rows("{},0.1,0.2,1.5");
   EXPECT_EQ(refused(timed),
             "f.csv:1: has no header; its first column rises in equal steps: t,x,y,z or waypoints x,y,z,yaw? "
@@ -135,7 +134,7 @@ TEST_F(ForeignTableTest, AsksWhatCouldBeTwoThings) {
   EXPECT_TRUE(assumes(points, "the file has no header: its columns are taken as x, y, z, yaw"));
 }
 
-TEST_F(ForeignTableTest, AsksWhetherALargeYawIsInDegrees) {
+TEST_F(MissionTableTest, AsksWhetherALargeYawIsInDegrees) {
   const std::string text = rows("{},0.1,0.2,1.5,90");
   EXPECT_EQ(refused("t,x,y,z,yaw\n" + text)
                 .rfind("f.csv:2: yaw: is 90, more than a full turn in rad: degrees, or several turns?", 0),
@@ -146,7 +145,7 @@ TEST_F(ForeignTableTest, AsksWhetherALargeYawIsInDegrees) {
   expect_still(load("f.csv", "t,x,y,z,yaw\n" + text, options), 0.0);
 }
 
-TEST_F(ForeignTableTest, ListOfWaypoints) {
+TEST_F(MissionTableTest, ListOfWaypoints) {
   const std::string list =
       "QGC WPL 110\n"
       "0\t1\t0\t16\t0\t0\t0\t0\t47.3977419\t8.5455938\t488.0\t1\n"
@@ -167,4 +166,4 @@ TEST_F(ForeignTableTest, ListOfWaypoints) {
       std::string::npos);
 }
 
-}  // namespace swiftlet::io::foreign_table_test
+}  // namespace swiftlet::io::mission_table_test

@@ -6,9 +6,6 @@
 
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/planning/smoothing_spline.hpp"
-#include "swiftlet/io/csv.hpp"
-#include "swiftlet/io/flight_csv.hpp"
-#include "swiftlet/io/missions/flight_table.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/missions/motion_columns.hpp"
 #include "swiftlet/io/missions/sample_times.hpp"
@@ -65,8 +62,7 @@ struct Samples {
 };
 
 // Half of the last digit of three columns of a row, in NED and SI units.
-Eigen::Vector3d rounding_of(const io::CsvTable& table, std::size_t row, const MotionColumns& columns,
-                            Motion x) {
+Eigen::Vector3d rounding_of(const Table& table, std::size_t row, const MotionColumns& columns, Motion x) {
   Eigen::Vector3d rounding;
   for (int axis = 0; axis < 3; ++axis) {
     const std::size_t column = *columns.index(static_cast<Motion>(static_cast<int>(x) + axis));
@@ -75,7 +71,7 @@ Eigen::Vector3d rounding_of(const io::CsvTable& table, std::size_t row, const Mo
   return ned_from(columns.frame(), rounding).cwiseAbs();
 }
 
-PositionYaw tolerance_of(const io::CsvTable& table, std::size_t row, const MotionColumns& columns,
+PositionYaw tolerance_of(const Table& table, std::size_t row, const MotionColumns& columns,
                          const std::optional<double>& tolerance_m) {
   if (tolerance_m) return PositionYaw::Constant(*tolerance_m);
   PositionYaw tolerance = PositionYaw::Constant(kLeastTolerance_rad);
@@ -88,7 +84,7 @@ PositionYaw tolerance_of(const io::CsvTable& table, std::size_t row, const Motio
 }
 
 // Without a unit, a yaw beyond a full turn may be in degrees.
-void require_clear_yaw(const io::CsvTable& table, std::size_t row, const MotionColumns& columns) {
+void require_clear_yaw(const Table& table, std::size_t row, const MotionColumns& columns) {
   const auto yaw = columns.index(Motion::kYaw);
   if (!yaw || columns.declares_units() || std::abs(table.number(row, *yaw)) <= 2.0 * M_PI) return;
   table.fail(
@@ -100,7 +96,7 @@ void require_clear_yaw(const io::CsvTable& table, std::size_t row, const MotionC
           table.number(row, *yaw)));
 }
 
-Samples read(const io::CsvTable& table, const MotionColumns& columns, const Given& given,
+Samples read(const Table& table, const MotionColumns& columns, const Given& given,
              const std::optional<double>& tolerance_m) {
   Samples samples;
   const std::size_t t = *columns.index(Motion::kT);
@@ -172,7 +168,7 @@ void scale_time(Samples& samples, double factor) {
 }
 
 // Refuses places that no vehicle reaches in time, by their row: steps in the file.
-void require_reachable(const io::CsvTable& table, const Samples& samples, double scale,
+void require_reachable(const Table& table, const Samples& samples, double scale,
                        const control::Limits& limits) {
   for (std::size_t i = 1; i < samples.size(); ++i) {
     const double step_s = samples.times.time_s[i] - samples.times.time_s[i - 1];
@@ -187,7 +183,7 @@ void require_reachable(const io::CsvTable& table, const Samples& samples, double
   }
 }
 
-std::vector<SplineSample> spline_samples(const io::CsvTable& table, const MotionColumns& columns,
+std::vector<SplineSample> spline_samples(const Table& table, const MotionColumns& columns,
                                          const Samples& samples, bool with_derivatives, double widened) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   std::vector<SplineSample> out;
@@ -219,8 +215,8 @@ struct Fit {
   double widened = 1.0;
 };
 
-Fit fit(const io::CsvTable& table, const MotionColumns& columns, const Samples& samples,
-        bool with_derivatives, bool may_widen) {
+Fit fit(const Table& table, const MotionColumns& columns, const Samples& samples, bool with_derivatives,
+        bool may_widen) {
   constexpr double kAtRest_m_s = control::kJoin_m_s;
   const bool rests = samples.velocities.empty() || samples.velocities.back().norm() <= kAtRest_m_s;
   double least_m = kMostTolerance_m;
@@ -289,12 +285,12 @@ std::string columns_used(const MotionColumns& columns, bool with_derivatives) {
   for (const Motion column : columns.all()) {
     const bool derivative = column >= Motion::kVx && column <= Motion::kAz;
     if (column == Motion::kYawRate || (derivative && !with_derivatives)) continue;
-    text += (text.empty() ? "" : ", ") + motion_name(header_of(column));
+    text += (text.empty() ? "" : ", ") + name_of(column);
   }
   return text;
 }
 
-void say(const io::CsvTable& table, const MotionColumns& columns, const Samples& samples, const Fit& fit,
+void say(const Table& table, const MotionColumns& columns, const Samples& samples, const Fit& fit,
          bool with_derivatives, std::vector<std::string>& assumptions) {
   const Comparison comparison = compare(samples, fit.segments);
   assumptions.insert(assumptions.end(), samples.times.remarks.begin(), samples.times.remarks.end());
@@ -368,29 +364,20 @@ void fail_at(const io::CsvTable& table, const Samples& samples, std::size_t row,
 
 }  // namespace
 
-TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file_name,
-                                const control::Limits& limits, const FileOptions& options, int first_line) {
-  std::vector<std::string> header = table_header(text, file_name);
-  std::optional<io::CsvTable> recorded;
-  if (io::is_flight_csv(header)) {
-    recorded = reference_of_flight(text, file_name);
-    header = recorded->columns();
-  }
-  const MotionColumns columns(header, file_name, options.frame);
-  const Given given = given_in(columns, file_name);
-  const io::CsvTable table =
-      recorded ? *recorded : io::parse_csv(text, file_name, header, 2, {true, true, true, first_line});
+TrajectoryFile read_samples(const Table& table, const control::Limits& limits, const FileOptions& options) {
+  const MotionColumns columns(table.columns(), table.file(), options.frame);
+  const Given given = given_in(columns, table.file());
+  table.require_rows(2);
   Samples samples = read(table, columns, given, options.tolerance_m);
-  cut(samples, options, file_name);
+  cut(samples, options, table.file());
   std::vector<std::string> assumptions;
-  if (recorded) assumptions.push_back(extent_of(table));
   if (const auto assumption = columns.assumption("a sampled trajectory")) assumptions.push_back(*assumption);
   if (!given.yaw) assumptions.emplace_back("the file has no yaw: the vehicle faces north");
   if (columns.has(Motion::kYawRate))
     assumptions.emplace_back("yaw_rate is not used: the rate follows from the yaw");
   Heights heights;
   for (const PositionYaw& place : samples.places) heights.add(place.z());
-  const double raise_m = raise_by(heights, columns.frame(), file_name, assumptions);
+  const double raise_m = raise_by(heights, columns.frame(), table.file(), assumptions);
   for (PositionYaw& place : samples.places) place.z() -= raise_m;
 
   if (given.velocity && samples.velocities.front().norm() > control::kJoin_m_s)
