@@ -277,43 +277,33 @@ Result Client::ask(dds::Publisher<T>& publisher, const T& request, std::chrono::
   return settled(*asked->second);
 }
 
-Result Client::command(msg::Command command, std::chrono::milliseconds timeout, const Cancelled& cancelled) {
-  command.client(client_id_);
-  command.id(++last_id_);
-  return ask(commands_, command, timeout, cancelled);
+template <class T>
+T Client::numbered(T message) {
+  message.client(client_id_);
+  message.id(++last_id_);
+  return message;
+}
+
+Result Client::request(const control::Request& request, std::chrono::milliseconds timeout,
+                       const Cancelled& cancelled) {
+  return ask(commands_, numbered(messages::to_message(request)), timeout, cancelled);
 }
 
 Result Client::upload(const control::Mission& mission, std::chrono::milliseconds timeout,
                       const Cancelled& cancelled) {
-  msg::Mission message = messages::to_message(mission);
-  message.client(client_id_);
-  message.id(++last_id_);
+  const msg::Mission message = numbered(messages::to_message(mission));
   mission_id_ = message.id();
   return ask(missions_, message, timeout, cancelled);
 }
 
-Result Client::mission_command(std::uint8_t kind, std::uint64_t mission_id, std::chrono::milliseconds timeout,
-                               const Cancelled& cancelled) {
-  msg::Command request;
-  request.kind(kind);
-  request.mission_id(mission_id);
-  return command(request, timeout, cancelled);
-}
-
 Result Client::upload(const control::Trajectory& trajectory, std::chrono::milliseconds timeout,
                       const Cancelled& cancelled) {
-  msg::Trajectory message = messages::to_message(trajectory);
-  message.client(client_id_);
-  message.id(++last_id_);
-  return ask(trajectories_, message, timeout, cancelled);
+  return ask(trajectories_, numbered(messages::to_message(trajectory)), timeout, cancelled);
 }
 
 Result Client::change_settings(const control::SettingsRequest& settings, std::chrono::milliseconds timeout,
                                const Cancelled& cancelled) {
-  msg::ControlSettings message = messages::to_message(settings);
-  message.client(client_id_);
-  message.id(++last_id_);
-  return ask(settings_changes_, message, timeout, cancelled);
+  return ask(settings_changes_, numbered(messages::to_message(settings)), timeout, cancelled);
 }
 
 bool Client::send(control::Setpoint setpoint) {

@@ -40,7 +40,8 @@ VehicleNews news_of(const Client& client, const View& view, Clock::time_point no
 
 }  // namespace
 
-FleetWatch::FleetWatch(FleetMonitor monitor, std::vector<Watched> vehicles, std::function<bool()> gives_up)
+FleetWatch::FleetWatch(FleetMonitor monitor, std::vector<WatchedVehicle> vehicles,
+                       std::function<bool()> gives_up)
     : monitor_(std::move(monitor)),
       vehicles_(std::move(vehicles)),
       gives_up_(std::move(gives_up)),
@@ -49,12 +50,12 @@ FleetWatch::FleetWatch(FleetMonitor monitor, std::vector<Watched> vehicles, std:
 void FleetWatch::step() {
   if (gives_up_()) return;
   if (senders_.empty()) {
-    for (const Watched& vehicle : vehicles_)
-      senders_.emplace_back(*vehicle.client, *vehicle.progress, gives_up_);
+    for (const WatchedVehicle& vehicle : vehicles_)
+      senders_.emplace_back(vehicle.client, *vehicle.progress, gives_up_);
   }
   const auto now = Clock::now();
   std::vector<View> views;
-  for (const Watched& vehicle : vehicles_) views.push_back(vehicle.client->view());
+  for (const WatchedVehicle& vehicle : vehicles_) views.push_back(vehicle.client->view());
   if (!start_) {
     bool started = false;
     for (std::size_t i = 0; i < vehicles_.size(); ++i)
