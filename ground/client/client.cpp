@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <random>
 #include <utility>
 
 #include "swiftlet/control/estimation/estimator.hpp"
@@ -11,6 +10,7 @@
 #include "swiftlet/services/dds/reach.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/messages/wire_version.hpp"
+#include "swiftlet/services/runtime/random_id.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -20,11 +20,6 @@ constexpr std::size_t kMaxReportedRequests = 64;
 constexpr std::chrono::milliseconds kPollPeriod{20};  // for conditions that do not notify changed_
 // How far a lockstep plant may run ahead: 50 samples of the IMU at 500 Hz, which the sockets of a recorder hold.
 constexpr std::int64_t kTelemetryWindowNs = 100'000'000;
-
-std::uint64_t random_id() {
-  std::random_device device;
-  return (static_cast<std::uint64_t>(device()) << 32) | device();
-}
 
 Result result_of(const msg::CommandAck& ack) {
   const control::RequestKey key{ack.client(), ack.id()};
@@ -41,8 +36,8 @@ Client::Client(const dds::Participant& participant, const dds::NodeSettings& set
 
 Client::Client(const dds::Participant* shared, const dds::NodeSettings& settings, Telemetry telemetry)
     : settings_(settings),
-      client_id_(random_id()),
-      last_id_(random_id() >> 1),
+      client_id_(runtime::random_id()),
+      last_id_(runtime::random_id() >> 1),
       node_(shared != nullptr ? dds::Node(*shared, settings.vehicle) : dds::Node(settings)),
       commands_(node_.publish(messages::topics::kCommand)),
       missions_(node_.publish(messages::topics::kMission)),

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <random>
 #include <utility>
 
 #include "swiftlet/services/messages/wire_version.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
+#include "swiftlet/services/runtime/random_id.hpp"
 
 namespace swiftlet::services {
 namespace {
@@ -29,11 +29,6 @@ constexpr double kVehicleClockStands_s = 0.5;
 // The battery is sampled at 10 Hz only. Well below battery_timeout_s, so that a restarted vehicle is heard in time.
 constexpr auto kBatterySourceSilence = 1000ms;
 
-std::uint64_t random_number() {
-  std::random_device device;
-  return (static_cast<std::uint64_t>(device()) << 32) | device();
-}
-
 }  // namespace
 
 ControlService::ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
@@ -41,7 +36,7 @@ ControlService::ControlService(const plant::Vehicle& vehicle, const control::Con
                                const runtime::RealtimeSettings& realtime, runtime::Clock clock,
                                std::vector<control::FixedSetting> fixed,
                                std::optional<plant::ControlLevel> level)
-    : controller_(random_number()),
+    : controller_(runtime::random_id()),
       clock_(clock),
       realtime_(realtime),
       loop_(vehicle, settings),
