@@ -5,8 +5,16 @@
 #include <cstdint>
 #include <cstring>
 #include <string_view>
+#include <type_traits>
 
 namespace swiftlet::io {
+
+// The unsigned integer with the bits of a number.
+template <class Number, std::size_t Size = sizeof(Number)>
+using BitsOf =
+    std::conditional_t<Size == 1, std::uint8_t,
+                       std::conditional_t<Size == 2, std::uint16_t,
+                                          std::conditional_t<Size == 4, std::uint32_t, std::uint64_t>>>;
 
 // A read beyond the end returns zeros and makes ok() false for good, so that a sequence of reads needs one check.
 class ByteReader {
@@ -19,13 +27,21 @@ class ByteReader {
   std::size_t rest() const { return size_; }  // bytes
   const std::uint8_t* data() const { return data_; }
 
-  std::uint8_t u8() { return static_cast<std::uint8_t>(integer(1)); }
-  std::uint16_t u16() { return static_cast<std::uint16_t>(integer(2)); }
-  std::uint32_t u32() { return static_cast<std::uint32_t>(integer(4)); }
-  std::uint64_t u64() { return integer(8); }
-  std::int32_t i32() { return static_cast<std::int32_t>(u32()); }
-  float f32() { return same_bits<float>(u32()); }    // IEEE 754
-  double f64() { return same_bits<double>(u64()); }  // IEEE 754
+  // An integer, or a floating-point number of IEEE 754.
+  template <class Number>
+  Number number() {
+    const auto bits = static_cast<BitsOf<Number>>(integer(sizeof(Number)));
+    Number value;
+    std::memcpy(&value, &bits, sizeof(value));
+    return value;
+  }
+  std::uint8_t u8() { return number<std::uint8_t>(); }
+  std::uint16_t u16() { return number<std::uint16_t>(); }
+  std::uint32_t u32() { return number<std::uint32_t>(); }
+  std::uint64_t u64() { return number<std::uint64_t>(); }
+  std::int32_t i32() { return number<std::int32_t>(); }
+  float f32() { return number<float>(); }
+  double f64() { return number<double>(); }
   // A text that ends with a NUL, which is skipped. Without one in the rest the read is beyond the end.
   std::string_view text() {
     const void* const end = size_ == 0 ? nullptr : std::memchr(data_, 0, size_);
@@ -65,14 +81,6 @@ class ByteReader {
   }
 
  private:
-  template <class Float, class Integer>
-  static Float same_bits(Integer bits) {
-    static_assert(sizeof(Float) == sizeof(Integer));
-    Float number;
-    std::memcpy(&number, &bits, sizeof(number));
-    return number;
-  }
-
   std::uint64_t integer(std::size_t bytes) {
     const std::uint8_t* const taken = take(bytes);
     if (taken == nullptr) return 0;

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "swiftlet/io/atomic_write.hpp"
+#include "swiftlet/io/byte_writer.hpp"
 #include "swiftlet/record/mcap/record_writer.hpp"
 
 namespace swiftlet::analysis {
@@ -20,20 +21,19 @@ constexpr std::uint16_t kVersion = 20;
 constexpr std::uint16_t kFirstDay = 0x21;  // 1980-01-01
 constexpr std::size_t kNpyAlignment = 64;
 
-void put(std::string& out, std::uint64_t value, int bytes) {
-  for (int i = 0; i < bytes; ++i, value >>= 8U) out.push_back(static_cast<char>(value & 0xffU));
-}
+void put16(std::string& out, std::size_t value) { io::append(out, static_cast<std::uint16_t>(value)); }
+void put32(std::string& out, std::size_t value) { io::append(out, static_cast<std::uint32_t>(value)); }
 
 // What local and central header have in common: flags, method (stored), time, date, CRC, sizes, length of the name.
 void put_common(std::string& out, std::uint32_t crc, std::uint32_t size, std::size_t name_size) {
-  put(out, 0, 2);
-  put(out, 0, 2);
-  put(out, 0, 2);
-  put(out, kFirstDay, 2);
-  put(out, crc, 4);
-  put(out, size, 4);
-  put(out, size, 4);
-  put(out, name_size, 2);
+  put16(out, 0);
+  put16(out, 0);
+  put16(out, 0);
+  put16(out, kFirstDay);
+  put32(out, crc);
+  put32(out, size);
+  put32(out, size);
+  put16(out, name_size);
 }
 
 // The header of a .npy file, version 1.0, padded so that the data are aligned.
@@ -45,9 +45,8 @@ std::string npy_header(const std::string& type, std::size_t rows, std::size_t co
   text.append((kNpyAlignment - (kFixed + text.size() + 1) % kNpyAlignment) % kNpyAlignment, ' ');
   text.push_back('\n');
   std::string header = "\x93NUMPY";
-  put(header, 1, 1);
-  put(header, 0, 1);
-  put(header, text.size(), 2);
+  put16(header, 1);  // the version: 1.0
+  put16(header, text.size());
   return header + text;
 }
 
@@ -67,10 +66,10 @@ void NpzWriter::add_array(const std::string& name, const std::string& type, std:
   entries_.push_back({name + ".npy", crc_of(content), static_cast<std::uint32_t>(content.size()),
                       static_cast<std::uint32_t>(archive_.size())});
   const Entry& entry = entries_.back();
-  put(archive_, kLocalHeader, 4);
-  put(archive_, kVersion, 2);
+  put32(archive_, kLocalHeader);
+  put16(archive_, kVersion);
   put_common(archive_, entry.crc, entry.size, entry.name.size());
-  put(archive_, 0, 2);  // extra field
+  put16(archive_, 0);  // extra field
   archive_ += entry.name + content;
 }
 
@@ -94,22 +93,22 @@ void NpzWriter::add(const std::string& name, const std::vector<std::string>& val
 void NpzWriter::write(const std::filesystem::path& file) const {
   std::string whole = archive_;
   for (const Entry& entry : entries_) {
-    put(whole, kCentralHeader, 4);
-    put(whole, kVersion, 2);
-    put(whole, kVersion, 2);
+    put32(whole, kCentralHeader);
+    put16(whole, kVersion);
+    put16(whole, kVersion);
     put_common(whole, entry.crc, entry.size, entry.name.size());
-    put(whole, 0, 12);  // extra field, comment, disk, attributes
-    put(whole, entry.offset, 4);
+    whole.append(12, '\0');  // extra field, comment, disk, attributes
+    put32(whole, entry.offset);
     whole += entry.name;
   }
   const std::size_t central_size = whole.size() - archive_.size();
-  put(whole, kEnd, 4);
-  put(whole, 0, 4);  // disks
-  put(whole, entries_.size(), 2);
-  put(whole, entries_.size(), 2);
-  put(whole, central_size, 4);
-  put(whole, archive_.size(), 4);
-  put(whole, 0, 2);  // comment
+  put32(whole, kEnd);
+  put32(whole, 0);  // disks
+  put16(whole, entries_.size());
+  put16(whole, entries_.size());
+  put32(whole, central_size);
+  put32(whole, archive_.size());
+  put16(whole, 0);  // comment
   io::write_atomically(file, whole);
 }
 

@@ -5,12 +5,12 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/control/design/margins.hpp"
+
 namespace swiftlet::analysis {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-double decibels(double factor) { return 20.0 * std::log10(factor); }
 
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -18,8 +18,8 @@ Json json_of(const LoopStudy& loop) {
   return {{"stable", loop.stable},
           {"crossover_rad_s", number_or_null(loop.crossover)},
           {"phase_margin_deg", number_or_null(loop.margins.phase_deg)},
-          {"gain_increase_db", number_or_null(decibels(loop.margins.gain_increase))},
-          {"gain_decrease_db", number_or_null(decibels(loop.margins.gain_decrease))},
+          {"gain_increase_db", number_or_null(control::decibels(loop.margins.gain_increase))},
+          {"gain_decrease_db", number_or_null(control::decibels(loop.margins.gain_decrease))},
           {"delay_margin_s", number_or_null(loop.margins.delay_s)},
           {"rise_time_s", number_or_null(loop.step.rise_time_s)},
           {"overshoot", number_or_null(loop.step.overshoot)},
@@ -36,8 +36,8 @@ std::string row(const char* name, const LoopStudy& loop) {
   std::string out = fmt::format("  {:<6}", name) + cell(loop.crossover, 9, 1, "-");
   if (!loop.stable) return out + "  unstable\n";
   return out + cell(loop.margins.phase_deg, 6, 1, "any") +
-         cell(decibels(loop.margins.gain_decrease), 7, 1, "any") +
-         cell(decibels(loop.margins.gain_increase), 7, 1, "any") +
+         cell(control::decibels(loop.margins.gain_decrease), 7, 1, "any") +
+         cell(control::decibels(loop.margins.gain_increase), 7, 1, "any") +
          cell(1e3 * loop.margins.delay_s, 7, 1, "any") + cell(loop.step.rise_time_s, 7, 2, "-") +
          cell(100.0 * loop.step.overshoot, 9, 0, "-") + cell(loop.step.settling_time_s, 8, 2, "-") + "\n";
 }

@@ -1,6 +1,8 @@
 // Stability margins of a closed loop.
 #pragma once
 
+#include <cmath>
+
 #include "swiftlet/control/design/loop.hpp"
 
 namespace swiftlet::control {
@@ -19,5 +21,7 @@ struct LoopMargins {
 std::vector<double> phase_crossovers(const Loop& loop);
 
 LoopMargins margins(const Loop& loop);
+
+inline double decibels(double factor) { return 20.0 * std::log10(factor); }
 
 }  // namespace swiftlet::control

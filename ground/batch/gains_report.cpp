@@ -99,12 +99,10 @@ std::string attitude_heading(AttitudeModel model) {
          fmt::format("            1/s^2      1/s {:>8}     deg  rad/s\n", lag ? "1" : "");
 }
 
-double decibels(double factor) { return 20.0 * std::log10(factor); }
-
 Json json_of(const control::LoopMargins& margins) {
   return {{"phase_deg", json_of_margin(margins.phase_deg)},
-          {"gain_increase_db", json_of_margin(decibels(margins.gain_increase))},
-          {"gain_decrease_db", json_of_margin(decibels(margins.gain_decrease))},
+          {"gain_increase_db", json_of_margin(control::decibels(margins.gain_increase))},
+          {"gain_decrease_db", json_of_margin(control::decibels(margins.gain_decrease))},
           {"delay_s", json_of_margin(margins.delay_s)}};
 }
 
@@ -118,10 +116,6 @@ Json json_of(const MarginStudy& study) {
     out[kLoopNames[i]]["worst"] = json_of(loop.worst);
   }
   return out;
-}
-
-std::string decibels_text(double factor) {
-  return factor > 0.0 && std::isfinite(factor) ? fmt::format("{:+6.1f}", decibels(factor)) : "   any";
 }
 
 std::string margin_text(const control::LoopMargins& m) {
@@ -167,6 +161,11 @@ std::string text_of(const FlownDelays& delays_s) {
 }
 
 }  // namespace
+
+std::string decibels_text(double factor) {
+  return factor > 0.0 && std::isfinite(factor) ? fmt::format("{:+6.1f}", control::decibels(factor))
+                                               : "   any";
+}
 
 std::string gains_json(const ControlDesign& design, const MarginStudy& margins,
                        const FlownDelays& flown_delay_s, const std::string& vehicle,

@@ -39,6 +39,9 @@ std::string gains_json(const control::ControlDesign& design, const MarginStudy& 
                        const FlownDelays& flown_delay_s, const std::string& vehicle,
                        const std::string& control);
 
+// A gain margin in a cell of six characters: " +12.3"; "   any" for one that is infinite.
+std::string decibels_text(double factor);
+
 // Returns the design as a table for a terminal, with a newline at the end.
 std::string gains_table(const control::ControlDesign& design, const MarginStudy& margins,
                         const FlownDelays& flown_delay_s, const std::string& vehicle,

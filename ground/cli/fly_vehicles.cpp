@@ -12,7 +12,6 @@
 
 #include "swiftlet/ground/cli/live_view.hpp"
 #include "swiftlet/ground/cli/preflight.hpp"
-#include "swiftlet/ground/fleet/fleet_watch.hpp"
 #include "swiftlet/ground/flight/attached_vehicle.hpp"
 #include "swiftlet/ground/flight/flight_outcome.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
@@ -67,7 +66,7 @@ void fly_together(std::deque<ProcessFlight>& flights, ProcessGroup& processes, M
   std::shared_ptr<void> watch;
   if (start_watch) {
     std::vector<WatchedVehicle> watched;
-    for (std::size_t i = 0; i < flights.size(); ++i) watched.push_back({&flights[i].client(), &shares.of(i)});
+    for (std::size_t i = 0; i < flights.size(); ++i) watched.push_back({flights[i].client(), &shares.of(i)});
     watch = start_watch(std::move(watched),
                         [&] { return barrier.failure().has_value() || interrupts.count() > 0; });
   }

@@ -6,17 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "swiftlet/ground/client/client.hpp"
+#include "swiftlet/ground/fleet/fleet_watch.hpp"
 #include "swiftlet/ground/flight/launch_configuration.hpp"
-#include "swiftlet/io/command_line/progress.hpp"
 
 namespace swiftlet::ground {
-
-// A vehicle of a flight of several. Client and progress live as long as the flight.
-struct WatchedVehicle {
-  Client* client = nullptr;
-  io::Progress* progress = nullptr;
-};
 
 // Begins to watch a flight of several vehicles, in the order of the command; what it returns ends the watch when it is destroyed.
 // gives_up: true from when the flight is abandoned, and all are landed. Called from several threads.

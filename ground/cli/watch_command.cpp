@@ -7,6 +7,7 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/client/connection_watch.hpp"
 #include "swiftlet/ground/client/network_options.hpp"
+#include "swiftlet/ground/client/vehicle.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/terminal/terminal_screen.hpp"
 #include "swiftlet/ground/terminal/watch_screen.hpp"
@@ -19,6 +20,7 @@ using namespace std::chrono_literals;
 constexpr int kFrame_ms = 100;
 constexpr auto kRateTime = 1s;
 constexpr auto kAnswerTimeout = 2s;
+constexpr double kLandingSpeed_m_s = 0.4;
 
 struct WatchOptions {
   dds::NodeSettings network;
@@ -58,7 +60,7 @@ class WatchedRates {
 // Handles keys: a letter selects a request, y confirms it.
 class Keys {
  public:
-  explicit Keys(Client& client) : client_(client) {}
+  explicit Keys(std::shared_ptr<Client> client) : vehicle_(std::move(client)) {}
 
   bool is_asking() const { return asked_ != nullptr; }
 
@@ -84,34 +86,31 @@ class Keys {
     char key;
     const char* name;
     const char* question;
-    std::uint8_t kind;
+    ActionHandle (*send)(Vehicle&);
   };
   static constexpr Action kActions[] = {
       {'h', "hold", "hold: come to rest and hold? y confirms, any other key cancels",
-       msg::Command_Constants::HOLD},
+       [](Vehicle& vehicle) { return vehicle.hold(kAnswerTimeout); }},
       {'l', "land", "land: descend vertically? y confirms, any other key cancels",
-       msg::Command_Constants::LAND},
+       [](Vehicle& vehicle) { return vehicle.land(kLandingSpeed_m_s, kAnswerTimeout); }},
       {'s', "stop", "STOP: ROTORS OFF, FALL IF IN THE AIR? y confirms, any other key cancels",
-       msg::Command_Constants::STOP}};
+       [](Vehicle& vehicle) { return vehicle.stop(kAnswerTimeout); }}};
 
   std::string answer_of(const Action& action) {
-    msg::Command command;
-    command.kind(action.kind);
-    command.speed(kLandingSpeed_m_s);
-    const Result answer = client_.command(command, kAnswerTimeout);
+    const Result answer = action.send(vehicle_).answer();
     if (!answer.accepted()) return std::string(action.name) + ": " + answer.reason;
     return std::string(action.name) + ": accepted" + (answer.reason.empty() ? "" : "; " + answer.reason);
   }
 
-  static constexpr double kLandingSpeed_m_s = 0.4;
-  Client& client_;
+  Vehicle vehicle_;
   const Action* asked_ = nullptr;
 };
 
 class Watch {
  public:
-  explicit Watch(const WatchOptions& options) : client_(options.network), keys_(client_) {
-    client_.hear_controllers();
+  explicit Watch(const WatchOptions& options)
+      : client_(std::make_shared<Client>(options.network)), keys_(client_) {
+    client_->hear_controllers();
     facts_.vehicle = options.network.vehicle;
     facts_.domain = options.network.domain;
     if (options.duration_s) {
@@ -131,24 +130,24 @@ class Watch {
 
   int in_lines() {
     while (goes_on()) {
-      client_.wait(kRateTime, [this](const View&) { return !goes_on(); });
+      client_->wait(kRateTime, [this](const View&) { return !goes_on(); });
       const View view = update();
       if (!facts_.message.empty()) std::printf("%s\n", std::exchange(facts_.message, {}).c_str());
       std::printf("%s\n", watch_line(view, facts_, Clock::now()).c_str());
       std::fflush(stdout);
     }
-    return client_.view().control.seen() ? io::kDone : io::kFailed;
+    return client_->view().control.seen() ? io::kDone : io::kFailed;
   }
 
  private:
   bool goes_on() const { return interrupts_.count() == 0 && !(end_ && Clock::now() >= *end_); }
 
   View update() {
-    View view = client_.view();
+    View view = client_->view();
     rates_.update(view, facts_);
     facts_.system_now = std::chrono::system_clock::now();
     if (const auto event = connection_.update(view, Clock::now())) report(*event);
-    if (!view.control.seen()) facts_.where = client_.no_control();
+    if (!view.control.seen()) facts_.where = client_->no_control();
     return view;
   }
 
@@ -160,7 +159,7 @@ class Watch {
   }
 
   const Interrupts interrupts_;
-  Client client_;
+  std::shared_ptr<Client> client_;
   Keys keys_;
   WatchFacts facts_;
   WatchedRates rates_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <random>
 #include <utility>
 
 #include "swiftlet/control/estimation/estimator.hpp"
@@ -11,6 +10,7 @@
 #include "swiftlet/services/dds/reach.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/messages/wire_version.hpp"
+#include "swiftlet/services/runtime/random_id.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -20,11 +20,6 @@ constexpr std::size_t kMaxReportedRequests = 64;
 constexpr std::chrono::milliseconds kPollPeriod{20};  // for conditions that do not notify changed_
 // How far a lockstep plant may run ahead: 50 samples of the IMU at 500 Hz, which the sockets of a recorder hold.
 constexpr std::int64_t kTelemetryWindowNs = 100'000'000;
-
-std::uint64_t random_id() {
-  std::random_device device;
-  return (static_cast<std::uint64_t>(device()) << 32) | device();
-}
 
 Result result_of(const msg::CommandAck& ack) {
   const control::RequestKey key{ack.client(), ack.id()};
@@ -41,8 +36,8 @@ Client::Client(const dds::Participant& participant, const dds::NodeSettings& set
 
 Client::Client(const dds::Participant* shared, const dds::NodeSettings& settings, Telemetry telemetry)
     : settings_(settings),
-      client_id_(random_id()),
-      last_id_(random_id() >> 1),
+      client_id_(runtime::random_id()),
+      last_id_(runtime::random_id() >> 1),
       node_(shared != nullptr ? dds::Node(*shared, settings.vehicle) : dds::Node(settings)),
       commands_(node_.publish(messages::topics::kCommand)),
       missions_(node_.publish(messages::topics::kMission)),
@@ -277,43 +272,33 @@ Result Client::ask(dds::Publisher<T>& publisher, const T& request, std::chrono::
   return settled(*asked->second);
 }
 
-Result Client::command(msg::Command command, std::chrono::milliseconds timeout, const Cancelled& cancelled) {
-  command.client(client_id_);
-  command.id(++last_id_);
-  return ask(commands_, command, timeout, cancelled);
+template <class T>
+T Client::numbered(T message) {
+  message.client(client_id_);
+  message.id(++last_id_);
+  return message;
+}
+
+Result Client::request(const control::Request& request, std::chrono::milliseconds timeout,
+                       const Cancelled& cancelled) {
+  return ask(commands_, numbered(messages::to_message(request)), timeout, cancelled);
 }
 
 Result Client::upload(const control::Mission& mission, std::chrono::milliseconds timeout,
                       const Cancelled& cancelled) {
-  msg::Mission message = messages::to_message(mission);
-  message.client(client_id_);
-  message.id(++last_id_);
+  const msg::Mission message = numbered(messages::to_message(mission));
   mission_id_ = message.id();
   return ask(missions_, message, timeout, cancelled);
 }
 
-Result Client::mission_command(std::uint8_t kind, std::uint64_t mission_id, std::chrono::milliseconds timeout,
-                               const Cancelled& cancelled) {
-  msg::Command request;
-  request.kind(kind);
-  request.mission_id(mission_id);
-  return command(request, timeout, cancelled);
-}
-
 Result Client::upload(const control::Trajectory& trajectory, std::chrono::milliseconds timeout,
                       const Cancelled& cancelled) {
-  msg::Trajectory message = messages::to_message(trajectory);
-  message.client(client_id_);
-  message.id(++last_id_);
-  return ask(trajectories_, message, timeout, cancelled);
+  return ask(trajectories_, numbered(messages::to_message(trajectory)), timeout, cancelled);
 }
 
 Result Client::change_settings(const control::SettingsRequest& settings, std::chrono::milliseconds timeout,
                                const Cancelled& cancelled) {
-  msg::ControlSettings message = messages::to_message(settings);
-  message.client(client_id_);
-  message.id(++last_id_);
-  return ask(settings_changes_, message, timeout, cancelled);
+  return ask(settings_changes_, numbered(messages::to_message(settings)), timeout, cancelled);
 }
 
 bool Client::send(control::Setpoint setpoint) {

@@ -94,7 +94,8 @@ class Client {
   // Delivery is reliable. The request is sent again only if another controller may have to answer it, or
   // after 2 s without an answer.
   using Cancelled = std::function<bool()>;
-  Result command(msg::Command command, std::chrono::milliseconds timeout, const Cancelled& cancelled = {});
+  Result request(const control::Request& request, std::chrono::milliseconds timeout,
+                 const Cancelled& cancelled = {});
   Result upload(const control::Mission& mission, std::chrono::milliseconds timeout,
                 const Cancelled& cancelled = {});
   Result upload(const control::Trajectory& trajectory, std::chrono::milliseconds timeout,
@@ -106,9 +107,6 @@ class Client {
   bool send(control::Setpoint setpoint);
   // Returns when a controller subscribes to setpoints, at the deadline, or when cancelled.
   void await_setpoint_reader(Clock::time_point deadline, const Cancelled& cancelled) const;
-  // kind: one of Command_Constants::MISSION_*. mission_id: 0 means the mission that the vehicle has.
-  Result mission_command(std::uint8_t kind, std::uint64_t mission_id, std::chrono::milliseconds timeout,
-                         const Cancelled& cancelled = {});
   // MissionStatus::mission_id of the mission that this client uploaded last.
   std::uint64_t mission_id() const { return mission_id_; }
   const std::string& vehicle() const { return settings_.vehicle; }
@@ -132,6 +130,8 @@ class Client {
   void subscribe_telemetry();
   void advance_after(std::int64_t stamp_ns);
   void advance();
+  template <class T>
+  T numbered(T message);
   template <class T>
   Result ask(dds::Publisher<T>& publisher, const T& request, std::chrono::milliseconds timeout,
              const Cancelled& cancelled);

@@ -6,7 +6,6 @@
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/client/connection_watch.hpp"
 #include "swiftlet/services/dds/periodic_task.hpp"
-#include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/messages/wire.hpp"
 
 namespace swiftlet::ground {
@@ -26,9 +25,10 @@ dds::NodeSettings of_vehicle(dds::NodeSettings network, const std::string& name)
   return network;
 }
 
-control::Request of_kind(RequestKind kind) {
+control::Request of_kind(RequestKind kind, std::uint64_t mission_id = 0) {
   control::Request request;
   request.kind = kind;
+  request.mission_id = mission_id;
   return request;
 }
 
@@ -84,6 +84,8 @@ Vehicle::Vehicle(const Context& context, const std::string& name, Telemetry tele
     : client_(
           std::make_shared<Client>(context.participant(), of_vehicle(context.network(), name), telemetry)) {}
 
+Vehicle::Vehicle(std::shared_ptr<Client> client) : client_(std::move(client)) {}
+
 Vehicle::~Vehicle() = default;
 
 const std::string& Vehicle::name() const { return client_->vehicle(); }
@@ -122,7 +124,7 @@ bool Vehicle::wait_until(const std::function<bool(const VehicleState&)>& holds, 
 }
 
 ActionHandle Vehicle::request(const control::Request& request, milliseconds timeout) {
-  return {client_, client_->command(messages::to_message(request), timeout, cancelled_)};
+  return {client_, client_->request(request, timeout, cancelled_)};
 }
 
 ActionHandle Vehicle::arm(milliseconds timeout) { return request(of_kind(RequestKind::kArm), timeout); }
@@ -167,28 +169,24 @@ ActionHandle Vehicle::follow(const control::Mission& mission, milliseconds timeo
   return start_mission(client_->mission_id(), timeout);
 }
 
-ActionHandle Vehicle::request_of_mission(std::uint8_t kind, std::uint64_t id, milliseconds timeout) {
-  return {client_, client_->mission_command(kind, id, timeout, cancelled_)};
-}
-
 ActionHandle Vehicle::start_mission(std::uint64_t id, milliseconds timeout) {
-  return request_of_mission(msg::Command_Constants::MISSION_START, id, timeout);
+  return request(of_kind(RequestKind::kMissionStart, id), timeout);
 }
 
 ActionHandle Vehicle::pause_mission(std::uint64_t id, milliseconds timeout) {
-  return request_of_mission(msg::Command_Constants::MISSION_PAUSE, id, timeout);
+  return request(of_kind(RequestKind::kMissionPause, id), timeout);
 }
 
 ActionHandle Vehicle::resume_mission(std::uint64_t id, milliseconds timeout) {
-  return request_of_mission(msg::Command_Constants::MISSION_RESUME, id, timeout);
+  return request(of_kind(RequestKind::kMissionResume, id), timeout);
 }
 
 ActionHandle Vehicle::skip_mission_item(std::uint64_t id, milliseconds timeout) {
-  return request_of_mission(msg::Command_Constants::MISSION_SKIP, id, timeout);
+  return request(of_kind(RequestKind::kMissionSkip, id), timeout);
 }
 
 ActionHandle Vehicle::clear_mission(std::uint64_t id, milliseconds timeout) {
-  return request_of_mission(msg::Command_Constants::MISSION_CLEAR, id, timeout);
+  return request(of_kind(RequestKind::kMissionClear, id), timeout);
 }
 
 ActionHandle Vehicle::follow(const control::Trajectory& trajectory, milliseconds timeout) {

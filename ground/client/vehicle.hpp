@@ -105,6 +105,8 @@ class Vehicle {
   // mode, the mission and the model, and clock_s() is NaN. Throws std::runtime_error if `name` is not a valid vehicle
   // name.
   Vehicle(const Context& context, const std::string& name, Telemetry telemetry = Telemetry::kReceived);
+  // Shares a client, for programs that also work on its messages.
+  explicit Vehicle(std::shared_ptr<Client> client);
   ~Vehicle();
   Vehicle(const Vehicle&) = delete;
   Vehicle& operator=(const Vehicle&) = delete;
@@ -135,6 +137,8 @@ class Vehicle {
                   std::chrono::milliseconds timeout) const;
 
   // Requests. `timeout` limits the wait for the answer.
+  // Any request without a mission, trajectory or gains of its own; those below are the usual ones.
+  ActionHandle request(const control::Request& request, std::chrono::milliseconds timeout = kAnswerTimeout);
   ActionHandle arm(std::chrono::milliseconds timeout = kAnswerTimeout);     // done: rotors turn
   ActionHandle disarm(std::chrono::milliseconds timeout = kAnswerTimeout);  // on the ground only
   // Climbs straight up to height_m above the origin and holds. speed_m_s: peak.
@@ -196,9 +200,6 @@ class Vehicle {
   bool send(const control::Setpoint& setpoint);
 
  private:
-  ActionHandle request(const control::Request& request, std::chrono::milliseconds timeout);
-  ActionHandle request_of_mission(std::uint8_t kind, std::uint64_t id, std::chrono::milliseconds timeout);
-
   std::shared_ptr<Client> client_;
   std::function<bool()> cancelled_;
   std::unique_ptr<dds::PeriodicTask> periodic_task_;  // last: it uses client_

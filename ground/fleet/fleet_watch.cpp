@@ -1,12 +1,12 @@
 #include "swiftlet/ground/fleet/fleet_watch.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <string>
 #include <utility>
 
 #include "swiftlet/control/types/mode.hpp"
+#include "swiftlet/services/messages/wire.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -15,8 +15,6 @@ using namespace std::chrono_literals;
 
 constexpr auto kPeriod = 40ms;
 constexpr double kHeard_s = 0.2;  // of a vehicle that is told to fly on
-
-Eigen::Vector3d vector(const std::array<double, 3>& in) { return {in[0], in[1], in[2]}; }
 
 bool is_of_flight(const Client& client, const View& view) {
   return view.mission.message.mission_id() == client.mission_id();
@@ -29,8 +27,8 @@ bool runs(const Client& client, const View& view) {
 VehicleNews news_of(const Client& client, const View& view, Clock::time_point now) {
   const auto mode = static_cast<control::Mode>(view.control.message.mode());
   VehicleNews news;
-  news.reference_ned = vector(view.reference.message.position_ned());
-  news.position_ned = vector(view.estimate.message.position_ned());
+  news.reference_ned = messages::wire::vector(view.reference.message.position_ned());
+  news.position_ned = messages::wire::vector(view.estimate.message.position_ned());
   news.age_s = std::max(view.estimate.age_s(now), view.reference.age_s(now));
   news.flies_plan =
       is_of_flight(client, view) && view.mission.message.state() != msg::MissionStatus_Constants::ABORTED;
@@ -40,7 +38,8 @@ VehicleNews news_of(const Client& client, const View& view, Clock::time_point no
 
 }  // namespace
 
-FleetWatch::FleetWatch(FleetMonitor monitor, std::vector<Watched> vehicles, std::function<bool()> gives_up)
+FleetWatch::FleetWatch(FleetMonitor monitor, std::vector<WatchedVehicle> vehicles,
+                       std::function<bool()> gives_up)
     : monitor_(std::move(monitor)),
       vehicles_(std::move(vehicles)),
       gives_up_(std::move(gives_up)),
@@ -49,12 +48,12 @@ FleetWatch::FleetWatch(FleetMonitor monitor, std::vector<Watched> vehicles, std:
 void FleetWatch::step() {
   if (gives_up_()) return;
   if (senders_.empty()) {
-    for (const Watched& vehicle : vehicles_)
-      senders_.emplace_back(*vehicle.client, *vehicle.progress, gives_up_);
+    for (const WatchedVehicle& vehicle : vehicles_)
+      senders_.emplace_back(vehicle.client, *vehicle.progress, gives_up_);
   }
   const auto now = Clock::now();
   std::vector<View> views;
-  for (const Watched& vehicle : vehicles_) views.push_back(vehicle.client->view());
+  for (const WatchedVehicle& vehicle : vehicles_) views.push_back(vehicle.client->view());
   if (!start_) {
     bool started = false;
     for (std::size_t i = 0; i < vehicles_.size(); ++i)

@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -15,24 +16,24 @@
 
 namespace swiftlet::ground {
 
+struct WatchedVehicle {
+  std::shared_ptr<Client> client;
+  io::Progress* progress = nullptr;  // outlives the watch
+};
+
 // Begins when a mission runs, and ends when it is destroyed. A mission that another tool has paused is left
 // paused. Each vehicle is asked from a thread of its own: one that does not answer delays no other.
 class FleetWatch {
  public:
-  struct Watched {
-    Client* client = nullptr;          // outlives this object
-    io::Progress* progress = nullptr;  // likewise
-  };
-
   // vehicles: in the order of the monitor's. gives_up: true from when the flight is abandoned, and all are
   // landed: nothing else is sent from then on. Called from several threads.
-  FleetWatch(FleetMonitor monitor, std::vector<Watched> vehicles, std::function<bool()> gives_up);
+  FleetWatch(FleetMonitor monitor, std::vector<WatchedVehicle> vehicles, std::function<bool()> gives_up);
 
  private:
   void step();
 
   FleetMonitor monitor_;
-  std::vector<Watched> vehicles_;
+  std::vector<WatchedVehicle> vehicles_;
   const std::function<bool()> gives_up_;
   std::deque<OrderSender> senders_;
   std::optional<Clock::time_point> start_;

@@ -14,8 +14,12 @@ constexpr double kAsideSpeed = 0.8;  // m/s
 
 }  // namespace
 
-OrderSender::OrderSender(Client& client, io::Progress& progress, std::function<bool()> gives_up)
-    : client_(client), progress_(progress), gives_up_(std::move(gives_up)), thread_([this] { run(); }) {}
+OrderSender::OrderSender(const std::shared_ptr<Client>& client, io::Progress& progress,
+                         std::function<bool()> gives_up)
+    : client_(*client), vehicle_(client), progress_(progress), gives_up_(std::move(gives_up)) {
+  vehicle_.cancel_when([this] { return is_cancelled(); });
+  thread_ = std::thread([this] { run(); });
+}
 
 OrderSender::~OrderSender() {
   {
@@ -72,18 +76,11 @@ void OrderSender::carry_out(const Order& order, const std::string& because_of) {
 }
 
 Result OrderSender::send(Request request, const Order& order) {
-  const auto cancelled = [this] { return is_cancelled(); };
-  if (request == Request::kGoTo) {
-    msg::Command aside;
-    aside.kind(msg::Command_Constants::GOTO);
-    aside.position_ned({order.place_ned.x(), order.place_ned.y(), order.place_ned.z()});
-    aside.yaw_free(true);
-    aside.speed(kAsideSpeed);
-    return client_.command(aside, kAnswerTimeout, cancelled);
-  }
-  return client_.mission_command(request == Request::kPause ? msg::Command_Constants::MISSION_PAUSE
-                                                            : msg::Command_Constants::MISSION_RESUME,
-                                 client_.mission_id(), kAnswerTimeout, cancelled);
+  if (request == Request::kGoTo)
+    return vehicle_.go_to({order.place_ned, std::nullopt, kAsideSpeed}, kAnswerTimeout).answer();
+  const std::uint64_t mission = vehicle_.uploaded_id();
+  if (request == Request::kPause) return vehicle_.pause_mission(mission, kAnswerTimeout).answer();
+  return vehicle_.resume_mission(mission, kAnswerTimeout).answer();
 }
 
 void OrderSender::say(const Order& order, const std::string& because_of) {

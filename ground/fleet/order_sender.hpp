@@ -4,12 +4,14 @@
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 
 #include "swiftlet/ground/client/client.hpp"
+#include "swiftlet/ground/client/vehicle.hpp"
 #include "swiftlet/ground/fleet/order_execution.hpp"
 #include "swiftlet/io/command_line/progress.hpp"
 
@@ -17,8 +19,8 @@ namespace swiftlet::ground {
 
 class OrderSender {
  public:
-  // Client and progress outlive this object. gives_up: true from when nothing is to be sent any more; from any thread.
-  OrderSender(Client& client, io::Progress& progress, std::function<bool()> gives_up);
+  // progress outlives this object. gives_up: true from when nothing is to be sent any more; from any thread.
+  OrderSender(const std::shared_ptr<Client>& client, io::Progress& progress, std::function<bool()> gives_up);
   // Ends at once, also while a request is not answered.
   ~OrderSender();
   OrderSender(const OrderSender&) = delete;
@@ -34,7 +36,8 @@ class OrderSender {
   bool is_cancelled();
   void say(const Order& order, const std::string& because_of);
 
-  Client& client_;
+  const Client& client_;
+  Vehicle vehicle_;  // on the client
   io::Progress& progress_;
   const std::function<bool()> gives_up_;
   OrderExecution execution_;  // of the thread, as those below

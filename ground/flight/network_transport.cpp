@@ -70,15 +70,18 @@ double simulated_s(const View& view, std::int64_t since_ns) {
 
 }  // namespace
 
-NetworkTransport::NetworkTransport(Client& client, const io::MissionFile& mission, runtime::Clock clock,
-                                   Watch watch, io::Progress& progress)
-    : client_(client),
+NetworkTransport::NetworkTransport(const std::shared_ptr<Client>& client, const io::MissionFile& mission,
+                                   runtime::Clock clock, Watch watch, io::Progress& progress)
+    : client_(*client),
+      vehicle_(client),
       mission_(mission),
       lockstep_(clock == runtime::Clock::kLockstep),
       watch_(std::move(watch)),
-      progress_(progress) {}
+      progress_(progress) {
+  vehicle_.cancel_when([this] { return watch_.exited_process() || watch_.interrupts() > 0; });
+}
 
-NetworkTransport::~NetworkTransport() { client_.disable_link_loss_failsafe(); }
+NetworkTransport::~NetworkTransport() { vehicle_.disable_link_loss_failsafe(); }
 
 // Only time in which this process was running counts: a stalled computer is not the peer's fault.
 bool NetworkTransport::Silence::lasts(std::uint64_t sample_count) {
@@ -120,7 +123,7 @@ void NetworkTransport::wait_until_ready() {
   wait_until_recorded();
   if (!lockstep_) {
     // In lockstep time stands still without this process, and the plant ends the run.
-    client_.enable_link_loss_failsafe();
+    vehicle_.enable_link_loss_failsafe();
     return;
   }
   wait_until_paused_at(simulation::FlightSchedule::kFirstRequestNs);
@@ -155,16 +158,12 @@ void NetworkTransport::wait_until_paused_at(std::int64_t stamp_ns) {
 }
 
 simulation::MissionTransport::Reply NetworkTransport::arm() {
-  msg::Command command;
-  command.kind(msg::Command_Constants::ARM);
-  const Result answer = client_.command(
-      command, kTransferTimeout, [this] { return watch_.exited_process() || watch_.interrupts() > 0; });
+  const Result answer = vehicle_.arm(kTransferTimeout).answer();
   require_alive();
   armed_ = answer;
   if (answer.kind == Result::Kind::kSilence || answer.kind == Result::Kind::kCancelled) {
-    msg::Command disarm;  // the request may have armed it all the same
-    disarm.kind(msg::Command_Constants::DISARM);
-    armed_ = client_.command(disarm, kResultTimeout);
+    vehicle_.cancel_when({});
+    armed_ = vehicle_.disarm(kResultTimeout).answer();  // the request may have armed it all the same
   }
   if (answer.accepted() && watch_.interrupts() > 0) abandon("interrupted before take-off");
   require_no_interrupt();
@@ -200,11 +199,6 @@ void NetworkTransport::learn_clock_offset(clocks::ClockClient& vehicle_clock) {
   }
 }
 
-Result NetworkTransport::upload() {
-  return client_.upload(mission_.mission, kTransferTimeout,
-                        [this] { return watch_.exited_process() || watch_.interrupts() > 0; });
-}
-
 void NetworkTransport::wait_for_other_vehicles() {
   if (watch_.barrier == nullptr) return;
   std::optional<clocks::ClockClient> vehicle_clock;
@@ -214,7 +208,8 @@ void NetworkTransport::wait_for_other_vehicles() {
         clocks::ClockClient::Reporting::kNone);
     learn_clock_offset(*vehicle_clock);
   }
-  if (const Result answer = upload(); !answer.accepted()) {
+  if (const Result answer = vehicle_.upload(mission_.mission, kTransferTimeout).answer();
+      !answer.accepted()) {
     require_alive();
     abandon(watch_.interrupts() > 0 ? "interrupted" : "mission refused: " + answer.reason);
   }
@@ -232,14 +227,14 @@ void NetworkTransport::wait_for_other_vehicles() {
 }
 
 simulation::MissionTransport::Reply NetworkTransport::start_mission() {
-  const auto cancelled = [this] { return watch_.exited_process() || watch_.interrupts() > 0; };
-  Result answer = watch_.barrier == nullptr ? upload() : Result{Result::Kind::kAccepted, ""};
+  Result answer{Result::Kind::kAccepted, ""};
+  if (watch_.barrier == nullptr) answer = vehicle_.upload(mission_.mission, kTransferTimeout).answer();
   if (answer.accepted()) {
-    msg::Command start;
-    start.kind(msg::Command_Constants::MISSION_START);
-    start.mission_id(client_.mission_id());
-    start.start_ns(start_ns_);
-    answer = client_.command(start, kTransferTimeout, cancelled);
+    control::Request start;
+    start.kind = control::RequestKind::kMissionStart;
+    start.mission_id = vehicle_.uploaded_id();
+    start.start_ns = start_ns_;
+    answer = vehicle_.request(start, kTransferTimeout).answer();
   }
   require_alive();
   start_ = answer;
@@ -335,6 +330,7 @@ bool NetworkTransport::is_taken_over(const Result& landing) const {
 }
 
 void NetworkTransport::abandon(const std::string& reason) {
+  vehicle_.cancel_when({});
   const int interrupts_before = watch_.interrupts();
   if (lockstep_) client_.simulation_clock().without_end();  // disarming needs time to advance
   // A status from before the arming still says disarmed.
@@ -345,9 +341,6 @@ void NetworkTransport::abandon(const std::string& reason) {
   bool in_flight = start_.accepted() || (!rotors_off(mode) && mode != ControlMode::kArmed);
   progress_.say(reason + (in_flight ? "; landing" : "; disarming") +
                 (interrupts_before > 0 ? " (interrupt again to quit at once)" : ""));
-  msg::Command land;
-  land.kind(msg::Command_Constants::LAND);
-  land.speed(kLandingSpeed);
   const std::int64_t start_ns = client_.view().truth.message.stamp_ns();
   Silence silence;
   Result landing;
@@ -361,15 +354,13 @@ void NetworkTransport::abandon(const std::string& reason) {
     if (simulated_s(client_.view(), start_ns) > kLandingTimeoutS)
       throw simulation::FlightFailure(reason + "; the vehicle did not land within 30 s");
     if (mode_of(client_.view()) == ControlMode::kArmed) {
-      msg::Command disarm;
-      disarm.kind(msg::Command_Constants::DISARM);
-      client_.command(disarm, kRetryPeriod);
+      vehicle_.disarm(kRetryPeriod);
     } else if (is_taken_over(landing)) {
       throw simulation::FlightFailure(
           reason + "; while landing, another ground tool took over; the vehicle is left to it");
     } else if (!lands(landing)) {
       in_flight = true;
-      landing = client_.command(land, kRetryPeriod);
+      landing = vehicle_.land(kLandingSpeed, kRetryPeriod).answer();
     }
     update_progress(client_.view());
     client_.wait(kRetryPeriod, [](const View& view) { return rotors_off(mode_of(view)); });

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "swiftlet/ground/client/client.hpp"
+#include "swiftlet/ground/client/vehicle.hpp"
 #include "swiftlet/ground/flight/start_barrier.hpp"
 #include "swiftlet/io/command_line/progress.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
@@ -32,8 +34,8 @@ class NetworkTransport final : public simulation::MissionTransport {
   };
 
   // In lockstep the plant was started paused.
-  NetworkTransport(Client& client, const io::MissionFile& mission, runtime::Clock clock, Watch watch,
-                   io::Progress& progress);
+  NetworkTransport(const std::shared_ptr<Client>& client, const io::MissionFile& mission,
+                   runtime::Clock clock, Watch watch, io::Progress& progress);
   ~NetworkTransport() override;
 
   void wait_until_ready() override;
@@ -61,7 +63,6 @@ class NetworkTransport final : public simulation::MissionTransport {
     double lasted_s_ = 0.0;
   };
 
-  Result upload();
   std::int64_t at_vehicle_rate(std::int64_t host_ns) const;
   // The clocks drift while the other vehicles are awaited: the offset is measured until the start is chosen.
   void update_clock_offset(clocks::ClockClient& vehicle_clock);
@@ -78,6 +79,7 @@ class NetworkTransport final : public simulation::MissionTransport {
   bool is_taken_over(const Result& landing) const;
 
   Client& client_;
+  Vehicle vehicle_;  // on the client; stops waiting for answers when the flight ends
   const io::MissionFile& mission_;
   bool lockstep_;
   std::int64_t paused_at_ns_ = 0;  // in lockstep, before the mission

@@ -38,7 +38,7 @@ ProcessFlight::ProcessFlight(LaunchConfiguration plan, dds::NodeSettings network
       messages_(messages) {
   report_.vehicle_name = network_.vehicle;
   keep_settings(plan_);
-  client_.emplace(participant, network_);
+  client_ = std::make_shared<Client>(participant, network_);
   messages_.on_motion(network_.vehicle,
                       [this](std::int64_t stamp_ns) { client_->has_been_recorded(stamp_ns); });
 }
@@ -60,14 +60,13 @@ void ProcessFlight::finish(const std::vector<std::string>& end_errors, const std
 }
 
 void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* barrier, io::Progress& progress) {
-  Client& client = *client_;
   const auto start = Clock::now();
   try {
     const NetworkTransport::Watch watch{
         [this] { return processes_.exited_process(); },       [&] { return interrupts.count(); },
         [this] { return messages_.hears(network_.vehicle); }, barrier,
         plan_.launch_mode == LaunchMode::kAttached,           plan_.speed.value_or(1.0)};
-    NetworkTransport vehicle(client, plan_.mission, plan_.clock, watch, progress);
+    NetworkTransport vehicle(client_, plan_.mission, plan_.clock, watch, progress);
     simulation::fly_mission(vehicle, plan_.planned_duration_s);
     vehicle.wait_for_last_figures();
   } catch (const simulation::FlightFailure& failure) {
@@ -83,8 +82,8 @@ void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* barrier, io:
     throw;
   }
   report_.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
-  report_.simulated_s = static_cast<double>(client.view().truth.message.stamp_ns()) * 1e-9;
-  take_figures(client.view(), report_);
+  report_.simulated_s = static_cast<double>(client_->view().truth.message.stamp_ns()) * 1e-9;
+  take_figures(client_->view(), report_);
 }
 
 }  // namespace swiftlet::ground

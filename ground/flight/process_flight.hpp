@@ -2,7 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -37,8 +37,8 @@ class ProcessFlight {
   void finish(const std::vector<std::string>& end_errors, const std::string& record_fault,
               const std::filesystem::path& messages, io::Progress& progress);
 
-  // Until finish().
-  Client& client() { return *client_; }
+  // Null after finish().
+  const std::shared_ptr<Client>& client() const { return client_; }
   const analysis::FlightReport& report() const { return report_; }
   const std::string& vehicle_name() const { return network_.vehicle; }
 
@@ -48,7 +48,7 @@ class ProcessFlight {
   analysis::FlightReport report_;
   ProcessGroup& processes_;
   MessageRecord& messages_;
-  std::optional<Client> client_;
+  std::shared_ptr<Client> client_;
 };
 
 }  // namespace swiftlet::ground

@@ -5,67 +5,37 @@
 
 #include <Eigen/Geometry>
 
-#include "swiftlet/io/byte_reader.hpp"
 #include "swiftlet/record/file/standard_messages.hpp"
+#include "swiftlet/record/mcap/cdr_reader.hpp"
 
 namespace swiftlet::ros {
 namespace {
 
+using mcap::CdrReader;
+
 constexpr double kUnitTolerance = 1e-3;
 constexpr double kQuarterTurn_rad = 1.5707963267948966;
 
-// Numbers of a CDR payload in sequence, aligned from behind the encapsulation header.
-class CdrReader {
- public:
-  explicit CdrReader(const Bytes& payload)
-      : reader_(payload.data(), payload.size(), payload.size() > 1 && payload[1] == 1) {
-    reader_.skip(kHeaderBytes);
-    begin_ = reader_.rest();
-    if (payload.size() > 1 && payload[1] > 1)
-      reader_.skip(payload.size());  // another encoding: ok() is false
-  }
+Eigen::Vector3d vector(CdrReader& in) {
+  const auto x = in.number<double>();
+  const auto y = in.number<double>();
+  return {x, y, in.number<double>()};
+}
 
-  std::uint32_t u32() {
-    align(sizeof(std::uint32_t));
-    return reader_.u32();
-  }
-  double f64() {
-    align(sizeof(double));
-    return reader_.f64();
-  }
-  Eigen::Vector3d vector() {
-    const double x = f64();
-    const double y = f64();
-    return {x, y, f64()};
-  }
-  Eigen::Quaterniond quaternion() {
-    const Eigen::Vector3d xyz = vector();
-    return {f64(), xyz.x(), xyz.y(), xyz.z()};
-  }
-  std::string text() {
-    const std::uint32_t length = u32();  // with the NUL
-    return std::string(reader_.text_field(length));
-  }
-  bool ok() const { return reader_.ok(); }
-
- private:
-  static constexpr std::size_t kHeaderBytes = 4;
-
-  void align(std::size_t size) { reader_.skip((size - (begin_ - reader_.rest()) % size) % size); }
-
-  io::ByteReader reader_;
-  std::size_t begin_ = 0;
-};
+Eigen::Quaterniond quaternion(CdrReader& in) {
+  const Eigen::Vector3d xyz = vector(in);
+  return {in.number<double>(), xyz.x(), xyz.y(), xyz.z()};
+}
 
 }  // namespace
 
 std::optional<Goal> goal_of(const Bytes& payload, double present_down_m, std::string& refusal) {
-  CdrReader in(payload);
-  in.u32();  // stamp
-  in.u32();
-  const std::string frame = in.text();
-  const Eigen::Vector3d position_enu = in.vector();
-  const Eigen::Quaterniond q_enu = in.quaternion();
+  CdrReader in({payload.data(), payload.size()});
+  in.number<std::uint32_t>();  // stamp
+  in.number<std::uint32_t>();
+  const std::string frame(in.text());
+  const Eigen::Vector3d position_enu = vector(in);
+  const Eigen::Quaterniond q_enu = quaternion(in);
   refusal.clear();
   if (!in.ok())
     refusal = "it is no geometry_msgs/PoseStamped";
@@ -89,9 +59,9 @@ std::optional<Goal> goal_of(const Bytes& payload, double present_down_m, std::st
 
 std::optional<ground::VelocitySetpoint> velocity_of(const Bytes& payload, double yaw_rad,
                                                     std::string& refusal) {
-  CdrReader in(payload);
-  const Eigen::Vector3d velocity_flu = in.vector();
-  const Eigen::Vector3d rates_flu = in.vector();
+  CdrReader in({payload.data(), payload.size()});
+  const Eigen::Vector3d velocity_flu = vector(in);
+  const Eigen::Vector3d rates_flu = vector(in);
   refusal.clear();
   if (!in.ok())
     refusal = "it is no geometry_msgs/Twist";

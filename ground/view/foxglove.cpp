@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/io/byte_writer.hpp"
+
 namespace swiftlet::ground::foxglove {
 namespace {
 
@@ -18,17 +20,6 @@ constexpr const char* kEncoding = "cdr";
 constexpr const char* kSchemaEncoding = "ros2msg";
 constexpr std::size_t kMostDepth = 4;   // of JSON: a message has a list of objects
 constexpr std::size_t kMostShown = 40;  // characters of what is refused
-
-template <class Number, class Out>
-void put(Number number, Out out) {
-  for (std::size_t i = 0; i < sizeof(Number); ++i, number >>= 8U) *out++ = static_cast<std::uint8_t>(number);
-}
-
-std::uint32_t number_at(const std::uint8_t* data) {
-  std::uint32_t number = 0;
-  for (std::size_t i = sizeof(number); i-- > 0;) number = number << 8U | data[i];
-  return number;
-}
 
 Json schema_of(const std::string& name, const std::string& definition) {
   return {{"encoding", kEncoding},
@@ -121,17 +112,17 @@ std::string service_failure(std::uint32_t service, std::uint32_t call, const std
 MessageHead message_head(std::uint32_t subscription, std::int64_t time_ns) {
   MessageHead head{};
   head[0] = kMessageData;
-  put(subscription, head.begin() + 1);
-  put(static_cast<std::uint64_t>(time_ns), head.begin() + 1 + sizeof(subscription));
+  io::store(subscription, head.data() + 1);
+  io::store(time_ns, head.data() + 1 + sizeof(subscription));
   return head;
 }
 
 mcap::Bytes service_response(std::uint32_t service, std::uint32_t call, const mcap::Bytes& response) {
   const std::string_view encoding = kEncoding;
   mcap::Bytes out = {kServiceCallResponse};
-  put(service, std::back_inserter(out));
-  put(call, std::back_inserter(out));
-  put(static_cast<std::uint32_t>(encoding.size()), std::back_inserter(out));
+  io::append(out, service);
+  io::append(out, call);
+  io::append(out, static_cast<std::uint32_t>(encoding.size()));
   out.insert(out.end(), encoding.begin(), encoding.end());
   out.insert(out.end(), response.begin(), response.end());
   return out;
@@ -164,10 +155,11 @@ ClientMessage parse_binary(const std::uint8_t* data, std::size_t size) {
   constexpr std::size_t kHead = 1 + 3 * sizeof(std::uint32_t);
   if (size < kHead || data[0] != kServiceCallRequest) return Fault{"the binary message is no service call"};
   ServiceCall call;
-  call.service = number_at(data + 1);
-  call.call = number_at(data + 1 + sizeof(std::uint32_t));
-  const std::size_t length = number_at(data + 1 + 2 * sizeof(std::uint32_t));
-  if (length > size - kHead) return Fault{"the encoding of the service call is cut off"};
+  io::ByteReader in(data + 1, size - 1, true);
+  call.service = in.u32();
+  call.call = in.u32();
+  const std::size_t length = in.u32();
+  if (length > in.rest()) return Fault{"the encoding of the service call is cut off"};
   call.encoding.assign(data + kHead, data + kHead + length);
   call.request.assign(data + kHead + length, data + size);
   return call;

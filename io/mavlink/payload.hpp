@@ -4,9 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
-#include <type_traits>
 
+#include "swiftlet/io/byte_writer.hpp"
 #include "swiftlet/io/mavlink/frame.hpp"
 
 namespace swiftlet::mavlink {
@@ -19,12 +18,6 @@ struct Address {
 
 namespace payload {
 
-template <std::size_t Size>
-using Bits =
-    std::conditional_t<Size == 1, std::uint8_t,
-                       std::conditional_t<Size == 2, std::uint16_t,
-                                          std::conditional_t<Size == 4, std::uint32_t, std::uint64_t>>>;
-
 class Writer {
  public:
   explicit Writer(Frame& frame) : frame_(frame) {}
@@ -32,10 +25,8 @@ class Writer {
   void extensions() {}
   template <class Value>
   void operator()(const char*, const Value& value) {
-    Bits<sizeof(Value)> bits;
-    std::memcpy(&bits, &value, sizeof bits);
-    for (std::size_t i = 0; i < sizeof bits; ++i)
-      frame_.payload[frame_.length++] = static_cast<std::uint8_t>(bits >> (8 * i));
+    io::store(value, &frame_.payload.at(frame_.length));
+    frame_.length = static_cast<std::uint8_t>(frame_.length + sizeof(value));
   }
   template <class Value, std::size_t Count>
   void operator()(const char* name, const std::array<Value, Count>& values) {
@@ -48,16 +39,12 @@ class Writer {
 
 class Reader {
  public:
-  explicit Reader(const Frame& frame) : frame_(frame) {}
+  explicit Reader(const Frame& frame) : in_(frame.payload.data(), frame.payload.size(), true) {}
 
   void extensions() {}
   template <class Value>
   void operator()(const char*, Value& value) {
-    Bits<sizeof(Value)> bits = 0;
-    for (std::size_t i = 0; i < sizeof bits; ++i)
-      bits = static_cast<Bits<sizeof(Value)>>(bits | static_cast<Bits<sizeof(Value)>>(frame_.payload[at_++])
-                                                         << (8 * i));
-    std::memcpy(&value, &bits, sizeof bits);
+    value = in_.number<Value>();
   }
   template <class Value, std::size_t Count>
   void operator()(const char* name, std::array<Value, Count>& values) {
@@ -65,8 +52,7 @@ class Reader {
   }
 
  private:
-  const Frame& frame_;
-  std::size_t at_ = 0;
+  io::ByteReader in_;
 };
 
 }  // namespace payload

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "swiftlet/io/byte_writer.hpp"
+
 namespace swiftlet::mocap::natnet {
 namespace {
 
@@ -280,14 +282,10 @@ const char* read_models(ByteReader in, Version version, Bones bones, std::vector
   return in.rest() > kMostPadding ? "something follows the last definition" : nullptr;
 }
 
-void put(Datagram& out, std::uint64_t value, std::size_t bytes) {
-  for (std::size_t i = 0; i < bytes; ++i) out.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
-}
-
 Datagram message(MessageId id, const Datagram& payload) {
   Datagram out;
-  put(out, static_cast<std::uint16_t>(id), 2);
-  put(out, payload.size(), 2);
+  io::append(out, id);
+  io::append(out, static_cast<std::uint16_t>(payload.size()));
   out.insert(out.end(), payload.begin(), payload.end());
   return out;
 }
@@ -301,7 +299,7 @@ Datagram introduction(MessageId id, Version wanted) {
   const auto put_version = [&](Version version) {
     payload.push_back(static_cast<std::uint8_t>(version.major));
     payload.push_back(static_cast<std::uint8_t>(version.minor));
-    put(payload, 0, 2);
+    io::append(payload, std::uint16_t{0});
   };
   put_version({1, 0});
   put_version(wanted);
@@ -372,7 +370,7 @@ Datagram keep_alive() { return message(MessageId::kKeepAlive, {}); }
 
 Datagram echo_request(std::uint64_t stamp) {
   Datagram payload;
-  put(payload, stamp, 8);
+  io::append(payload, stamp);
   return message(MessageId::kEchoRequest, payload);
 }
 

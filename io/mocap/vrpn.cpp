@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+
+#include "swiftlet/io/byte_writer.hpp"
 
 namespace swiftlet::mocap::vrpn {
 namespace {
@@ -18,10 +19,7 @@ constexpr std::size_t aligned(std::size_t bytes) {
   return (bytes + kAlignment - 1) / kAlignment * kAlignment;
 }
 
-void put(Bytes& out, std::uint32_t value) {
-  for (int shift = 24; shift >= 0; shift -= 8)
-    out.push_back(static_cast<std::uint8_t>(value >> static_cast<unsigned>(shift)));
-}
+void put(Bytes& out, std::uint32_t value) { io::append(out, value, false); }
 
 }  // namespace
 

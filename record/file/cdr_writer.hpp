@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <utility>
 
+#include "swiftlet/io/byte_writer.hpp"
 #include "swiftlet/record/mcap/records.hpp"
 
 namespace swiftlet::record {
@@ -15,10 +15,7 @@ class CdrWriter {
   template <class Number>
   CdrWriter& put(Number number) {
     while ((bytes_.size() - kHeaderBytes) % sizeof(number) != 0) bytes_.push_back(0);
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &number, sizeof(number));
-    for (std::size_t i = 0; i < sizeof(number); ++i, bits >>= 8U)
-      bytes_.push_back(static_cast<std::uint8_t>(bits));
+    io::append(bytes_, number);
     return *this;
   }
   CdrWriter& text(const std::string& text) {

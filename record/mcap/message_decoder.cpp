@@ -9,11 +9,8 @@
 namespace swiftlet::mcap {
 namespace {
 
-using io::ByteReader;
-
 constexpr int kDeepest = 8;                 // messages within messages
 constexpr std::size_t kMostColumns = 4096;  // of one message
-constexpr std::size_t kEncapsulationBytes = 4;
 
 [[noreturn]] void refuse(const Schema& schema, int line, const std::string& what) {
   throw io::ConfigError(schema.name, line, "", what);
@@ -39,12 +36,6 @@ std::size_t number_of(const Schema& schema, int line, const std::string& digits)
   if (digits.empty() || digits.size() > 6 || digits.find_first_not_of("0123456789") != std::string::npos)
     refuse(schema, line, "the length '" + digits + "' is not a number below 1000000");
   return std::stoul(digits);
-}
-
-// Skips to a multiple of `size` bytes from the origin.
-void align(ByteReader& in, const std::uint8_t* origin, std::size_t size) {
-  const auto at = static_cast<std::size_t>(in.data() - origin);
-  in.skip((size - at % size) % size);
 }
 
 }  // namespace
@@ -174,84 +165,68 @@ void MessageDecoder::add_columns(const Schema& schema, const Members& members, c
 
 bool MessageDecoder::decode(ByteView payload, std::vector<Value>& values) const {
   values.clear();
-  if (payload.size < kEncapsulationBytes || payload.data[0] != 0 || payload.data[1] > 1) return false;
-  const std::uint8_t* const origin = payload.data + kEncapsulationBytes;
-  ByteReader in(origin, payload.size - kEncapsulationBytes, payload.data[1] == 1);
-  return read(in, origin, types_.at(name_), &values) && values.size() == columns_.size();
+  CdrReader in(payload);
+  return read(in, types_.at(name_), &values) && values.size() == columns_.size();
 }
 
 // values: null to skip.
-bool MessageDecoder::read(ByteReader& in, const std::uint8_t* origin, const Members& members,
-                          std::vector<Value>* values) const {
+bool MessageDecoder::read(CdrReader& in, const Members& members, std::vector<Value>* values) const {
   for (const Member& member : members) {
     std::size_t count = member.length;
     std::vector<Value>* items = values;
     if (member.count == Count::kSequence) {
-      align(in, origin, 4);
-      count = in.u32();
+      count = in.number<std::uint32_t>();
       if (values != nullptr) values->emplace_back(std::uint64_t{count});
       items = nullptr;
     }
     for (std::size_t i = 0; i < count; ++i) {
-      if (!in.ok() || !read_one(in, origin, member, items)) return false;
+      if (!in.ok() || !read_one(in, member, items)) return false;
     }
   }
   return in.ok();
 }
 
-bool MessageDecoder::read_one(ByteReader& in, const std::uint8_t* origin, const Member& member,
-                              std::vector<Value>* values) const {
+bool MessageDecoder::read_one(CdrReader& in, const Member& member, std::vector<Value>* values) const {
   const auto keep = [&](auto value) {
     if (values != nullptr) values->emplace_back(std::move(value));
   };
-  const auto unsigned_integer = [&](std::size_t bytes) {
-    align(in, origin, bytes);
-    return bytes == 1 ? in.u8() : bytes == 2 ? in.u16() : bytes == 4 ? in.u32() : in.u64();
-  };
   switch (member.type) {
     case Type::kCompound:
-      return read(in, origin, types_.at(member.compound), values);
+      return read(in, types_.at(member.compound), values);
     case Type::kBool:
     case Type::kU8:
-      keep(unsigned_integer(1));
+      keep(std::uint64_t{in.number<std::uint8_t>()});
       break;
     case Type::kU16:
-      keep(unsigned_integer(2));
+      keep(std::uint64_t{in.number<std::uint16_t>()});
       break;
     case Type::kU32:
-      keep(unsigned_integer(4));
+      keep(std::uint64_t{in.number<std::uint32_t>()});
       break;
     case Type::kU64:
-      keep(unsigned_integer(8));
+      keep(in.number<std::uint64_t>());
       break;
     case Type::kI8:
-      keep(std::int64_t{static_cast<std::int8_t>(unsigned_integer(1))});
+      keep(std::int64_t{in.number<std::int8_t>()});
       break;
     case Type::kI16:
-      keep(std::int64_t{static_cast<std::int16_t>(unsigned_integer(2))});
+      keep(std::int64_t{in.number<std::int16_t>()});
       break;
     case Type::kI32:
-      keep(std::int64_t{static_cast<std::int32_t>(unsigned_integer(4))});
+      keep(std::int64_t{in.number<std::int32_t>()});
       break;
     case Type::kI64:
-      keep(static_cast<std::int64_t>(unsigned_integer(8)));
+      keep(in.number<std::int64_t>());
       break;
     case Type::kF32:
-      align(in, origin, 4);
-      keep(double{in.f32()});
+      keep(double{in.number<float>()});
       break;
     case Type::kF64:
-      align(in, origin, 8);
-      keep(in.f64());
+      keep(in.number<double>());
       break;
-    case Type::kText: {
-      align(in, origin, 4);
-      const std::uint32_t length = in.u32();  // with its NUL
-      const std::uint8_t* const text = in.take(length);
-      if (text == nullptr) return false;
-      keep(std::string(reinterpret_cast<const char*>(text), length == 0 ? 0 : length - 1));
+    case Type::kText:
+      keep(std::string(in.text()));
       break;
-    }
   }
   return in.ok();
 }

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "swiftlet/io/byte_reader.hpp"
+#include "swiftlet/record/mcap/cdr_reader.hpp"
 #include "swiftlet/record/mcap/records.hpp"
 
 namespace swiftlet::mcap {
@@ -50,10 +50,8 @@ class MessageDecoder {
   void check_types(const Schema& schema) const;
   void add_columns(const Schema& schema, const Members& members, const std::string& prefix);
   void add_column(const Schema& schema, std::string name, Column::Kind kind);
-  bool read(io::ByteReader& in, const std::uint8_t* origin, const Members& members,
-            std::vector<Value>* values) const;
-  bool read_one(io::ByteReader& in, const std::uint8_t* origin, const Member& member,
-                std::vector<Value>* values) const;
+  bool read(CdrReader& in, const Members& members, std::vector<Value>* values) const;
+  bool read_one(CdrReader& in, const Member& member, std::vector<Value>* values) const;
   static Column::Kind kind_of(Type type);
 
   std::string name_;

@@ -11,13 +11,8 @@ void RecordWriter::begin(Opcode opcode) {
 }
 
 void RecordWriter::end() {
-  std::uint64_t length = out_.size() - begin_;
-  for (std::size_t i = 0; i < 8; ++i, length >>= 8U) out_[begin_ - 8 + i] = static_cast<std::uint8_t>(length);
-}
-
-RecordWriter& RecordWriter::integer(std::uint64_t value, int bytes) {
-  for (int i = 0; i < bytes; ++i, value >>= 8U) out_.push_back(static_cast<std::uint8_t>(value));
-  return *this;
+  const std::uint64_t length = out_.size() - begin_;
+  io::store(length, out_.data() + begin_ - sizeof(length));
 }
 
 RecordWriter& RecordWriter::bytes(ByteView value) {

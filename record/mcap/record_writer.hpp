@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "swiftlet/io/byte_writer.hpp"
 #include "swiftlet/record/mcap/records.hpp"
 
 namespace swiftlet::mcap {
@@ -18,11 +19,11 @@ class RecordWriter {
   void begin(Opcode opcode);
   void end();
 
-  RecordWriter& u8(std::uint8_t value) { return integer(value, 1); }
-  RecordWriter& u16(std::uint16_t value) { return integer(value, 2); }
-  RecordWriter& u32(std::uint32_t value) { return integer(value, 4); }
-  RecordWriter& u64(std::uint64_t value) { return integer(value, 8); }
-  RecordWriter& time(std::int64_t ns) { return integer(static_cast<std::uint64_t>(ns), 8); }
+  RecordWriter& u8(std::uint8_t value) { return integer(value); }
+  RecordWriter& u16(std::uint16_t value) { return integer(value); }
+  RecordWriter& u32(std::uint32_t value) { return integer(value); }
+  RecordWriter& u64(std::uint64_t value) { return integer(value); }
+  RecordWriter& time(std::int64_t ns) { return integer(ns); }
   RecordWriter& text(std::string_view value);
   RecordWriter& texts(const std::map<std::string, std::string>& values);
   RecordWriter& counts(const std::map<std::uint16_t, std::uint64_t>& values);
@@ -40,7 +41,11 @@ class RecordWriter {
   void record(const Statistics& statistics);
 
  private:
-  RecordWriter& integer(std::uint64_t value, int bytes);
+  template <class Integer>
+  RecordWriter& integer(Integer value) {
+    io::append(out_, value);
+    return *this;
+  }
 
   Bytes& out_;
   std::size_t begin_ = 0;  // of the open record

@@ -1,9 +1,9 @@
 #include "swiftlet/services/clocks/clock_client.hpp"
 
-#include <random>
 #include <utility>
 
 #include "swiftlet/services/runtime/log.hpp"
+#include "swiftlet/services/runtime/random_id.hpp"
 
 namespace swiftlet::clocks {
 namespace {
@@ -12,16 +12,11 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kStatusPeriod{500};
 
-std::uint64_t random_id() {
-  std::random_device random;
-  return (static_cast<std::uint64_t>(random()) << 32U) | random();
-}
-
 }  // namespace
 
 ClockClient::ClockClient(dds::Node& node, std::function<std::int64_t()> own_ns, Reporting reporting)
     : own_ns_(std::move(own_ns)),
-      id_(random_id()),
+      id_(runtime::random_id()),
       requests_(node.publish(messages::topics::kClockRequest)),
       status_(reporting == Reporting::kPublished ? std::optional(node.publish(messages::topics::kClockStatus))
                                                  : std::nullopt),

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <random>
 #include <utility>
 
 #include "swiftlet/services/control/failover.hpp"
@@ -11,6 +10,7 @@
 #include "swiftlet/services/messages/wire_version.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
+#include "swiftlet/services/runtime/random_id.hpp"
 
 namespace swiftlet::services {
 namespace {
@@ -28,11 +28,6 @@ constexpr double kVehicleClockStands_s = 0.5;
 // The battery is sampled at 10 Hz only. Well below battery_timeout_s, so that a restarted vehicle is heard in time.
 constexpr auto kBatterySourceSilence = 1000ms;
 
-std::uint64_t random_number() {
-  std::random_device device;
-  return (static_cast<std::uint64_t>(device()) << 32) | device();
-}
-
 }  // namespace
 
 ControlService::ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
@@ -40,7 +35,7 @@ ControlService::ControlService(const plant::Vehicle& vehicle, const control::Con
                                const runtime::RealtimeSettings& realtime, runtime::Clock clock,
                                std::vector<control::FixedSetting> fixed,
                                std::optional<plant::ControlLevel> level)
-    : controller_(random_number()),
+    : controller_(runtime::random_id()),
       clock_(clock),
       loop_(vehicle, settings),
       command_server_(loop_, vehicle, settings, GainDesigner(vehicle, settings, std::move(fixed)), wake_),

@@ -10,6 +10,8 @@
 
 #include "swiftlet_msgs/msg/VehicleInfo.h"
 
+#include "swiftlet/io/byte_reader.hpp"
+
 namespace swiftlet::messages {
 
 constexpr std::uint32_t kWireVersion = swiftlet_msgs::msg::VehicleInfo_Constants::WIRE_VERSION;
@@ -25,12 +27,7 @@ struct StatesWireVersion<Message, std::void_t<decltype(std::declval<const Messag
 inline std::optional<std::uint32_t> wire_version_of(const std::uint8_t* payload, std::size_t size) {
   constexpr std::size_t kHeader = 4;
   if (size < kHeader + sizeof(std::uint32_t)) return std::nullopt;
-  const bool is_little_endian = (payload[1] & 1U) != 0;
-  std::uint32_t version = 0;
-  for (std::size_t byte = 0; byte < sizeof version; ++byte)
-    version |= static_cast<std::uint32_t>(payload[kHeader + byte])
-               << 8U * (is_little_endian ? byte : 3 - byte);
-  return version;
+  return io::ByteReader(payload + kHeader, sizeof(std::uint32_t), (payload[1] & 1U) != 0).u32();
 }
 
 // "the vehicle speaks another version of the messages than this program, 2"; empty: it speaks the same one.

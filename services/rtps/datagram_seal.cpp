@@ -6,6 +6,8 @@
 #include <sodium.h>
 #include <string_view>
 
+#include "swiftlet/io/byte_writer.hpp"
+
 namespace swiftlet::rtps {
 namespace {
 
@@ -13,6 +15,7 @@ using io::NetworkKey;
 
 // The trailer, little endian: submessage header, key id, time of sending, count, tag over all bytes before it, zeros.
 constexpr std::uint8_t kSealKind = 0x81;
+constexpr std::uint16_t kSealLength = kSealBytes - 4;  // as the header states it
 constexpr std::size_t kTimeAt = 8;
 constexpr std::size_t kCountAt = 16;
 constexpr std::size_t kTagAt = 24;
@@ -20,13 +23,9 @@ constexpr std::size_t kTagBytes = 16;
 constexpr std::size_t kPrefixAt = 8;                      // in the datagram
 constexpr std::int64_t kCopiesArrive_ns = 1'000'000'000;  // within
 
-void put(std::uint8_t* to, std::uint64_t value, std::size_t bytes) {
-  for (std::size_t i = 0; i < bytes; ++i) to[i] = static_cast<std::uint8_t>(value >> (8 * i));
-}
-std::uint64_t get(const std::uint8_t* from, std::size_t bytes) {
-  std::uint64_t value = 0;
-  for (std::size_t i = bytes; i-- > 0;) value = value << 8U | from[i];
-  return value;
+template <class Number>
+Number get(const std::uint8_t* from) {
+  return io::ByteReader(from, sizeof(Number), true).number<Number>();
 }
 
 // Names a key without telling it.
@@ -35,7 +34,7 @@ std::uint32_t id_of(const NetworkKey& key) {
   static constexpr char kContext[] = "swiftlet network key id";
   crypto_generichash(digest.data(), digest.size(), reinterpret_cast<const std::uint8_t*>(kContext),
                      sizeof kContext, key.data(), key.size());
-  return static_cast<std::uint32_t>(get(digest.data(), 4));
+  return get<std::uint32_t>(digest.data());
 }
 
 // Keyed BLAKE2b.
@@ -60,10 +59,10 @@ void DatagramSealer::seal(std::vector<std::uint8_t>& datagram, std::int64_t now_
   std::fill_n(trailer, kSealBytes, std::uint8_t{0});
   trailer[0] = kSealKind;
   trailer[1] = 1;  // little endian
-  put(trailer + 2, kSealBytes - 4, 2);
-  put(trailer + 4, key_id_, 4);
-  put(trailer + kTimeAt, static_cast<std::uint64_t>(now_ns), 8);
-  put(trailer + kCountAt, ++count_, 8);
+  io::store(kSealLength, trailer + 2);
+  io::store(key_id_, trailer + 4);
+  io::store(now_ns, trailer + kTimeAt);
+  io::store(++count_, trailer + kCountAt);
   tag_of(key_, datagram.data(), at + kTagAt, trailer + kTagAt);
 }
 
@@ -74,15 +73,15 @@ DatagramOpener::DatagramOpener(const io::NetworkKeys& keys) : senders_(kSenders)
 const char* DatagramOpener::verify(const std::uint8_t* data, std::size_t size, std::int64_t now_ns) const {
   if (size < kPrefixAt + GuidPrefix().size() + kSealBytes) return "not sealed with a network key";
   const std::uint8_t* const trailer = data + size - kSealBytes;
-  if (trailer[0] != kSealKind || get(trailer + 2, 2) != kSealBytes - 4)
+  if (trailer[0] != kSealKind || get<std::uint16_t>(trailer + 2) != kSealLength)
     return "not sealed with a network key";
-  const auto id = static_cast<std::uint32_t>(get(trailer + 4, 4));
+  const auto id = get<std::uint32_t>(trailer + 4);
   const auto key = std::find_if(keys_.begin(), keys_.end(), [&](const Key& known) { return known.id == id; });
   if (key == keys_.end()) return "sealed with another network key";
   std::array<std::uint8_t, kTagBytes> tag{};
   tag_of(key->secret, data, size - kSealBytes + kTagAt, tag.data());
   if (sodium_memcmp(tag.data(), trailer + kTagAt, kTagBytes) != 0) return "changed after it was sealed";
-  const auto sent_ns = static_cast<std::int64_t>(get(trailer + kTimeAt, 8));
+  const auto sent_ns = get<std::int64_t>(trailer + kTimeAt);
   if (sent_ns < now_ns - kSealTolerance_ns || sent_ns > now_ns + kSealTolerance_ns)
     return "sealed more than 30 s ago or ahead: a recording, or the clocks of the hosts differ";
   return nullptr;
@@ -93,7 +92,7 @@ const char* DatagramOpener::take(const std::uint8_t* data, std::size_t size, std
   const std::uint8_t* const trailer = data + size - kSealBytes;
   Sender& from = sender(data + kPrefixAt, port);
   from.heard_ns = steady_ns;
-  return from.take(get(trailer + kCountAt, 8), static_cast<std::int64_t>(get(trailer + kTimeAt, 8)));
+  return from.take(get<std::uint64_t>(trailer + kCountAt), get<std::int64_t>(trailer + kTimeAt));
 }
 
 DatagramOpener::Sender& DatagramOpener::sender(const std::uint8_t* participant, std::uint32_t port) {

@@ -106,8 +106,10 @@ class Fleet {
     };
     ground::Result answer = client.upload(mission, 10s);
     took.uploaded_s = passed_s();
-    if (answer.accepted())
-      answer = client.mission_command(msg::Command_Constants::MISSION_START, client.mission_id(), 10s);
+    control::Request start;
+    start.kind = control::RequestKind::kMissionStart;
+    start.mission_id = client.mission_id();
+    if (answer.accepted()) answer = client.request(start, 10s);
     if (!answer.accepted()) throw std::runtime_error(answer.reason);
     const bool runs = client.wait(10s, [&](const ground::View& view) {
       return view.mission.message.mission_id() == client.mission_id() &&
@@ -165,16 +167,13 @@ class Fleet {
       if (!client->wait(30s, [](const ground::View& view) { return view.control.message.has_pose(); }))
         throw std::runtime_error("no vehicle started: " + client->where());
     }
-    msg::Command arm;
-    arm.kind(msg::Command_Constants::ARM);
+    control::Request arm;
+    arm.kind = control::RequestKind::kArm;
     for (const auto& client : clients.all) ask(*client, arm);
-    for (const auto& client : clients.all) {
-      msg::Command takeoff;
-      takeoff.kind(msg::Command_Constants::TAKEOFF);
-      takeoff.position_ned({0.0, 0.0, -1.0});
-      takeoff.speed(0.5);
-      ask(*client, takeoff);
-    }
+    control::Request takeoff;
+    takeoff.kind = control::RequestKind::kTakeoff;
+    takeoff.position_ned.z() = -1.0;
+    for (const auto& client : clients.all) ask(*client, takeoff);
     for (const auto& client : clients.all) {
       if (!client->wait(20s, [](const ground::View& view) {
             return view.control.message.mode() == msg::ControlStatus_Constants::MODE_HOLDING;
@@ -197,9 +196,9 @@ class Fleet {
     std::vector<std::unique_ptr<ground::Client>> all;
   };
 
-  static void ask(ground::Client& client, const msg::Command& command) {
+  static void ask(ground::Client& client, const control::Request& request) {
     ground::Result answer;
-    if (!tests::eventually([&] { return (answer = client.command(command, 3s)).accepted(); }))
+    if (!tests::eventually([&] { return (answer = client.request(request, 3s)).accepted(); }))
       throw std::runtime_error(answer.reason);
   }
 

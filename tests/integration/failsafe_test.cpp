@@ -323,7 +323,7 @@ TEST_F(SteppedClocks, DoNotDisturbTheFlight) {
     of_control_.step(step);
     if (of_plant) of_plant_.step(step);
     wait_vehicle_time(2.0);
-    const ground::Result answer = ask(msg::Command_Constants::HOLD);
+    const ground::Result answer = ask(control::RequestKind::kHold);
     EXPECT_TRUE(answer.accepted()) << step << ": " << answer.reason;
     EXPECT_LT(client_->view().control.message.pose_age_s(), 0.2) << "after a step of " << step << " s";
   }

@@ -47,12 +47,11 @@ class FakeVehicleFlight : public testing::Test {
         << control_.errors();
   }
 
-  ground::Result ask(std::uint8_t kind) {
-    msg::Command command;
-    command.kind(kind);
-    command.position_ned({0.0, 0.0, -0.6});
-    command.speed(0.5);
-    return client_.command(command, kTimeout);
+  ground::Result ask(control::RequestKind kind) {
+    control::Request request;
+    request.kind = kind;
+    request.position_ned.z() = -0.6;
+    return client_.request(request, kTimeout);
   }
 
   bool wait_for(Mode mode) {
@@ -62,9 +61,9 @@ class FakeVehicleFlight : public testing::Test {
   }
 
   void take_off() {
-    const ground::Result armed = ask(msg::Command_Constants::ARM);
+    const ground::Result armed = ask(control::RequestKind::kArm);
     ASSERT_TRUE(armed.accepted()) << armed.reason;
-    const ground::Result off = ask(msg::Command_Constants::TAKEOFF);
+    const ground::Result off = ask(control::RequestKind::kTakeoff);
     ASSERT_TRUE(off.accepted()) << off.reason;
   }
   void hover() {
@@ -89,7 +88,7 @@ class FakeVehicleFlight : public testing::Test {
 };
 
 TEST_F(FakeVehicleFlight, RefusesToArmWithoutAVehicle) {
-  const ground::Result answer = ask(msg::Command_Constants::ARM);
+  const ground::Result answer = ask(control::RequestKind::kArm);
   EXPECT_EQ(answer.kind, ground::Result::Kind::kRefused) << answer.reason;
   EXPECT_NE(answer.reason.find("IMU"), std::string::npos) << answer.reason;
 }
@@ -103,7 +102,7 @@ TEST_F(FakeVehicleFlight, StopReachesAVehicleWhoseSamplesDoNotArrive) {
   EXPECT_FALSE(client_.view().control.message.has_pose()) << "nor is any pose used";
   ASSERT_FALSE(rotors_are_off()) << "this vehicle obeys its last command";
 
-  const ground::Result answer = ask(msg::Command_Constants::STOP);
+  const ground::Result answer = ask(control::RequestKind::kStop);
   EXPECT_TRUE(answer.accepted()) << answer.reason;
   EXPECT_NE(answer.reason.find("rotors off is commanded, but the vehicle has been silent for "),
             std::string::npos)
@@ -123,7 +122,7 @@ TEST_F(FakeVehicleFlight, StopReachesAVehicleWhoseSamplesDoNotArrive) {
 
 TEST_F(FakeVehicleFlight, FliesAMissionWithCommandsThatAnswerItsSamples) {
   start_vehicle();
-  ASSERT_TRUE(ask(msg::Command_Constants::ARM).accepted());
+  ASSERT_TRUE(ask(control::RequestKind::kArm).accepted());
   ASSERT_TRUE(eventually(
       [&] {
         const auto commands = vehicle_->commands();
@@ -156,7 +155,7 @@ TEST_F(FakeVehicleFlight, FliesAMissionWithCommandsThatAnswerItsSamples) {
   mission.items[2].kind = control::MissionItemKind::kLand;
   ground::Result answer = client_.upload(mission, kTimeout);
   ASSERT_TRUE(answer.accepted()) << answer.reason;
-  answer = client_.mission_command(msg::Command_Constants::MISSION_START, client_.mission_id(), kTimeout);
+  answer = ask(control::RequestKind::kMissionStart);
   ASSERT_TRUE(answer.accepted()) << answer.reason;
   ASSERT_TRUE(client_.wait(kStuck, [&](const View& view) {
     return view.mission.message.mission_id() == client_.mission_id() &&
@@ -219,8 +218,7 @@ TEST_F(FakeVehicleFlight, UploadsTheLongestMissionAndStartsOneOf1000WaypointsQui
   mission.items.resize(1000);
   const auto begin = std::chrono::steady_clock::now();
   ASSERT_TRUE(client_.upload(mission, kTimeout).accepted());
-  ASSERT_TRUE(client_.mission_command(msg::Command_Constants::MISSION_START, client_.mission_id(), kTimeout)
-                  .accepted());
+  ASSERT_TRUE(ask(control::RequestKind::kMissionStart).accepted());
   ASSERT_TRUE(client_.wait(kTimeout, [&](const View& view) {
     return view.mission.message.mission_id() == client_.mission_id() &&
            view.mission.message.state() == msg::MissionStatus_Constants::RUNNING;

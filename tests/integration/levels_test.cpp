@@ -181,7 +181,7 @@ TEST_F(LevelsOfAVehicle, ArmingNamesTheLevelThatTheVehicleDoesNotAccept) {
       "cannot arm: the vehicle does not accept commands at level rates, it accepts attitude";
   ground::Result armed;
   ASSERT_TRUE(eventually([&] {
-    armed = ask(msg::Command_Constants::ARM);
+    armed = ask(control::RequestKind::kArm);
     return armed.reason == refusal;
   })) << armed.reason;
   EXPECT_FALSE(armed.accepted());

@@ -230,8 +230,8 @@ TEST_F(LivingVehicleInRealTime, IsReportedSilentWhenItDiesAndMayBeStartedAgainAt
   ASSERT_TRUE(reported(control::Mode::kStopped, "IMU samples are not usable")) << mode_log();
   wait_vehicle_time(1.0);
   for (const record::TruthRow& row : truth()) ASSERT_LT(fastest_rotor(row), 20.0);
-  EXPECT_FALSE(ask(msg::Command_Constants::ARM).accepted());
-  ASSERT_TRUE(ask(msg::Command_Constants::DISARM).accepted());
+  EXPECT_FALSE(ask(control::RequestKind::kArm).accepted());
+  ASSERT_TRUE(ask(control::RequestKind::kDisarm).accepted());
   hover();
 
   rotors_off = 0;
@@ -285,7 +285,7 @@ TEST_F(LivingVehicleInRealTime, IsDisarmedAgainWhenTheStartIsRefused) {
   const ground::NetworkTransport::Watch watch{[] { return std::nullopt; }, [] { return 0; },
                                               [] { return true; }, &barrier, true};
   auto flight = std::async(std::launch::async, [&]() -> std::string {
-    ground::NetworkTransport vehicle(*client_, mission, runtime::Clock::kRealtime, watch, progress);
+    ground::NetworkTransport vehicle(client_, mission, runtime::Clock::kRealtime, watch, progress);
     try {
       simulation::fly_mission(vehicle, 10.0);
     } catch (const simulation::FlightFailure& failure) {

@@ -68,12 +68,11 @@ class Seen {
  public:
   explicit Seen(const dds::NodeSettings& settings) : client_(settings) {}
 
-  ground::Result ask(std::uint8_t kind) {
-    msg::Command command;
-    command.kind(kind);
-    command.position_ned({0.0, 0.0, -kHeight_m});
-    command.speed(0.5);
-    return client_.command(command, kStuck);
+  ground::Result ask(control::RequestKind kind) {
+    control::Request request;
+    request.kind = kind;
+    request.position_ned.z() = -kHeight_m;
+    return client_.request(request, kStuck);
   }
   bool wait_until_ready() {
     return client_.wait(kStuck, [](const View& view) {
@@ -108,9 +107,9 @@ TEST_F(Px4, HoversAtTwoLevelsUntilThePilotTakesOverOrControlDies) {
   Seen second(node("ground", "kl2"));
   ASSERT_TRUE(first.wait_until_ready() && second.wait_until_ready()) << errors();
   for (Seen* const seen : {&first, &second}) {
-    const ground::Result armed = seen->ask(msg::Command_Constants::ARM);
+    const ground::Result armed = seen->ask(control::RequestKind::kArm);
     ASSERT_TRUE(armed.accepted()) << armed.reason;
-    const ground::Result off = seen->ask(msg::Command_Constants::TAKEOFF);
+    const ground::Result off = seen->ask(control::RequestKind::kTakeoff);
     ASSERT_TRUE(off.accepted()) << off.reason;
   }
   for (Seen* const seen : {&first, &second})
@@ -144,7 +143,7 @@ TEST_F(Px4, OfAnotherVersionIsRefusedByName) {
   EXPECT_TRUE(seen.fault_is(
       "PX4 publishes /fmu/out/vehicle_status_v4, but swiftlet-px4 knows vehicle_status_v1, that of PX4 1.16"))
       << bridge->errors();
-  EXPECT_FALSE(seen.ask(msg::Command_Constants::ARM).accepted());
+  EXPECT_FALSE(seen.ask(control::RequestKind::kArm).accepted());
   EXPECT_EQ(px4.offboard_modes(), 0U);
 }
 

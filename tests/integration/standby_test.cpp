@@ -43,8 +43,8 @@ class Standby : public testing::Test {
                  [&] { return flight_.z_ned() < -0.98 && flight_.speed() > 0.3; });
   }
   void hover(double height_m) {
-    flight_.ask(msg::Command_Constants::ARM);
-    flight_.ask(msg::Command_Constants::TAKEOFF, -height_m);
+    flight_.ask(control::RequestKind::kArm);
+    flight_.ask(control::RequestKind::kTakeoff, -height_m);
     flight_.wait("the vehicle hovers",
                  [&] { return mode() == "holding" && flight_.z_ned() < 0.02 - height_m; });
   }
@@ -173,7 +173,7 @@ TEST_F(Standby, RestartedControllerEngagesInFlight) {
   const FlightMetrics metrics = flight_.metrics(at_ns, at_ns + 3 * kSecond / 2);
   EXPECT_LT(metrics.lowest_z_ned, -0.3)
       << "fell too far; without a command for " << metrics.longest_gap_ms << " ms";
-  flight_.ask(msg::Command_Constants::LAND);
+  flight_.ask(control::RequestKind::kLand);
   flight_.wait("the vehicle has landed", [&] { return mode() == "disarmed"; });
   EXPECT_EQ(reason(), "landed");
 }
@@ -181,7 +181,7 @@ TEST_F(Standby, RestartedControllerEngagesInFlight) {
 TEST_F(Standby, RestartedControllerStaysDisarmedOnTheGround) {
   Controller& first = flight_.start_controller(0);
   flight_.wait_for_roles(1, 0);
-  flight_.ask(msg::Command_Constants::ARM);
+  flight_.ask(control::RequestKind::kArm);
   flight_.wait("the vehicle is armed", [&] { return mode() == "armed"; });
   flight_.kill(first);
   flight_.start_controller(0);
@@ -219,7 +219,7 @@ TEST_F(Standby, ActionAndRequestSucceedAcrossAFailover) {
   flight_.start_controller(1);
   flight_.wait_for_roles(1, 1);
   flight_.kill(flight_.active());
-  flight_.ask(msg::Command_Constants::LAND);  // repeated until a controller answers
+  flight_.ask(control::RequestKind::kLand);  // repeated until a controller answers
   flight_.wait("the vehicle has landed", [&] { return mode() == "disarmed"; });
 }
 

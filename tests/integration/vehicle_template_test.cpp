@@ -116,7 +116,7 @@ TEST_F(VehicleTemplateInRealTime, FliesTheSquareThroughAPseudoTerminal) {
   start_others();
   wait_until_ready();
   ground::Result armed;
-  ASSERT_TRUE(eventually([&] { return (armed = ask(msg::Command_Constants::ARM)).accepted(); }, kTimeout))
+  ASSERT_TRUE(eventually([&] { return (armed = ask(control::RequestKind::kArm)).accepted(); }, kTimeout))
       << armed.reason;
   const ProgramResult fly = run_program("swiftlet",
                                         {"mission", "fly", folder_.write("square.yaml", kSmallSquareMission),

@@ -181,17 +181,16 @@ class PartitionFlight {
       answer = std::move(result);
       return answer.accepted();
     };
-    const auto does = [&](std::uint8_t kind) {
-      msg::Command command;
-      command.kind(kind);
-      return accepted(pilot_->command(command, 5s));
+    const auto does = [&](control::RequestKind kind) {
+      control::Request request;
+      request.kind = kind;
+      return accepted(pilot_->request(request, 5s));
     };
     const auto begins = [&] {
-      if (mode() == ControlMode::kStopped) does(msg::Command_Constants::DISARM);
-      return (status().airborne() || does(msg::Command_Constants::ARM)) &&
+      if (mode() == ControlMode::kStopped) does(control::RequestKind::kDisarm);
+      return (status().airborne() || does(control::RequestKind::kArm)) &&
              accepted(pilot_->upload(tests::square_laps(kSpeed, kLaps), 10s)) &&
-             accepted(
-                 pilot_->mission_command(msg::Command_Constants::MISSION_START, pilot_->mission_id(), 10s));
+             does(control::RequestKind::kMissionStart);
     };
     if (!eventually(begins, 20s, 100ms))
       throw std::runtime_error("it does not begin the mission: " + answer.reason);

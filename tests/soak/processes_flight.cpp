@@ -98,9 +98,9 @@ class FailingFlight {
         },
         "control is ready");
     if (mode() == ControlMode::kStopped) {
-      msg::Command disarm;
-      disarm.kind(msg::Command_Constants::DISARM);
-      require([&] { return observer_.command(disarm, 5s).accepted(); }, "it can be disarmed");
+      control::Request disarm;
+      disarm.kind = control::RequestKind::kDisarm;
+      require([&] { return observer_.request(disarm, 5s).accepted(); }, "it can be disarmed");
     }
     start(FlightProcess::kGround);
     require(

@@ -151,26 +151,25 @@ void RedundantFlight::wait_for_roles(int active, int standby) const {
   });
 }
 
-void RedundantFlight::ask(std::uint8_t kind, double z_ned) {
-  msg::Command command;
-  command.kind(kind);
-  command.position_ned({0.0, 0.0, z_ned});
-  command.yaw_free(true);
-  command.speed(1.2);
+void RedundantFlight::ask(control::RequestKind kind, double z_ned) {
+  control::Request request;
+  request.kind = kind;
+  request.position_ned.z() = z_ned;
+  request.speed = 1.2;
   const auto give_up = ground::Clock::now() + 20s;
   ground::Result answer;
   do {
-    answer = client_.command(command, 5s);
+    answer = client_.request(request, 5s);
     // At start, requests are refused until a pose and a battery sample arrive: repeat them.
   } while (!answer.accepted() && ground::Clock::now() < give_up);
   if (!answer.accepted()) throw std::runtime_error(answer.reason);
 }
 
 void RedundantFlight::fly(const control::Mission& mission) {
-  ask(msg::Command_Constants::ARM);
+  ask(control::RequestKind::kArm);
   const ground::Result answer = client_.upload(mission, 10s);
   if (!answer.accepted()) throw std::runtime_error(answer.reason);
-  ask(msg::Command_Constants::MISSION_START);
+  ask(control::RequestKind::kMissionStart);
 }
 
 FlightMetrics RedundantFlight::metrics(std::int64_t from_ns, std::int64_t to_ns,

@@ -67,7 +67,7 @@ class RedundantFlight {
 
   // Arms, uploads and starts the mission; throws std::runtime_error with the reason of a refusal.
   void fly(const control::Mission& mission);
-  void ask(std::uint8_t kind, double z_ned = 0.0);
+  void ask(control::RequestKind kind, double z_ned = 0.0);
   ground::Client& client() { return client_; }
   std::vector<std::string> network() const;  // as command line arguments
   std::vector<std::string> on_network(std::vector<std::string> words) const;

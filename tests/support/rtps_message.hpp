@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "swiftlet/io/byte_writer.hpp"
 #include "swiftlet/services/rtps/rtps_ids.hpp"
 
 namespace swiftlet::tests {
@@ -16,9 +17,9 @@ using Bytes = std::vector<std::uint8_t>;
 // Appends to a string of bytes.
 class ByteWriter {
  public:
-  ByteWriter& u8(unsigned value) { return integer(value, 1); }
-  ByteWriter& u16(unsigned value) { return integer(value, 2); }
-  ByteWriter& u32(std::uint32_t value) { return integer(value, 4); }
+  ByteWriter& u8(unsigned value) { return integer(static_cast<std::uint8_t>(value)); }
+  ByteWriter& u16(unsigned value) { return integer(static_cast<std::uint16_t>(value)); }
+  ByteWriter& u32(std::uint32_t value) { return integer(value); }
   ByteWriter& number(std::uint32_t high, std::uint32_t low) {
     return u32(high).u32(low);
   }  // a sequence number
@@ -41,8 +42,9 @@ class ByteWriter {
   const Bytes& take() const { return bytes_; }
 
  private:
-  ByteWriter& integer(std::uint32_t value, int count) {
-    for (int i = 0; i < count; ++i) bytes_.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
+  template <class Integer>
+  ByteWriter& integer(Integer value) {
+    io::append(bytes_, value);
     return *this;
   }
 

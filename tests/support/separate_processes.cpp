@@ -12,7 +12,7 @@ using ground::View;
 }  // namespace
 
 SeparateProcesses::SeparateProcesses()
-    : client_(std::make_unique<ground::Client>(node("ground"))),
+    : client_(std::make_shared<ground::Client>(node("ground"))),
       watcher_(std::make_unique<dds::Node>(node("watcher"))),
       telemetry_(std::make_unique<TelemetryLog>(*watcher_)) {
   status_ =
@@ -56,11 +56,11 @@ void SeparateProcesses::wait_until_ready() {
 void SeparateProcesses::hover() {
   wait_until_ready();
   ground::Result armed;
-  ASSERT_TRUE(eventually([&] { return (armed = ask(msg::Command_Constants::ARM)).accepted(); }, kTimeout))
+  ASSERT_TRUE(eventually([&] { return (armed = ask(control::RequestKind::kArm)).accepted(); }, kTimeout))
       << armed.reason;
   clear_history();
   const auto start = client_->view().truth.message.position_ned();
-  const ground::Result off = ask(msg::Command_Constants::TAKEOFF);
+  const ground::Result off = ask(control::RequestKind::kTakeoff);
   ASSERT_TRUE(off.accepted()) << off.reason;
   ASSERT_TRUE(reported(control::Mode::kHolding, "take-off completed")) << mode_log() << control_->errors();
   const bool arrived = eventually([&] { return distance_m(start[0], start[1], -1) < 0.05; }, kTimeout);
@@ -73,12 +73,12 @@ void SeparateProcesses::hover() {
       << "status must continue after clear_history()";
 }
 
-ground::Result SeparateProcesses::ask(std::uint8_t kind, double z_ned) {
-  msg::Command command;
-  command.kind(kind);
-  command.position_ned({0.0, 0.0, z_ned});
-  command.speed(0.8);
-  return client_->command(command, std::chrono::seconds(5));
+ground::Result SeparateProcesses::ask(control::RequestKind kind, double z_ned) {
+  control::Request request;
+  request.kind = kind;
+  request.position_ned.z() = z_ned;
+  request.speed = 0.8;
+  return client_->request(request, std::chrono::seconds(5));
 }
 
 bool SeparateProcesses::reported(control::Mode mode, const std::string& reason,

@@ -40,7 +40,7 @@ class SeparateProcesses : public testing::Test {
   void wait_until_ready();
   void hover();
 
-  ground::Result ask(std::uint8_t kind, double z_ned = -1.0);
+  ground::Result ask(control::RequestKind kind, double z_ned = -1.0);
   // Waits for a control_status with this mode and reason since the last clear_history().
   bool reported(control::Mode mode, const std::string& reason, std::chrono::milliseconds timeout = kTimeout);
   void clear_history();
@@ -61,7 +61,7 @@ class SeparateProcesses : public testing::Test {
   dds::DomainLock lock_;
   TemporaryFolder folder_;
   std::unique_ptr<Program> plant_, mocap_, control_;
-  std::unique_ptr<ground::Client> client_;
+  std::shared_ptr<ground::Client> client_;
   std::unique_ptr<dds::Node> watcher_;
   std::unique_ptr<TelemetryLog> telemetry_;  // since the last clear_history()
   Inbox<std::string> mode_log_;

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <vector>
+
+#include "swiftlet/io/byte_writer.hpp"
 
 namespace swiftlet::tests {
 
@@ -37,8 +38,8 @@ class UlogWriter {
   }
   template <class Value>
   static std::string raw(Value value) {
-    std::string out(sizeof value, '\0');
-    std::memcpy(out.data(), &value, sizeof value);  // both little-endian
+    std::string out;
+    io::append(out, value);
     return out;
   }
   const std::string& bytes() const { return bytes_; }

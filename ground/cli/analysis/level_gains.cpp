@@ -7,6 +7,8 @@
 
 #include "swiftlet/control/design/control_gains.hpp"
 #include "swiftlet/control/design/flown_delay.hpp"
+#include "swiftlet/control/design/margins.hpp"
+#include "swiftlet/ground/batch/gains_report.hpp"
 #include "swiftlet/plant/simulation/firmware/gains.hpp"
 
 namespace swiftlet::ground {
@@ -14,8 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using plant::ControlLevel;
-
-double decibels(double factor) { return 20.0 * std::log10(factor); }
 
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -40,10 +40,6 @@ std::string gain_text(const LevelGains& of, std::size_t i) {
   const control::VehicleLoops& own = of.loops_of_vehicle;
   return fmt::format("{:8.3f} {:8.3f} {:8.3f}", own.velocity_p * own.position_p + own.velocity_i,
                      own.velocity_p, own.velocity_i * own.position_p);
-}
-
-std::string decibels_text(double factor) {
-  return factor > 0.0 && std::isfinite(factor) ? fmt::format("{:+6.1f}", decibels(factor)) : "   any";
 }
 
 std::string milliseconds_text(double delay_s) {
@@ -113,8 +109,8 @@ std::string level_gains_json(const LevelGains& of) {
     const control::LoopMargins& m = of.margins[i];
     loops[control::kFlownLoopNames[i]] = {{"closed_by", closed_by(of.level, i)},
                                           {"phase_deg", finite(m.phase_deg)},
-                                          {"gain_increase_db", finite(decibels(m.gain_increase))},
-                                          {"gain_decrease_db", finite(decibels(m.gain_decrease))},
+                                          {"gain_increase_db", finite(control::decibels(m.gain_increase))},
+                                          {"gain_decrease_db", finite(control::decibels(m.gain_decrease))},
                                           {"tolerated_delay_s", finite(of.tolerated_delay_s[i])}};
   }
   out["loops"] = loops;

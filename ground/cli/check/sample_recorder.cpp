@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <thread>
 
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/messages/wire_version.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
+#include "swiftlet/services/runtime/random_id.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -22,11 +22,6 @@ constexpr std::int64_t kAlive_ns = 1'000'000'000;  // since the last sign of a c
 dds::NodeSettings listening(dds::NodeSettings settings) {
   settings.name = "ground";
   return settings;
-}
-
-std::uint64_t random_number() {
-  std::random_device device;
-  return (static_cast<std::uint64_t>(device()) << 32U) | device();
 }
 
 messages::Fault convert(const msg::Imu& message, ImuReport& out) {
@@ -61,7 +56,7 @@ void add_state(TopicRecord<Sample>& record, const dds::Subscription& subscriptio
 
 SampleRecorder::SampleRecorder(const dds::NodeSettings& settings)
     : vehicle_(settings.vehicle),
-      client_(random_number()),
+      client_(runtime::random_id()),
       node_(listening(settings)),
       clock_(node_.publish(topics::kClockRequest)) {
   recording_.begin_ns = now_ns();

@@ -70,10 +70,8 @@ int fly_fleet(const FleetFlyOptions& options) {
   StartWatch watch;
   const bool in_real_time = flight.clock == runtime::Clock::kRealtime && flight.speed.value_or(1.0) <= 1.0;
   if (in_real_time) {
-    watch = [&monitored](const std::vector<WatchedVehicle>& vehicles, const std::function<bool()>& gives_up) {
-      std::vector<FleetWatch::Watched> watched;
-      for (const WatchedVehicle& one : vehicles) watched.push_back({one.client, one.progress});
-      return std::make_shared<FleetWatch>(FleetMonitor(monitored), std::move(watched), gives_up);
+    watch = [&monitored](std::vector<WatchedVehicle> vehicles, const std::function<bool()>& gives_up) {
+      return std::make_shared<FleetWatch>(FleetMonitor(monitored), std::move(vehicles), gives_up);
     };
   } else if (names.size() > 1) {
     std::fprintf(

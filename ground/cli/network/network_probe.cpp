@@ -4,7 +4,6 @@
 #include <climits>
 #include <map>
 #include <netinet/in.h>
-#include <random>
 #include <set>
 #include <sstream>
 #include <sys/socket.h>
@@ -13,6 +12,7 @@
 #include "swiftlet/io/network/sockets.hpp"
 #include "swiftlet/services/clocks/clock_filter.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
+#include "swiftlet/services/runtime/random_id.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -113,8 +113,7 @@ struct NetworkProbe::Impl {
         peers(asked.begin(), asked.end()),
         direct("", static_cast<std::uint16_t>(probe_port(of_domain))),
         multicast("", static_cast<std::uint16_t>(probe_multicast_port(of_domain)), true) {
-    std::random_device random;
-    own_id = (static_cast<std::uint64_t>(random()) << 32U) | random();
+    own_id = runtime::random_id();
     char name[HOST_NAME_MAX + 1] = {};
     ::gethostname(name, HOST_NAME_MAX);
     host = name[0] == '\0' ? "unknown" : name;

@@ -1,6 +1,6 @@
 #include "tests/support/mocap/natnet_packets.hpp"
 
-#include <cstring>
+#include "swiftlet/io/byte_writer.hpp"
 
 namespace swiftlet::tests::natnet {
 namespace {
@@ -10,9 +10,7 @@ class Writer {
  public:
   template <class Number>
   Writer& put(Number number) {
-    std::uint8_t bytes[sizeof(Number)];
-    std::memcpy(bytes, &number, sizeof(Number));
-    bytes_.insert(bytes_.end(), bytes, bytes + sizeof(Number));
+    io::append(bytes_, number);
     return *this;
   }
   Writer& text(const std::string& text) {

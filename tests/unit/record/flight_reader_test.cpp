@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/io/byte_writer.hpp"
 #include "swiftlet/record/mcap/series.hpp"
 #include "swiftlet/record/mcap/writer.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -22,8 +23,7 @@ class Payload {
   template <class Number>
   Payload& put(Number number) {
     static_assert(sizeof(number) == 8);
-    const auto* const begin = reinterpret_cast<const std::uint8_t*>(&number);
-    bytes_.insert(bytes_.end(), begin, begin + sizeof(number));
+    io::append(bytes_, number);
     return *this;
   }
   Payload& put(std::initializer_list<double> numbers) {
@@ -98,10 +98,7 @@ TEST_F(FlightReader, HasColumnsOverTime) {
   const auto topic =
       channel("/kl1/battery", "Battery", "int64 stamp_ns\nfloat64 voltage_v\nuint64 id\nstring text\n");
   mcap::Bytes bytes = {0, 1, 0, 0};
-  const auto put = [&](const auto& value) {
-    const auto* const begin = reinterpret_cast<const std::uint8_t*>(&value);
-    bytes.insert(bytes.end(), begin, begin + sizeof(value));
-  };
+  const auto put = [&](auto value) { io::append(bytes, value); };
   put(std::int64_t{9'007'199'254'740'993});  // not a double
   put(4.1);
   put(std::uint64_t{9'007'199'254'740'995});

@@ -74,11 +74,8 @@ class Control {
 class Requests : public testing::Test {
  protected:
   std::future<Result> ask(std::chrono::milliseconds timeout) {
-    return std::async(std::launch::async, [this, timeout] {
-      msg::Command hold;
-      hold.kind(msg::Command_Constants::HOLD);
-      return client_.command(hold, timeout);
-    });
+    return std::async(std::launch::async,
+                      [this, timeout] { return client_.request(control::Request(), timeout); });
   }
   bool is_unanswered(std::future<Result> answer) { return answer.get().kind == Result::Kind::kSilence; }
 

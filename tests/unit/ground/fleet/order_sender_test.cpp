@@ -2,6 +2,7 @@
 #include "swiftlet/ground/fleet/order_sender.hpp"
 
 #include <atomic>
+#include <memory>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -37,12 +38,12 @@ TEST(OrderSender, SendsNothingOnceTheFlightIsAbandoned) {
         ack.accepted(true);
         acks.publish(ack);
       });
-  Client client(settings_of("ground", lock));
+  const auto client = std::make_shared<Client>(settings_of("ground", lock));
   ASSERT_TRUE(eventually([&] {
     messages::msg::MissionStatus running;
     running.state(messages::msg::MissionStatus_Constants::RUNNING);
     missions.publish(running);
-    return client.view().mission.seen();
+    return client->view().mission.seen();
   }));
 
   std::atomic<bool> is_abandoned{true};
@@ -61,7 +62,7 @@ TEST(OrderSender, SendsNothingOnceTheFlightIsAbandoned) {
   ASSERT_TRUE(commands.wait_for_count(1));
   EXPECT_EQ(commands.items().front().kind(), messages::msg::Command_Constants::MISSION_PAUSE);
   // Requests are numbered in order: this is the first one that was made.
-  const Result next = client.command(messages::msg::Command(), tests::kStuck);
+  const Result next = client->request(control::Request(), tests::kStuck);
   EXPECT_EQ(next.key.id, commands.items().front().id() + 1);
 }
 

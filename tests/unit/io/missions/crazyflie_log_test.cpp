@@ -3,13 +3,13 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <vector>
 #include <zlib.h>
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/io/byte_writer.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/io/missions/format_support.hpp"
@@ -20,8 +20,8 @@ using Eigen::Vector3d;
 
 template <class Number>
 std::string raw(Number number) {
-  std::string bytes(sizeof number, '\0');
-  std::memcpy(bytes.data(), &number, sizeof number);  // little-endian
+  std::string bytes;
+  append(bytes, number);
   return bytes;
 }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/io/byte_writer.hpp"
 #include "tests/unit/io/config_error_check.hpp"
 
 namespace swiftlet::mcap::message_decoder_test {
@@ -24,8 +25,7 @@ class Cdr {
   template <class Number>
   Cdr& put(Number number) {
     while ((bytes_.size() - 4) % sizeof(number) != 0) bytes_.push_back(0);
-    const auto* const begin = reinterpret_cast<const std::uint8_t*>(&number);
-    bytes_.insert(bytes_.end(), begin, begin + sizeof(number));
+    io::append(bytes_, number);
     return *this;
   }
   Cdr& text(const std::string& text) {
