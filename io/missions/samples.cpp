@@ -347,7 +347,7 @@ std::size_t row_of(const Samples& samples, const std::vector<control::Polynomial
 }
 
 // Fails with what the fit of samples without velocities cannot do near their ends.
-void fail_at(const io::CsvTable& table, const Samples& samples, std::size_t row, const std::string& fault,
+void fail_at(const io::Table& table, const Samples& samples, std::size_t row, const std::string& fault,
              const control::Limits& limits) {
   constexpr double kNear_s = 0.5;
   const std::vector<double>& time_s = samples.times.time_s;
