@@ -277,7 +277,7 @@ class HostilePeer(unittest.TestCase):
                 grown = max(grown, resident_bytes(process) - before)
             except OSError:  # the flight has ended
                 break
-        self.assertLess(grown, 32 * MIB)
+        self.assertLess(grown, 40 * MIB)  # 8,192 endpoints of some 4 KiB are 32 MiB; all would be 160
         self.assert_flies_on()
 
 

@@ -82,7 +82,7 @@ TEST(DisturbedFlight, TracksTheSquareHeavyInWindOnADrainingBattery) {
   setup.flown.linear_drag = 0.01;
   setup.simulation.air.wind_ned = {1.6, -1.2, 0.0};
   setup.simulation.air.gust_sigma_ned = {0.7, 0.7, 0.3};
-  setup.flown.battery.capacity_ah *= 0.06;
+  setup.flown.battery.capacity_ah *= 0.08;
   for (const std::uint64_t seed : {1, 2, 3}) {
     const Flight flight = setup.fly("0.5", seed);
     EXPECT_LT(flight.rms_m, 20e-3);
