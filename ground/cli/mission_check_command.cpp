@@ -20,6 +20,7 @@ struct MissionCheckOptions {
   std::string control = "motor_lag";
   std::vector<double> start = {0.0, 0.0};
   std::optional<double> supply_voltage_v;
+  double state_of_charge = 1.0;
   bool json = false;
 };
 
@@ -32,7 +33,8 @@ int check_missions(const MissionCheckOptions& options) {
   const io::MissionFile file = load_mission(path, options.reading, vehicle, settings);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
-  const CheckConditions conditions{{options.start[0], options.start[1]}, options.supply_voltage_v, 0.0};
+  const CheckConditions conditions{
+      {options.start[0], options.start[1]}, options.supply_voltage_v, 0.0, options.state_of_charge};
   const MissionCheck check = check_mission(file, vehicle, settings, conditions);
   const std::string help =
       check.feasible() ? "" : advice(file, path, options.reading, vehicle, settings, conditions);
@@ -72,6 +74,9 @@ io::Command add_mission_check_command(runtime::CommandLine mission) {
   app.add_option("--supply", options->supply_voltage_v,
                  "battery voltage of the check, V; default: the low-battery threshold")
       .range(0.1, 100.0);
+  app.add_option("--charge", options->state_of_charge, "state of charge of the battery at the start, 0 to 1")
+      .range(0.0, 1.0)
+      .show_default();
   app.add_flag("--json", options->json, "print JSON");
   return {app, [options] { return check_missions(*options); }};
 }

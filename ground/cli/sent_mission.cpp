@@ -27,6 +27,12 @@ VehicleState state_of(const Vehicle& running, std::chrono::milliseconds timeout)
   return running.state();
 }
 
+// 0 .. 1; none if the vehicle has not reported it.
+std::optional<double> charge_of(const VehicleState& state) {
+  if (!std::isfinite(state.battery_charge)) return std::nullopt;
+  return std::clamp(state.battery_charge, 0.0, 1.0);
+}
+
 }  // namespace
 
 void add_sent_file_options(runtime::CommandLine app, SentFileOptions& options,
@@ -74,7 +80,7 @@ void SentFile::require_flyable(const Vehicle& running, const io::MissionFile& fi
   CheckConditions conditions;
   const VehicleState state = state_of(running, timeout);
   if (state.position_ned_m.allFinite()) conditions.start_ned = state.position_ned_m.head<2>();
-  if (std::isfinite(state.battery_charge)) conditions.state_of_charge = state.battery_charge;
+  conditions.state_of_charge = charge_of(state);
   require_flyable(running, file, conditions);
 }
 
@@ -82,7 +88,7 @@ void SentFile::require_flyable(const Vehicle& running, const io::TrajectoryFile&
                                std::chrono::milliseconds timeout) const {
   CheckConditions conditions = at_start_of(file);
   const VehicleState state = state_of(running, timeout);
-  if (std::isfinite(state.battery_charge)) conditions.state_of_charge = state.battery_charge;
+  conditions.state_of_charge = charge_of(state);
   require_flyable(running, mission_of(std::filesystem::path(path).stem(), file, settings), conditions);
 }
 

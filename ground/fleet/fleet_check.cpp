@@ -67,7 +67,7 @@ FleetVehicle vehicle_of(const FleetMember& member, const FleetFile& fleet,
   }
   const io::FileOptions reading = reading_of(member, fleet.frame);
   io::MissionFile mission = mission_of(member, reading, control.limits);
-  MissionCheck check = check_mission(mission, vehicle, control, {member.start_ned, {}});
+  MissionCheck check = check_mission(mission, vehicle, control, {member.start_ned, {}, 0.0, 1.0});
   FlightPath path =
       FlightPath::of(dry_run(mission.mission, control, member.start_ned), member.start_ned, mission.lands());
   const Ellipsoid around{std::max(kLateShare * fleet.safety.radius_xy_m, 0.5 * plant::width(vehicle)),

@@ -18,7 +18,9 @@ class SlowestSearch {
  public:
   SlowestSearch(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
                 const CheckConditions& conditions)
-      : vehicle_(vehicle), settings_(settings), conditions_(conditions) {}
+      : vehicle_(vehicle), settings_(settings), conditions_(conditions) {
+    conditions_.state_of_charge.reset();  // slower takes longer
+  }
 
   // The least factor by which the mission must be slowed, 0 if none up to kLargestTimeScale helps.
   double slower(const io::MissionFile& file) const {
@@ -50,17 +52,18 @@ class SlowestSearch {
     return 0.0;
   }
 
- private:
   bool can_fly(const io::MissionFile& file) const {
     return check_mission(file, vehicle_, settings_, conditions_).feasible();
   }
+
+ private:
   bool can_fly_slower(const io::MissionFile& file, double factor) const {
     return can_fly(io::stretched(file, factor));
   }
 
   const plant::Vehicle& vehicle_;
   const control::ControlSettings& settings_;
-  const CheckConditions& conditions_;
+  CheckConditions conditions_;
 };
 
 }  // namespace
@@ -69,6 +72,7 @@ std::string advice(const io::MissionFile& file, const std::string& path, const i
                    const plant::Vehicle& vehicle, const control::ControlSettings& settings,
                    const CheckConditions& conditions) {
   const SlowestSearch search(vehicle, settings, conditions);
+  if (search.can_fly(file)) return "";  // but for the battery
   std::string text;
   if (const double slower = search.slower(file); slower > 1.0) text = io::advice_of(slower, options);
   if (io::read_source(path, options).format != io::MissionFormat::kSampledCsv) return text;

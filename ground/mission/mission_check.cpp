@@ -209,11 +209,12 @@ std::string check_table(const MissionCheck& check, const io::MissionFile& file, 
   if (!check.reason.empty())
     return text + "the control service would not complete the mission: " + check.reason + "\n";
   if (check.duration_s > check.endurance_s) text += outlasted(check) + "\n";
-  return text + fmt::format(
-                    "{} {} fly the mission: {:.1f} s, with a battery down to {:.2f} V, which lasts {:.0f} s "
-                    "of hover\n",
-                    vehicle, check.feasible() ? "can" : "cannot", check.duration_s, check.supply_voltage_v,
-                    check.endurance_s);
+  const std::string endurance = std::isfinite(check.endurance_s)
+                                    ? fmt::format(", which lasts {:.0f} s of hover", check.endurance_s)
+                                    : "";
+  return text + fmt::format("{} {} fly the mission: {:.1f} s, with a battery down to {:.2f} V{}\n", vehicle,
+                            check.feasible() ? "can" : "cannot", check.duration_s, check.supply_voltage_v,
+                            endurance);
 }
 
 std::string check_json(const MissionCheck& check, const io::MissionFile& file, const std::string& vehicle,

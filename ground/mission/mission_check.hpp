@@ -29,7 +29,7 @@ struct MissionCheck {
   std::vector<ItemCheck> items;
   double duration_s = 0.0;
   double supply_voltage_v = 0.0;  // at which the rotors are checked
-  // The battery's, in hover, until its voltage is at the low-battery threshold.
+  // The battery's, in hover, until its voltage is at the low-battery threshold; null in JSON if it never runs empty.
   double endurance_s = std::numeric_limits<double>::infinity();
 
   bool feasible() const;
@@ -45,8 +45,7 @@ struct CheckConditions {
   // 0 .. 1: the share of the tilt limit, and of the range between least and greatest thrust at both of its ends, that is
   // kept free: the limits are so much tighter.
   double reserve = 0.0;
-  std::optional<double> state_of_charge =
-      1.0;  // 0 .. 1, of the battery at the start; none: it does not run empty
+  std::optional<double> state_of_charge{};  // 0 .. 1, of the battery at the start; none: it never runs empty
 };
 
 // A dry run of the mission, and the demands on its path. Limits and fence: those of the settings, as tightened by the

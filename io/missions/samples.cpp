@@ -315,11 +315,10 @@ void say(const Table& table, const MotionColumns& columns, const Samples& sample
   assumptions.push_back(text);
 }
 
-// The row of the table of the last sample at or before the start of a segment.
 // The speed at one end of samples without velocities, if it is more than their rounding, and a start from rest between them, explain:
 // step is 1 at the first and -1 at the last sample.
 std::optional<double> speed_at(const Samples& samples, std::size_t end, int step,
-                               const control::Limits& limits) {
+                               const control::Limits& limits, double scale) {
   constexpr double kUnnoticed_m_s = 0.05;
   if (samples.size() < 3) return std::nullopt;
   const auto sample = [&](int i) {
@@ -331,12 +330,13 @@ std::optional<double> speed_at(const Samples& samples, std::size_t end, int step
   const Eigen::Vector3d near = (places[sample(1)] - places[sample(0)]).head<3>() / before_s;
   const Eigen::Vector3d far = (places[sample(2)] - places[sample(0)]).head<3>() / behind_s;
   // Second order: exact at constant acceleration.
-  const double speed = ((behind_s * near - before_s * far) / (behind_s - before_s)).norm();
-  const double rounding = 4.0 * samples.tolerances[end].head<3>().norm() / before_s;
+  const double speed = scale * ((behind_s * near - before_s * far) / (behind_s - before_s)).norm();
+  const double rounding = 4.0 * scale * samples.tolerances[end].head<3>().norm() / before_s;
   const double explained = kUnnoticed_m_s + rounding + behind_s * before_s * limits.max_reference_jerk / 6.0;
   return speed > explained ? std::optional(speed) : std::nullopt;
 }
 
+// The row of the table of the last sample at or before the start of a segment.
 std::size_t row_of(const Samples& samples, const std::vector<control::PolynomialSegment>& segments,
                    std::size_t segment) {
   double begin_s = 0.0;
@@ -346,20 +346,18 @@ std::size_t row_of(const Samples& samples, const std::vector<control::Polynomial
   return samples.first_row + static_cast<std::size_t>(after - samples.times.time_s.begin()) - 1;
 }
 
-// Fails with what the fit of samples without velocities cannot do near their ends.
-void fail_at(const io::Table& table, const Samples& samples, std::size_t row, const std::string& fault,
-             const control::Limits& limits) {
+// What the fit of samples without velocities cannot do near their ends; empty if it is something else. row: of the fault.
+std::string motion_at_end(const Samples& samples, std::size_t row, const control::Limits& limits,
+                          double scale) {
   constexpr double kNear_s = 0.5;
   const std::vector<double>& time_s = samples.times.time_s;
-  const std::size_t last = samples.size() - 1;
   const double at_s = time_s[row - samples.first_row];
-  if (const auto speed = speed_at(samples, 0, 1, limits); speed && at_s - time_s.front() < kNear_s)
-    table.fail(samples.first_row, "",
-               fmt::format("the path starts at about {:.2f} m/s, must start at rest", *speed));
-  if (const auto speed = speed_at(samples, last, -1, limits); speed && time_s.back() - at_s < kNear_s)
-    table.fail(samples.first_row + last, "",
-               fmt::format("the path ends at about {:.2f} m/s, must end at rest", *speed));
-  table.fail(row, "", fault);
+  if (const auto speed = speed_at(samples, 0, 1, limits, scale); speed && at_s - time_s.front() < kNear_s)
+    return fmt::format("the path starts at about {:.2f} m/s, must start at rest", *speed);
+  const std::size_t last = samples.size() - 1;
+  if (const auto speed = speed_at(samples, last, -1, limits, scale); speed && time_s.back() - at_s < kNear_s)
+    return fmt::format("the path ends at about {:.2f} m/s, must end at rest", *speed);
+  return "";
 }
 
 }  // namespace
@@ -393,12 +391,14 @@ TrajectoryFile read_samples(const Table& table, const control::Limits& limits, c
   say(table, columns, samples, path, with_derivatives, assumptions);
   for (control::PolynomialSegment& segment : path.segments) segment = options.placement.segment(segment);
   const std::vector<control::PolynomialSegment> segments = path.segments;
-  return checked({std::move(path.segments), std::move(assumptions)}, limits, options,
-                 [&](std::size_t segment, const std::string& fault) {
-                   const std::size_t row = row_of(samples, segments, segment);
-                   if (given.velocity) table.fail(row, "", fault);
-                   fail_at(table, samples, row, fault, limits);
-                 });
+  return checked(
+      {std::move(path.segments), std::move(assumptions)}, limits, options,
+      [&](std::size_t segment, const std::string& fault) {
+        const std::size_t row = row_of(samples, segments, segment);
+        const std::string motion =
+            given.velocity ? "" : motion_at_end(samples, row, limits, options.placement.scale);
+        table.fail(row, "", motion.empty() ? fault : motion + ": " + fault.substr(0, fault.find("; slower")));
+      });
 }
 
 }  // namespace swiftlet::io

@@ -71,6 +71,7 @@ fs::path fly(const std::string& mission, int imu_rate_hz, const fs::path& folder
   ground::FlyOptions options;
   options.launch_mode = ground::LaunchMode::kInProcess;
   options.mission = mission;
+  options.simulation = "ideal";  // an hour is longer than the battery lasts
   options.imu_rate_hz = imu_rate_hz;
   options.record = folder;
   const ground::LaunchConfiguration plan = ground::plan_flight(options);

@@ -33,10 +33,10 @@ void lose_datagrams(const HostNetwork& network, int percent, const std::filesyst
   for (int host = 0; host < NetworkFlight::kHosts; ++host) network.run(host, "nft -f " + rules.string());
 }
 
-// Waypoints in random places of the fence.
+// Waypoints in random places near each other: the battery lasts for all of them.
 std::filesystem::path write_long_mission(const LossSettings& settings, const std::filesystem::path& folder) {
   std::mt19937_64 random(settings.seed);
-  std::uniform_real_distribution<double> place(-1.5, 1.5);
+  std::uniform_real_distribution<double> place(-0.02, 0.02);
   const std::filesystem::path path = folder / "long.yaml";
   std::ofstream file(path);
   file << "name: long\nframe: ned\ntolerance_m: 0.1\nitems:\n"
