@@ -49,7 +49,7 @@ TrajectoryFile read_polynomials(const Table& table, const control::Limits& limit
     segment = options.placement.segment(segment);
   }
   return checked({std::move(segments), std::move(assumptions)}, limits, options,
-                 [&](std::size_t segment, const std::string& fault) { table.fail(segment, "", fault); });
+                 [&](const PathFault& fault) { table.fail(fault.segment, "", fault.sentence()); });
 }
 
 }  // namespace swiftlet::io

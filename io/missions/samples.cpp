@@ -391,14 +391,13 @@ TrajectoryFile read_samples(const Table& table, const control::Limits& limits, c
   say(table, columns, samples, path, with_derivatives, assumptions);
   for (control::PolynomialSegment& segment : path.segments) segment = options.placement.segment(segment);
   const std::vector<control::PolynomialSegment> segments = path.segments;
-  return checked(
-      {std::move(path.segments), std::move(assumptions)}, limits, options,
-      [&](std::size_t segment, const std::string& fault) {
-        const std::size_t row = row_of(samples, segments, segment);
-        const std::string motion =
-            given.velocity ? "" : motion_at_end(samples, row, limits, options.placement.scale);
-        table.fail(row, "", motion.empty() ? fault : motion + ": " + fault.substr(0, fault.find("; slower")));
-      });
+  return checked({std::move(path.segments), std::move(assumptions)}, limits, options,
+                 [&](const PathFault& fault) {
+                   const std::size_t row = row_of(samples, segments, fault.segment);
+                   const std::string motion =
+                       given.velocity ? "" : motion_at_end(samples, row, limits, options.placement.scale);
+                   table.fail(row, "", motion.empty() ? fault.sentence() : motion + ": " + fault.reason);
+                 });
 }
 
 }  // namespace swiftlet::io

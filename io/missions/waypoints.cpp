@@ -75,8 +75,8 @@ TrajectoryFile read_waypoints(const Table& table, const control::Limits& limits,
   for (control::PolynomialSegment& segment : planned.segments)
     segment = control::stretched(segment, options.time_scale);
   return checked({std::move(planned.segments), std::move(assumptions)}, limits, options,
-                 [&](std::size_t segment, const std::string& fault) {
-                   table.fail(row_of(planned, segment), "", "the path from here: " + fault);
+                 [&](const PathFault& fault) {
+                   table.fail(row_of(planned, fault.segment), "", "the path from here: " + fault.sentence());
                  });
 }
 

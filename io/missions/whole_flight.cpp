@@ -102,22 +102,21 @@ std::string advice_of(double slower, const FileOptions& options) {
 }
 
 TrajectoryFile checked(TrajectoryFile path, const control::Limits& limits, const FileOptions& options,
-                       const std::function<void(std::size_t, const std::string&)>& where) {
+                       const std::function<void(const PathFault&)>& refuse) {
   const std::vector<control::PolynomialSegment>& segments = path.segments;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const std::string what = fmt::format("segment {} in NED", i + 1);
     control::Outcome outcome = i == 0 ? control::check_start(what.c_str(), segments[i])
                                       : control::check_joint(what.c_str(), segments[i - 1], segments[i]);
-    if (!outcome.accepted) where(i, outcome.reason);
+    if (!outcome.accepted) refuse({i, outcome.reason, ""});
     outcome = control::check_segment(what.c_str(), segments[i], limits);
     if (outcome.accepted) continue;
     const std::optional<double> slower = slower_within(segments, limits);
-    where(i,
-          std::string(outcome.reason) + (slower && *slower > 1.0 ? "; " + advice_of(*slower, options) : ""));
+    refuse({i, outcome.reason, slower && *slower > 1.0 ? advice_of(*slower, options) : ""});
   }
   const std::string last = fmt::format("segment {} in NED", segments.size());
   const control::Outcome outcome = control::check_end(last.c_str(), segments.back());
-  if (!outcome.accepted) where(segments.size() - 1, outcome.reason);
+  if (!outcome.accepted) refuse({segments.size() - 1, outcome.reason, ""});
   return path;
 }
 

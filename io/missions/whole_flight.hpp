@@ -38,11 +38,19 @@ Heights heights_of(const std::vector<control::PolynomialSegment>& segments);
 double raise_by(const Heights& heights, MissionFrame frame, const std::string& file_name,
                 std::vector<std::string>& assumptions);
 
-// Returns the path if it can be flown. Calls `where`, which must throw, with the index of the first segment
-// that violates the fence or the limits or does not continue the previous segment, and with the reason and, if the
-// path can be flown more slowly, the option --time-scale with which it can.
+// Why a path cannot be flown.
+struct PathFault {
+  std::size_t segment =
+      0;  // the first that violates the fence or the limits, or does not continue the one before
+  std::string reason;
+  std::string advice;  // the option --time-scale with which it can be flown; empty: there is none
+
+  std::string sentence() const { return advice.empty() ? reason : reason + "; " + advice; }
+};
+
+// Returns the path if it can be flown. Else calls `refuse`, which must throw.
 TrajectoryFile checked(TrajectoryFile path, const control::Limits& limits, const FileOptions& options,
-                       const std::function<void(std::size_t, const std::string&)>& where);
+                       const std::function<void(const PathFault&)>& refuse);
 
 // Returns take-off to the height of the path's start, the path, and landing.
 MissionFile whole_flight(const std::string& file_name, TrajectoryFile path, const control::Limits& limits);

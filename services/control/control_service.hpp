@@ -94,10 +94,9 @@ class ControlService {
   CommandPublisher commands_;
   const int rotor_count_;
   const std::optional<plant::ControlLevel> wanted_level_;
-  std::atomic<std::uint8_t> reported_levels_{
-      0};                            // by vehicle_info, as ControlLevels::bits(); 0: not known yet
-  std::uint8_t adopted_levels_ = 0;  // used by the thread of run() only
-  bool refused_vehicle_ = false;     // used by the thread of vehicle_info only
+  std::atomic<std::uint8_t> reported_levels_{0};  // in vehicle_info, ControlLevels::bits(); 0: not known yet
+  std::uint8_t adopted_levels_ = 0;               // used by the thread of run() only
+  bool refused_vehicle_ = false;                  // used by the thread of vehicle_info only
   SampleAnswers answers_;
   std::unique_ptr<StepDriver> driver_;  // by the clock
   AnsweredSamples answered_samples_;
