@@ -5,7 +5,7 @@ usage: ./dev mutate [ROOM...] [--sample N] [--seed S] [--redundant]
 
 A room is one of swiftlet_add_room_test() in tests/unit/CMakeLists.txt. Works in a copy of the tree in build/mutation, and keeps what it has
 found there: what was interrupted goes on, and mutants of files that have not changed are not judged again while their tests have
-not changed either. A mutant is first shown to the tests of its room, then to those of the others.
+not changed either. A mutant is first shown to the tests of its room, then to those of the others. An endless loop is noticed by CTest's limit.
 tests/mutation/equivalent.txt lists mutants that change nothing that can be observed, with the reason; they do not count.
 """
 
@@ -24,26 +24,29 @@ import time
 from mutants import Mutant, mutants_of
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "tests/unit"))
+from rooms import room_of, rooms  # pylint: disable=wrong-import-position
+
 HOME = ROOT / "build/mutation"
 TREE = HOME / "tree"
 BUILD = TREE / "build"
 RESULTS = HOME / "results.jsonl"
 EQUIVALENT = pathlib.Path(__file__).parent / "equivalent.txt"
-# From the bottom up: a mistake is most likely noticed next by a room that stands on its own.
-ROOMS = ["math", "plant", "control", "record", "identification", "io", "simulation", "services_runtime", "services_dds", "services",
-         "analysis", "analysis_identify", "ground"]
-TIMEOUT_S = 120  # of a test program; endless loops are noticed too
+ROOMS = list(rooms())
 FAILED = re.compile(r"^\[  FAILED  \] ([\w/]+\.[\w/]+)", re.MULTILINE)
 
 
 def tracked_files():
     listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT, capture_output=True,
                             check=True)
-    return [pathlib.Path(name) for name in listed.stdout.decode().split("\0") if name and (ROOT / name).is_file()]
+    return {pathlib.Path(name): None for name in listed.stdout.decode().split("\0") if name and (ROOT / name).is_file()}
 
 
 def copy_tree(files):
     """Touches only what differs, so that the copy is built incrementally."""
+    for copy in TREE.rglob("*"):
+        if copy.is_file() and BUILD not in copy.parents and copy.relative_to(TREE) not in files:
+            copy.unlink()
     for file in files:
         copy = TREE / file
         if not copy.exists() or copy.read_bytes() != (ROOT / file).read_bytes():
@@ -51,35 +54,22 @@ def copy_tree(files):
             shutil.copy(ROOT / file, copy)
 
 
-def room_of(file):
-    """The room whose name is the longest beginning of the folder; None: without unit tests."""
-    parts = file.parent.parts
-    for count in range(len(parts), 0, -1):
-        name = "_".join(parts[:count])
-        if name in ROOMS:
-            return name
-    # services/messages and others are tested by services_dds.
-    return "services_dds" if parts[:2] in (("services", "messages"), ("services", "rtps"), ("services", "clocks")) else (
-        "services" if parts[:1] == ("services",) else None)
-
-
 def digest(*texts):
     return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:16]
 
 
-def tests_digest(files, room):
-    folders = ("tests/unit/" + room.split("_")[0] + "/", "tests/support/")
+def digest_below(files, *folders):
     return digest(*[(ROOT / file).read_text(errors="replace") for file in files if str(file).startswith(folders)])
 
 
-def tests_that_fail(rooms):
+def tests_that_fail(tested):
     """Builds the unit tests of these rooms and runs them. Returns the names of those that fail; None: it does not compile."""
-    built = subprocess.run(["ninja", "-C", BUILD, *[f"{room}_test" for room in rooms]], capture_output=True, check=False)
+    built = subprocess.run(["ninja", "-C", BUILD, *[f"{room}_test" for room in tested]], capture_output=True, check=False)
     if built.returncode != 0:
         return None
-    labels = "^room_(" + "|".join(rooms) + ")$"
-    ran = subprocess.run(["ctest", "--test-dir", BUILD, "-L", labels, "-L", "^unit$", "-LE", "wall_clock", "--parallel", "4", "--timeout",
-                          str(TIMEOUT_S), "--output-on-failure"], capture_output=True, text=True, errors="replace", check=False)
+    labels = "^room_(" + "|".join(tested) + ")$"
+    ran = subprocess.run(["ctest", "--test-dir", BUILD, "-L", labels, "-L", "^unit$", "-LE", "wall_clock", "--parallel", "4",
+                          "--output-on-failure"], capture_output=True, text=True, errors="replace", check=False)
     if ran.returncode == 0:
         return []
     return sorted(set(FAILED.findall(ran.stdout))) or ["(crashed or never ended)"]
@@ -94,21 +84,21 @@ def judge(mutant, room):
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")
     try:
         noticed = tests_that_fail([room])
+        if noticed == []:
+            noticed = tests_that_fail([other for other in ROOMS if other != room])
         if noticed is None:
             return "invalid", []
-        if not noticed:
-            noticed = tests_that_fail([other for other in ROOMS if other != room]) or []
         return ("noticed" if noticed else "survived"), noticed
     finally:
         file.write_text(original, encoding="utf-8")
 
 
 def equivalent_mutants():
-    """Those of the list: the file, the line before and the line after, with single blanks."""
+    """Those of the list: the file, the line before and the line after, with single blanks between words."""
     listed = set()
     for line in EQUIVALENT.read_text(encoding="utf-8").splitlines():
         if line and not line.startswith("#"):
-            file, before, after, _reason = [part.strip() for part in line.split(" | ")]
+            file, before, after, _reason = line.split("\t")
             listed.add((file, before, after))
     return listed
 
@@ -141,7 +131,8 @@ def sample_of(room, files, arguments):
 
 def score(room, files, results, arguments):
     """Judges the sample of a room. Returns its results."""
-    tests = tests_digest(files, room)
+    tests = digest_below(files, "tests/unit/" + room.split("_", maxsplit=1)[0] + "/", "tests/support/")
+    all_tests = digest_below(files, "tests/unit/", "tests/support/")
     listed = equivalent_mutants()
     judged = []
     for mutant in sample_of(room, files, arguments):
@@ -150,11 +141,12 @@ def score(room, files, results, arguments):
         if (mutant.file, " ".join(mutant.before.split()), " ".join(mutant.after.split())) in listed:
             continue
         key = digest(str(mutant), (ROOT / mutant.file).read_text(encoding="utf-8"), tests)
-        if key not in results.known:
+        known = results.known.get(key)
+        if not known or (known["state"] == "survived" and known["all_tests"] != all_tests):
             began = time.monotonic()
             state, by = judge(mutant, room)
             results.add({"key": key, "room": room, "file": mutant.file, "line": mutant.line, "kind": mutant.kind,
-                         "before": mutant.before, "after": mutant.after, "state": state, "by": by,
+                         "before": mutant.before, "after": mutant.after, "state": state, "by": by, "all_tests": all_tests,
                          "seconds": round(time.monotonic() - began, 1)})
         entry = results.known[key]
         if entry["state"] != "invalid":
