@@ -249,7 +249,7 @@ class Node {
 
   // Sets the callback for discovered and lost peers of the vehicle; it is called at once for known peers. It
   // runs in a middleware thread, and ends the process if it throws. A new callback replaces the previous one,
-  // which no longer runs when this returns.
+  // which no longer runs when this returns; the last one runs until the node is destroyed.
   void on_peer(std::function<void(const PeerEvent&)> callback);
 
   // Leaves the domain and joins it again with all publishers and subscriptions. Other processes see a new

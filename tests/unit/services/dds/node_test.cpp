@@ -104,8 +104,8 @@ TEST(NodeDeathTest, ACallbackThatThrowsEndsTheProcess) {
 
 TEST(Node, NoNameOfAPeerControlsATerminal) {
   const DomainLock lock;
-  Node here(settings(lock, "here"));
   Inbox<std::string> names;
+  Node here(settings(lock, "here"));
   here.on_peer([&](const PeerEvent& event) { names.put(event.name); });
   Node there(settings(lock, "\x1b[2Jground\n12:00:00 control info: landed"));
   ASSERT_TRUE(eventually([&] { return names.size() > 0; }));
@@ -182,8 +182,8 @@ TEST(Vehicles, AreIsolatedFromEachOther) {
   Node plant1(first);
   Node plant2(second);
   first.name = second.name = "control";
-  Node control1(first);
   Inbox<std::string> peers;
+  Node control1(first);
   control1.on_peer([&](const PeerEvent& event) { peers.put(event.name); });
   Inbox<std::uint64_t> received;
   const auto subscription = control1.subscribe<messages::msg::Imu>(
@@ -215,8 +215,8 @@ TEST(Vehicles, CanShareAParticipant) {
   NodeSettings plant = settings(lock, "plant");
   Node plant1(plant);
   plant.vehicle = "kl2";
-  Node plant2(plant);
   Inbox<std::string> peers_of_plant2;
+  Node plant2(plant);
   plant2.on_peer([&](const PeerEvent& event) { peers_of_plant2.put(event.name); });
 
   const Participant shared(settings(lock, "ground"));
@@ -228,8 +228,8 @@ TEST(Vehicles, CanShareAParticipant) {
       messages::topics::kImu, [&](const messages::msg::Imu& imu) { received1.put(imu.sequence_number()); });
   ASSERT_TRUE(eventually([&] { return first.matched() == 1; }));
 
-  Node ground2(shared, "kl2");
   Inbox<std::string> peers_of_ground2;
+  Node ground2(shared, "kl2");
   ground2.on_peer([&](const PeerEvent& event) { peers_of_ground2.put(event.name); });
   Inbox<std::uint64_t> received2;
   const auto second = ground2.subscribe<messages::msg::Imu>(

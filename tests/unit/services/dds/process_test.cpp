@@ -231,8 +231,8 @@ TEST(Domain, Holds32Participants) {
   NodeSettings settings;
   settings.domain = lock.domain();
   settings.name = "first";
-  Node first(settings);
   Inbox<PeerEvent> events;
+  Node first(settings);
   first.on_peer([&](const PeerEvent& event) { events.put(event); });
   settings.name = "other";
   std::vector<std::unique_ptr<Node>> others;
