@@ -1,8 +1,10 @@
 #include "swiftlet/services/dds/participant_session.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -19,10 +21,42 @@ namespace {
 
 namespace fastdds = eprosima::fastdds::dds;
 
+// The numbers of this process's participants, each below that of the domain's ports. Left to itself, Fast DDS 2.9 counts them up
+// for as long as the process runs and rejoins, computes a port from each, also if it is given another, and ends the process
+// when that is above 65535. A number is part of the GUID: it is taken again only after all others were.
+class ParticipantNumbers {
+ public:
+  std::int32_t take(int domain) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const std::uint32_t count = discovery_ports(domain).count;
+    if (taken_.size() >= count) throw domain_is_full(domain);
+    do {
+      last_ = (last_ + 1) % static_cast<std::int32_t>(count);
+    } while (!taken_.insert(last_).second);
+    return last_;
+  }
+  void give_back(std::int32_t number) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    taken_.erase(number);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::int32_t last_ = -1;
+  std::set<std::int32_t> taken_;
+};
+
+ParticipantNumbers& numbers() {
+  static ParticipantNumbers numbers;
+  return numbers;
+}
+
 void end(fastdds::DomainParticipant* participant) {
+  const std::int32_t number = participant->get_qos().wire_protocol().participant_id;
   participant->set_listener(nullptr);
   participant->delete_contained_entities();
   fastdds::DomainParticipantFactory::get_instance()->delete_participant(participant);
+  numbers().give_back(number);
 }
 
 fastdds::DomainParticipant* create_participant(const NodeSettings& settings,
@@ -32,11 +66,14 @@ fastdds::DomainParticipant* create_participant(const NodeSettings& settings,
                                                std::uint32_t announced) {
   fastdds::DomainParticipantQos qos = participant_qos(settings, announced, guard);
   qos.user_data().data_vec(rtps::to_user_data(announcement));
+  const std::int32_t number = numbers().take(settings.domain);
+  qos.wire_protocol().participant_id = number;
   guard->listen(false);
   auto* const participant = fastdds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(settings.domain), qos, listener,
       fastdds::StatusMask::requested_incompatible_qos() << fastdds::StatusMask::offered_incompatible_qos());
   guard->listen(true);
+  if (participant == nullptr) numbers().give_back(number);
   return participant;
 }
 
