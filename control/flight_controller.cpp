@@ -1,5 +1,6 @@
 #include "swiftlet/control/flight_controller.hpp"
 
+#include <cstdio>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -9,7 +10,24 @@
 namespace swiftlet::control {
 namespace {
 
+// Limits for a battery of another number of cells would land a vehicle at once, or never.
+void check_battery_limits(const plant::Vehicle& vehicle, const ControlSettings& settings) {
+  const std::vector<double>& open_circuit_v = vehicle.battery.open_circuit_voltage_v;
+  const auto check = [&](const char* name, double voltage_v) {
+    if (voltage_v > open_circuit_v.front() && voltage_v < open_circuit_v.back()) return;
+    char text[192];
+    std::snprintf(text, sizeof text,
+                  "%s: failsafe.%s is %.2f, must be above %.2f and below %.2f, the battery of %s",
+                  settings.name.c_str(), name, voltage_v, open_circuit_v.front(), open_circuit_v.back(),
+                  vehicle.name.c_str());
+    throw std::invalid_argument(text);
+  };
+  check("low_battery_voltage_v", settings.failsafe.low_battery_voltage);
+  check("critical_battery_voltage_v", settings.failsafe.critical_battery_voltage);
+}
+
 ControlDesign flyable_design(const plant::Vehicle& vehicle, const ControlSettings& settings) {
+  check_battery_limits(vehicle, settings);
   ControlDesign gains = design(vehicle, settings);
   const std::vector<plant::Violation> unstable = unstable_loops(gains);
   if (unstable.empty()) return gains;
@@ -33,7 +51,7 @@ const plant::VehicleCommand& FlightController::on_imu(const plant::ImuSample& sa
 }
 
 const plant::VehicleCommand& FlightController::on_imu(const plant::ImuSample& sample, ClientInputs& clients) {
-  restart_if_clock_went_back(sample.stamp_ns);
+  restart_if_vehicle_did(sample.stamp_ns);
   return step(sample, observers_.predict(sample, laws_.rotor_state()), clients);
 }
 
@@ -43,7 +61,7 @@ const plant::VehicleCommand& FlightController::on_odometry(const plant::Odometry
 
 const plant::VehicleCommand& FlightController::on_odometry(const plant::OdometrySample& sample,
                                                            ClientInputs& clients) {
-  restart_if_clock_went_back(sample.stamp_ns);
+  restart_if_vehicle_did(sample.stamp_ns);
   const std::optional<plant::ImuSample> motion = observers_.predict(sample, laws_.rotor_state(), situation());
   if (motion) return step(*motion, true, clients);
   plant::ImuSample unusable;
@@ -52,9 +70,10 @@ const plant::VehicleCommand& FlightController::on_odometry(const plant::Odometry
   return step(unusable, false, clients);
 }
 
-// A restarted vehicle counts its time from 0 again. This is accepted while the rotors are off.
-void FlightController::restart_if_clock_went_back(std::int64_t stamp_ns) {
-  if (stamp_ns >= observers_.stamp_ns() || laws_.rotor_state() != plant::RotorState::kOff) return;
+// A clock that goes back is that of a restarted vehicle too, while the rotors are off.
+void FlightController::restart_if_vehicle_did(std::int64_t stamp_ns) {
+  const bool went_back = stamp_ns < observers_.stamp_ns() && laws_.rotor_state() == plant::RotorState::kOff;
+  if (!vehicle_restarted_ && !went_back) return;
   observers_.restart();
   resets_seen_ = 0;
   vehicle_fault_since_ns_ = 0;
@@ -65,7 +84,7 @@ void FlightController::restart_if_clock_went_back(std::int64_t stamp_ns) {
 const plant::VehicleCommand& FlightController::step(const plant::ImuSample& sample, bool usable,
                                                     ClientInputs& clients) {
   const double unusable_s = observers_.count_unusable(usable, sample.stamp_ns);
-  if (!usable && unusable_s < failsafe_.imu_timeout_s) {
+  if (!usable && unusable_s < failsafe_.imu_timeout_s && !vehicle_restarted_) {
     answer(clients);
     return answer_sample(sample);
   }
@@ -73,6 +92,7 @@ const plant::VehicleCommand& FlightController::step(const plant::ImuSample& samp
 
   // Supervision decides the mode, guidance generates the reference.
   const SupervisorInputs now = inputs();
+  vehicle_restarted_ = false;
   const ControlSetpoint setpoint = supervisor_.step(now, clients);
   resets_seen_ = now.estimate->resets;
   reference_ = setpoint.reference;
@@ -105,6 +125,8 @@ SupervisorInputs FlightController::inputs() const {
   inputs.pose_jumped = inputs.estimate->resets != resets_seen_;
   inputs.level = level_;
   inputs.accepted_levels = accepted_levels_;
+  inputs.vehicle_restarted = vehicle_restarted_;
+  inputs.obeyed = obeyed_;
   inputs.rotors_running = rotors_running_ || level_ == plant::ControlLevel::kActuators;
   if (vehicle_refusal_[0] != '\0') inputs.vehicle_refusal = vehicle_refusal_.data();
   if (level_ != plant::ControlLevel::kActuators && vehicle_fault_[0] != '\0') {

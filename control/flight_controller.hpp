@@ -66,9 +66,17 @@ class FlightController {
   // when they run: a vehicle with an arming of its own starts them later than it is told to. Without a call they run when told to.
   void set_rotors_running(bool running) { rotors_running_ = running; }
 
+  // The vehicle was restarted: the next sample is the first of its new run, whatever its stamp. Rotors that were to run are
+  // stopped until they are armed again.
+  void restart_vehicle() { vehicle_restarted_ = true; }
+
   // The command that the vehicle obeyed when it took the next sample, as it reports with it. Without a call, or without that report, it
   // is taken to obey the newest one: over a link with delay the lift that is learnt is then wrong.
-  void set_obeyed(const plant::ObeyedCommand& obeyed) { observers_.set_obeyed(obeyed); }
+  // of_this: it is one of this controller, or not reported. Arming is done when it is; if it is not within 1 s, it ends.
+  void set_obeyed(const plant::ObeyedCommand& obeyed, bool of_this = true) {
+    observers_.set_obeyed(obeyed);
+    obeyed_ = of_this;
+  }
 
   void on_pose(const plant::PoseSample& sample) { observers_.on_pose(sample, laws_.rotor_state()); }
   void on_battery(const plant::BatterySample& sample) { observers_.on_battery(sample); }
@@ -107,7 +115,7 @@ class FlightController {
   FlightController(const plant::Vehicle& vehicle, const ControlSettings& settings,
                    const ControlDesign& design);
 
-  void restart_if_clock_went_back(std::int64_t stamp_ns);
+  void restart_if_vehicle_did(std::int64_t stamp_ns);
   const plant::VehicleCommand& step(const plant::ImuSample& sample, bool usable, ClientInputs& clients);
   const plant::VehicleCommand& answer_sample(const plant::ImuSample& sample);
   Situation situation() const;
@@ -128,6 +136,8 @@ class FlightController {
   VehicleFault vehicle_refusal_{};
   std::int64_t vehicle_fault_since_ns_ = 0;  // of the first step with it
   bool rotors_running_ = true;               // as the vehicle reports
+  bool obeyed_ = true;                       // this controller, or not reported
+  bool vehicle_restarted_ = false;           // with the next sample
   std::uint32_t resets_seen_ = 0;            // resets of the estimate that the supervisor has processed
   std::int64_t saturated_ns_ = -1;           // of the last saturated command; -1: none
   Reference reference_;

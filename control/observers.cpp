@@ -93,6 +93,7 @@ void Observers::on_pose(const plant::PoseSample& sample, plant::RotorState rotor
 void Observers::on_battery(const plant::BatterySample& sample) {
   const bool plausible =
       sample.voltage_v >= plausible_supply_.min && sample.voltage_v <= plausible_supply_.max;
+  implausible_supply_v_ = plausible ? 0.0 : sample.voltage_v;
   if (!plausible) return;
   has_battery_ = true;
   battery_stamp_ns_ = sample.stamp_ns;
@@ -199,6 +200,9 @@ SupervisorInputs Observers::supervisor_inputs(const Situation& situation) const 
   inputs.brings_odometry = brings_odometry_;
   inputs.has_battery = has_battery_;
   inputs.supply_voltage_v = supply_voltage_v_;
+  inputs.implausible_supply_v = implausible_supply_v_;
+  inputs.least_supply_v = plausible_supply_.min;
+  inputs.most_supply_v = plausible_supply_.max;
   inputs.battery_age_s = math::seconds(estimate.stamp_ns - battery_stamp_ns_);
   inputs.vertical_specific_force_residual =
       -(specific_force_frd_.z() - estimate.accelerometer_bias.z()) - lift_now(situation);

@@ -118,6 +118,7 @@ class Observers {
   double imu_timeout_s_;
   double bandwidth_;  // rad/s, of the disturbance, in force
   Allocator::SupplyRange plausible_supply_;
+  double implausible_supply_v_ = 0.0;  // the last one, since the last plausible one; 0: none
 
   Estimator estimator_;
   OdometryMotion odometry_motion_;

@@ -43,6 +43,10 @@ Outcome imu_usable(const SupervisorContext& context) {
 Outcome battery_available(const SupervisorContext& context) {
   const SupervisorInputs& inputs = context.inputs;
   const FailsafeSettings& failsafe = context.settings.failsafe;
+  if (inputs.implausible_supply_v != 0.0) {
+    return refuse("battery voltage %.2f V is not one of this vehicle's battery, %.2f to %.2f V",
+                  inputs.implausible_supply_v, inputs.least_supply_v, inputs.most_supply_v);
+  }
   if (!inputs.has_battery) return refuse("no battery voltage received");
   if (inputs.battery_age_s > failsafe.battery_timeout_s) {
     return refuse("the last battery voltage is %.1f s old, the limit is %.1f s", inputs.battery_age_s,

@@ -16,6 +16,9 @@ constexpr double kContactTime_s = 0.2;
 constexpr double kContactLift = 1.0;  // m/s^2, vertical specific-force residual for kBlindContactTime_s
 constexpr double kBlindContactTime_s = 0.3;
 constexpr double kVehicleFaultTime_s = 0.5;
+constexpr double kObeyTime_s = 1.0;  // from arming until the vehicle reports that it obeys
+constexpr double kStandsBelow_m = 0.3;
+constexpr double kMostOfClimb = 0.9;
 constexpr double kRotorsStartTime_s =
     10.0;  // PX4 disarms after this time without a take-off (COM_DISARM_PRFLT)
 
@@ -45,6 +48,17 @@ bool touchdown_detected(SupervisorContext& context) {
   const double speed = at_ground ? std::abs(estimate.velocity_ned.z()) : estimate.velocity_ned.norm();
   return held(depth > kContactDepth_m && speed < kContactSpeed, state.contact_since_ns, state.now_ns,
               kContactTime_s);
+}
+
+// The reference has climbed, and the vehicle stands.
+bool no_lift_off(const SupervisorContext& context) {
+  const SupervisorState& state = context.state;
+  const GuidanceState& guidance = state.guidance;
+  if (guidance.airborne || guidance.phase != Phase::kPath) return false;
+  const double climb_m = guidance.ground_z_ned - guidance.climb_to_z_ned;
+  const double risen_m = guidance.ground_z_ned - guidance.path.at(state.now_ns).position_ned.z();
+  return risen_m > std::min(kStandsBelow_m, kMostOfClimb * climb_m) &&
+         context.estimate().velocity_ned.norm() < kContactSpeed;
 }
 
 bool outside_fence(const SupervisorContext& context) {
@@ -103,12 +117,15 @@ EventSet observe(SupervisorContext& context, double tip_over_cosine) {
   SupervisorState& state = context.state;
   const bool lost = pose_lost(inputs, failsafe);
   EventSet events;
+  events.add(Event::kVehicleRestarted, inputs.vehicle_restarted);
   events.add(Event::kImuUnusable, inputs.imu_unusable_s >= failsafe.imu_timeout_s);
   events.add(Event::kImuGap, inputs.imu_gap_s > failsafe.imu_gap_s);
   events.add(Event::kTippedOver, cosine_of_tilt(context.estimate().q_ned_from_frd) < tip_over_cosine);
   events.add(Event::kVehicleFault, inputs.vehicle_fault_s >= kVehicleFaultTime_s);
   events.add(Event::kRotorsNotRunning,
              !inputs.rotors_running && elapsed_s(state.mode_since_ns, state.now_ns) > kRotorsStartTime_s);
+  events.add(Event::kNotObeyed, !inputs.obeyed && elapsed_s(state.mode_since_ns, state.now_ns) > kObeyTime_s);
+  events.add(Event::kNoLiftOff, no_lift_off(context));
   events.add(Event::kImpact, state.guidance.phase != Phase::kGround &&
                                  inputs.specific_force_frd.norm() > failsafe.impact_acceleration);
   events.add(Event::kTakeoffInconsistent,

@@ -8,11 +8,14 @@ namespace {
 
 // In the order of Event.
 constexpr std::array kConditionNames = {
+    "vehicle restarted",
     "IMU samples unusable",
     "IMU samples were missing",
     "tipped over",
     "vehicle fault",
     "rotors not running",
+    "not obeyed",
+    "no lift-off",
     "impact",
     "take-off inconsistent",
     "pose jumped",

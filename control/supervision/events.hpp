@@ -10,11 +10,14 @@ namespace swiftlet::control {
 
 enum class Event : std::uint8_t {
   // Conditions.
-  kImuUnusable = 0,
+  kVehicleRestarted = 0,
+  kImuUnusable,
   kImuGap,
   kTippedOver,
   kVehicleFault,
   kRotorsNotRunning,
+  kNotObeyed,
+  kNoLiftOff,
   kImpact,
   kTakeoffInconsistent,
   kPoseJumped,

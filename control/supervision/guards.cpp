@@ -325,6 +325,8 @@ Outcome check_settings(const SupervisorContext& context) {
 namespace guards {
 
 const Guard kAlways{"", [](const SupervisorContext&) { return true; }};
+const Guard kAirborne{"off the ground",
+                      [](const SupervisorContext& context) { return context.state.guidance.airborne; }};
 const Guard kSpoolingUp{"on the ground",
                         [](const SupervisorContext& context) { return spooling_up(context); }};
 const Guard kLiftedOff{"lifted off", [](const SupervisorContext& context) { return !spooling_up(context); }};

@@ -19,6 +19,7 @@ struct Precondition {
 namespace guards {
 
 extern const Guard kAlways;
+extern const Guard kAirborne;
 extern const Guard kSpoolingUp;  // in take-off, still on the ground: ends at lift-off where that is observed
 extern const Guard kLiftedOff;   // the opposite
 extern const Guard kOnLandingItem;

@@ -16,7 +16,6 @@ bool is_of_mission(RequestKind kind) {
 
 bool is_done_when_accepted(RequestKind kind) {
   switch (kind) {
-    case RequestKind::kArm:
     case RequestKind::kDisarm:
     case RequestKind::kStop:
     case RequestKind::kMissionUpload:
@@ -58,6 +57,9 @@ void end_with_path(RequestStatus& request, Mode mode, const Transition& row) {
     case RequestKind::kSettings:
       if (rotors_off(mode)) succeed(request);
       return;
+    case RequestKind::kArm:  // it is done when the vehicle obeys
+      if (!rotors_off(mode)) return;
+      break;
     case RequestKind::kTakeoff:
       if (row.event == Event::kPlanFinished) return;  // the reference is at the end
       break;
@@ -195,9 +197,10 @@ void note_accepted(SupervisorContext& context) {
   added.key = request.key;
   added.kind = request.kind;
   added.state = RequestState::kAccepted;
+  const bool obeyed = request.kind == RequestKind::kArm && context.inputs.obeyed;
   const bool stands = request.kind == RequestKind::kLand && context.state.mode == Mode::kDisarmed;
   const bool at_once = request.kind == RequestKind::kSettings && rotors_off(context.state.mode);
-  if (is_done_when_accepted(request.kind) || stands || at_once) succeed(added);
+  if (is_done_when_accepted(request.kind) || obeyed || stands || at_once) succeed(added);
 }
 
 void end_requests(SupervisorContext& context, const Transition& row) {
@@ -217,6 +220,10 @@ void follow_requests(SupervisorContext& context, const Reference& reference, boo
     if (!is_under_way(request)) continue;
     const bool begins = request.state == RequestState::kAccepted;
     request.state = RequestState::kExecuting;
+    if (request.kind == RequestKind::kArm) {
+      if (context.inputs.obeyed) succeed(request);
+      continue;
+    }
     if (request.kind == RequestKind::kSettings) {
       if (!begins) follow_gains(request, context.inputs.gains_progress);
       continue;

@@ -41,7 +41,7 @@ struct SupervisorContext {
             state.guidance,
             inputs.lift_off_ns,
             inputs.command_delay_s,
-            inputs.rotors_running};
+            inputs.rotors_running && inputs.obeyed};
   }
 };
 

@@ -27,6 +27,9 @@ struct SupervisorInputs {
       false;  // after lift-off the poses do not follow the motion (estimation/takeoff_consistency.hpp)
   bool has_battery = false;  // the supply voltage was measured
   double supply_voltage_v = 0.0;
+  double implausible_supply_v = 0.0;  // measured instead, and not used; 0: none
+  double least_supply_v = 0.0;        // of the plausible ones of this vehicle
+  double most_supply_v = 0.0;
   double battery_age_s = 0.0;
   double vertical_specific_force_residual =
       0.0;  // m/s^2, upward specific force minus rotor thrust over mass; about
@@ -38,6 +41,8 @@ struct SupervisorInputs {
   const ControlGains* gains = nullptr;                           // in force; null: not known
   double gains_progress = 1.0;                                   // of their change
   double gains_changing_s = 0.0;                                 // time until they stop changing
+  bool vehicle_restarted = false;                                // since the last step
+  bool obeyed = true;  // false: the vehicle reports that it obeys no command, or another controller's
   // At which the vehicle is commanded, and which it accepts.
   plant::ControlLevel level = plant::ControlLevel::kActuators;
   plant::ControlLevels accepted_levels = plant::ControlLevel::kActuators;

@@ -27,6 +27,7 @@ constexpr ModeSet kLeavingGround{M::kTakingOff, M::kMission};
 // clang-format off
 const Transition kTransitions[] = {
   // Conditions that stop the rotors at once.
+  {kRotorsOn, E::kVehicleRestarted, guards::kAlways, preconditions::kNone, M::kStopped, R::kVehicleRestarted, actions::kNothing},
   {kRotorsOn, E::kImuUnusable, guards::kAlways, preconditions::kNone, M::kStopped, R::kImuUnusable, actions::kNothing},
   {kRotorsOn, E::kImuGap, guards::kAlways, preconditions::kNone, M::kStopped, R::kImuGap, actions::kNothing},
   {kRotorsOn, E::kTippedOver, guards::kAlways, preconditions::kNone, M::kStopped, R::kTippedOver, actions::kNothing},
@@ -40,6 +41,9 @@ const Transition kTransitions[] = {
   {kUnderWay, E::kImpact, guards::kAlways, preconditions::kNone, M::kStopped, R::kImpact, actions::kNothing},
 
   // Still on the ground: it stays there.
+  {{M::kArmed}, E::kNotObeyed, guards::kAlways, preconditions::kNone, M::kDisarmed, R::kNotObeyed, actions::kNothing},
+  {kLeavingGround, E::kNotObeyed, guards::kSpoolingUp, preconditions::kNone, M::kDisarmed, R::kNotObeyed, actions::kNothing},
+  {kLeavingGround, E::kNoLiftOff, guards::kAlways, preconditions::kNone, M::kDisarmed, R::kNoLiftOff, actions::kNothing},
   {{M::kArmed}, E::kPoseLost, guards::kAlways, preconditions::kNone, M::kDisarmed, R::kNoPose, actions::kNothing},
   {{M::kArmed}, E::kGroundLinkLost, guards::kLinkMatters, preconditions::kNone, M::kDisarmed, R::kGroundLinkLost, actions::kNothing},
   {kLeavingGround, E::kRotorsNotRunning, guards::kSpoolingUp, preconditions::kNone, M::kDisarmed, R::kRotorsNotRunning, actions::kNothing},
@@ -78,7 +82,7 @@ const Transition kTransitions[] = {
 
   // Normal end of a manoeuvre.
   {{M::kLanding, M::kMission}, E::kTouchdown, guards::kAlways, preconditions::kNone, M::kDisarmed, R::kLanded, actions::kNothing},
-  {{M::kTakingOff}, E::kPlanFinished, guards::kAlways, preconditions::kNone, M::kHolding, R::kTakeOffCompleted, actions::kNothing},
+  {{M::kTakingOff}, E::kPlanFinished, guards::kAirborne, preconditions::kNone, M::kHolding, R::kTakeOffCompleted, actions::kNothing},
   {{M::kMission}, E::kPlanFinished, guards::kAlways, preconditions::kNone, M::kHolding, R::kMissionCompleted, actions::kNothing},
   {{M::kTrajectory}, E::kPlanFinished, guards::kAlways, preconditions::kNone, M::kHolding, R::kTrajectoryCompleted, actions::kNothing},
 

@@ -34,6 +34,9 @@ constexpr std::array kReasonNames = {
     "mission paused",
     "the vehicle reports a fault",
     "the vehicle does not report rotors_running in vehicle_info",
+    "the vehicle was restarted",
+    "the vehicle does not obey control's commands",
+    "the vehicle did not leave the ground",
 };
 static_assert(kReasonNames.size() == kReasonCount);
 

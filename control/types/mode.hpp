@@ -55,8 +55,11 @@ enum class Reason : std::uint8_t {
   kMissionPaused = 26,
   kVehicleFault = 27,      // the vehicle reported a fault, such as that another flies it
   kRotorsNotRunning = 28,  // the vehicle did not report that its rotors run, and so did not take off
+  kVehicleRestarted = 29,
+  kNotObeyed = 30,  // the vehicle reported that it obeys no command of this controller
+  kNoLiftOff = 31,
 };
-constexpr int kReasonCount = static_cast<int>(Reason::kRotorsNotRunning) + 1;
+constexpr int kReasonCount = static_cast<int>(Reason::kNoLiftOff) + 1;
 const char* to_string(Reason reason);
 
 // What the vehicle reports as fault: a sentence with its terminating 0; empty: none.

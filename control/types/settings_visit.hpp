@@ -201,6 +201,8 @@ void visit(ArmingSettings& s, Visitor& v) {
   v({{"max_specific_force_error", "max_specific_force_error_m_s2"}, "m/s^2", above(0.0), "from gravity"},
     s.max_specific_force_error);
   v({{"max_rotor_speed", "max_rotor_speed_rad_s"}, "rad/s", above(0.0), "of any rotor"}, s.max_rotor_speed);
+  v({"max_vehicle_difference", "1", at_least(0.0), "of mass and battery from the vehicle file"},
+    s.max_vehicle_difference);
 }
 
 template <class Visitor>

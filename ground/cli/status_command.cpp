@@ -142,13 +142,15 @@ void print_control(const View& view) {
   }
 }
 
-void print(const View& view, const TopicRates& rates, const CommandOptions& options) {
+void print(const View& view, const TopicRates& rates, const CommandOptions& options,
+           const std::vector<std::string>& mismatches) {
   const auto now = Clock::now();
   const auto& control = view.control.message;
   const std::vector<Silence> silences = silences_of(view, now);
   for (const Silence& silence : silences)
     print_alarm(stdout, to_string(silence, std::chrono::system_clock::now()));
   if (control.source_conflict().size() > 0) print_alarm(stdout, control.source_conflict().c_str());
+  for (const std::string& mismatch : mismatches) print_alarm(stdout, mismatch);
   if (control.delay_near_margin())
     print_alarm(stdout, "the delay of the loop is near what makes it unstable");
   std::printf("%s in domain %d: %s%s (%s), %s\n", options.network.vehicle.c_str(), options.network.domain,
@@ -211,12 +213,13 @@ int show_status(const StatusOptions& options) {
               [](const View&) { return false; });
   const View after = client.view();
   const TopicRates rates = rates_between(before, after, options.watch_s);
+  const std::vector<std::string> mismatches = client.node().mismatches_seen();
   if (options.json) {
-    std::printf("%s\n", status_json(after, rates, options).dump(2).c_str());
+    std::printf("%s\n", status_json(after, rates, options, mismatches).dump(2).c_str());
   } else if (is_flown_by_autopilot(after)) {
     print_flown_by_autopilot(after, rates, options);
   } else {
-    print(after, rates, options);
+    print(after, rates, options, mismatches);
   }
   return io::kDone;
 }

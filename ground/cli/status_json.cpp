@@ -175,7 +175,8 @@ const char* state_name(const msg::RequestStatus& request) {
   return control::to_string(static_cast<control::RequestState>(request.state()));
 }
 
-Json status_json(const View& view, const TopicRates& rates, const CommandOptions& options) {
+Json status_json(const View& view, const TopicRates& rates, const CommandOptions& options,
+                 const std::vector<std::string>& mismatches) {
   const auto now = Clock::now();
   const auto& control = view.control.message;
   Json json;
@@ -183,6 +184,7 @@ Json status_json(const View& view, const TopicRates& rates, const CommandOptions
   json["domain"] = options.network.domain;
   json["silent"] = to_json(silences_of(view, now));
   json["source_conflict"] = control.source_conflict().c_str();
+  json["mismatches"] = mismatches;
   json["mode"] = mode_name(control.mode());
   json["reason"] = control.reason().c_str();
   json["airborne"] = control.airborne();

@@ -20,7 +20,9 @@ struct TopicRates {
 };
 
 // A value that is not known is null.
-nlohmann::ordered_json status_json(const View& view, const TopicRates& rates, const CommandOptions& options);
+// mismatches: of types, QoS and topic names, a sentence each.
+nlohmann::ordered_json status_json(const View& view, const TopicRates& rates, const CommandOptions& options,
+                                   const std::vector<std::string>& mismatches);
 
 std::string levels_text(std::uint8_t bits);  // the names of the LEVEL_* of VehicleInfo
 const char* role_name(const LiveController& controller);

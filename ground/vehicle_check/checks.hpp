@@ -198,6 +198,9 @@ constexpr Check kVoltage("battery.voltage", "V", 2.5, 52.0, "{value:.2f} V, {cha
                          Sentence("battery in mV or another unit: voltage_v is {value:.4g}", 52.0),
                          "the battery is empty, or its voltage is not measured: voltage_v is {value:.4g}");
 
+// Types, QoS and names of the topics, as discovery tells them.
+constexpr Check kEndpoint("topics.match", "", 0.0, 0.0, "another", "those of this program");
+
 // vehicle_info against the vehicle file.
 constexpr Check kWireVersion("vehicle_info.wire_version", "", 0.0, 0.0, "another", "that of this program");
 constexpr Check kRotorCount("vehicle_info.rotors", "rotors", 0.0, 0.0, "{value:.0f} rotors", "{most:.0f}",

@@ -249,7 +249,10 @@ CheckResults check_standing_vehicle(const VehicleRecording& recording, const pla
     return {
         missing("imu.lockstep", "the simulated vehicle runs in lockstep: start it in real time to check it")};
   const bool odometry = brings_odometry(recording);
-  CheckResults results = odometry ? check_odometry_stream(recording) : check_imu_stream(recording);
+  CheckResults results;
+  for (const std::string& mismatch : recording.mismatches)
+    results.push_back(judge_by(kEndpoint, 0.0, "{mismatch}", {{"mismatch", mismatch}}));
+  append(results, odometry ? check_odometry_stream(recording) : check_imu_stream(recording));
   const CheckResults imu = odometry ? check_odometry_at_rest(recording) : check_imu_at_rest(recording);
   append(results, imu);
   append(results, check_stream(kBatteryStream, recording.battery, recording));

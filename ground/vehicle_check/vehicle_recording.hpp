@@ -81,6 +81,7 @@ struct VehicleRecording {
   std::optional<VehicleDescription> description;  // vehicle_info
   std::vector<Received<bool>> rotors_running;     // vehicle_info
   std::vector<ClockExchange> clock;
+  std::vector<std::string> mismatches;  // of types, QoS and topic names, a sentence each
 
   double duration_s() const { return 1e-9 * static_cast<double>(end_ns - begin_ns); }
 };

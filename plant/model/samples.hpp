@@ -111,6 +111,7 @@ struct ObeyedCommand {
   bool any = false;       // a command was accepted since start-up; if false, the fields below are invalid
   std::uint32_t term = 0;
   std::int64_t stamp_ns = 0;  // stamp of the IMU sample that the command was computed from
+  std::uint32_t boot = 0;     // number of this start of the vehicle, valid without a report too; 0: not known
 };
 
 // Ground truth of the simulated vehicle. Only the motion capture simulator and recorders may read it.

@@ -7,6 +7,7 @@
 #include "swiftlet/services/control/failover.hpp"
 #include "swiftlet/services/control/lockstep_driver.hpp"
 #include "swiftlet/services/control/realtime_driver.hpp"
+#include "swiftlet/services/messages/vehicle_info.hpp"
 #include "swiftlet/services/messages/wire_version.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
@@ -44,6 +45,8 @@ ControlService::ControlService(const plant::Vehicle& vehicle, const control::Con
       commands_(node, vehicle.rotor_count()),
       rotor_count_(vehicle.rotor_count()),
       wanted_level_(level),
+      expected_vehicle_(vehicle),
+      max_vehicle_difference_(settings.arming.max_vehicle_difference),
       answers_(loop_, commands_, wake_, node, controller_, failover_priority, rotor_count_) {
   if (clock == runtime::Clock::kLockstep) {
     const std::uint32_t term = Failover(controller_, failover_priority).next_term();
@@ -69,7 +72,7 @@ void ControlService::subscribe_sensors(dds::Node& node) {
                                      note(pose_arrivals_, message);
                                      deliver(message, &Inputs::mocap_pose, loop_.pose, pose_faults_);
                                    },
-                                   delivery, dds::kSourceSilence)});
+                                   delivery, dds::OneSource{dds::kSourceSilence})});
   sensors_.push_back({"battery samples", node.subscribe<msg::Battery>(
                                              topics::kBattery,
                                              [this](const auto& message) {
@@ -77,7 +80,7 @@ void ControlService::subscribe_sensors(dds::Node& node) {
                                                deliver(message, &Inputs::battery, loop_.battery,
                                                        battery_faults_);
                                              },
-                                             Delivery::kShared, kBatterySourceSilence)});
+                                             Delivery::kShared, dds::OneSource{kBatterySourceSilence})});
   // Rotor speeds can be as many as IMU samples. In the shared thread they would hold up the requests.
   sensors_.push_back({"rotor speeds", node.subscribe<msg::RotorSpeeds>(
                                           topics::kRotorSpeeds,
@@ -85,7 +88,7 @@ void ControlService::subscribe_sensors(dds::Node& node) {
                                             deliver(message, &Inputs::rotor_speeds, loop_.rotor_speeds,
                                                     rotor_speed_faults_);
                                           },
-                                          delivery, dds::kSourceSilence)});
+                                          delivery, dds::OneSource{dds::kSourceSilence})});
 }
 
 void ControlService::subscribe(dds::Node& node) {
@@ -122,10 +125,13 @@ void ControlService::subscribe_motion(dds::Node& node, const messages::Topic<Mes
   const auto take = [this, kind](const Message& message) {
     if (!answered_samples_.admit(kind, runtime::monotonic_ns())) return;
     note(imu_arrivals_, message);
-    driver_->on_sample(vehicle_sample(message));
+    VehicleSample sample = vehicle_sample(message);
+    sample.of_another_process = std::exchange(of_another_process_, false);
+    driver_->on_sample(sample);
   };
   const Delivery delivery = clock_ == runtime::Clock::kLockstep ? Delivery::kShared : Delivery::kSamples;
-  sensors_.push_back({samples, node.subscribe<Message>(topic, take, delivery, dds::kSourceSilence)});
+  const dds::OneSource source{dds::kSourceSilence, [this] { of_another_process_ = true; }};
+  sensors_.push_back({samples, node.subscribe<Message>(topic, take, delivery, source)});
 }
 
 template <class Message>
@@ -184,9 +190,12 @@ void ControlService::run(const std::atomic<bool>& stop) {
 
 void ControlService::on_vehicle_info(const msg::VehicleInfo& message) {
   const std::string foreign = messages::fault_of_wire_version(message.wire_version(), "the vehicle");
-  if (!foreign.empty()) return refuse_vehicle(foreign);
-  if (refused_vehicle_) loop_.vehicle_refusal.put({});
-  refused_vehicle_ = false;
+  // Known: this is another process's message.
+  if (!foreign.empty() && reported_levels_.load(std::memory_order_relaxed) != 0) return;
+  refuse_vehicle(foreign.empty() ? messages::difference(message, expected_vehicle_, max_vehicle_difference_)
+                                 : foreign);
+  if (!foreign.empty()) return driver_->levels_known();
+  answers_.restarts().note_boot(message.boot());
   const std::uint8_t levels = plant::ControlLevels::from_bits(message.control_levels()).bits();
   if (reported_levels_.exchange(levels, std::memory_order_relaxed) != levels) wake_.post();
   control::VehicleFault fault{};
@@ -199,17 +208,15 @@ void ControlService::on_vehicle_info(const msg::VehicleInfo& message) {
   telemetry_.set_vehicle_fault(fault.data());
 }
 
-// The vehicle cannot be armed until a vehicle_info of this version comes; a flight goes on. In lockstep its samples are
-// answered, so that requests are.
+// The vehicle cannot be armed until a vehicle_info without such a fault comes; a flight goes on. In lockstep its samples are
+// answered, so that requests are. why: empty: it may be armed.
 void ControlService::refuse_vehicle(const std::string& why) {
-  if (reported_levels_.load(std::memory_order_relaxed) != 0)
-    return;  // known: this is another process's message
-  if (!refused_vehicle_) runtime::log_error("{}: it cannot be armed", why);
-  refused_vehicle_ = true;
+  if (why == vehicle_refusal_) return;
+  vehicle_refusal_ = why;
+  if (!why.empty()) runtime::log_error("{}: it cannot be armed", why);
   control::VehicleFault refusal{};
   std::copy_n(why.c_str(), std::min(why.size(), refusal.size() - 1), refusal.begin());
   loop_.vehicle_refusal.put(refusal);
-  driver_->levels_known();
 }
 
 // Opens the topic of the level before the inner loop commands at it.

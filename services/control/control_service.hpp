@@ -95,8 +95,11 @@ class ControlService {
   const int rotor_count_;
   const std::optional<plant::ControlLevel> wanted_level_;
   std::atomic<std::uint8_t> reported_levels_{0};  // in vehicle_info, ControlLevels::bits(); 0: not known yet
-  std::uint8_t adopted_levels_ = 0;               // used by the thread of run() only
-  bool refused_vehicle_ = false;                  // used by the thread of vehicle_info only
+  bool of_another_process_ = false;  // the next sample of the vehicle; used by the thread of these only
+  std::uint8_t adopted_levels_ = 0;  // used by the thread of run() only
+  const plant::Vehicle expected_vehicle_;
+  const double max_vehicle_difference_;
+  std::string vehicle_refusal_;  // used by the thread of vehicle_info only
   SampleAnswers answers_;
   std::unique_ptr<StepDriver> driver_;  // by the clock
   AnsweredSamples answered_samples_;

@@ -9,6 +9,7 @@ namespace {
 
 constexpr int kRotorSamples = 20;  // for the rotor observer to converge to the measured speeds
 constexpr std::int64_t kStandbyReportNs = 100'000'000;
+constexpr std::int64_t kOldFlightNs = 2'000'000'000;  // longer than another controller takes to see a restart
 
 }  // namespace
 
@@ -84,10 +85,28 @@ void InnerLoop::take_setpoint(Clients& clients) {
   if (setpoint.take(clients.setpoint) && role_ == Role::kActive) clients.inputs.setpoint = &clients.setpoint;
 }
 
+void InnerLoop::set_obeyed(const plant::ObeyedCommand& obeyed, std::uint32_t term) {
+  has_obeyed_ = has_obeyed_ || (obeyed.reported && obeyed.any);
+  controller_.set_obeyed(obeyed, !obeyed.reported || (obeyed.any && obeyed.term == term));
+}
+
+void InnerLoop::restart_vehicle(std::int64_t now_ns) {
+  has_obeyed_ = false;
+  restarted_ns_ = now_ns;
+  detecting_since_ns_ = kNotDetecting;
+  controller_.restart_vehicle();
+}
+
+// The active controller's report of a flight may still be on its way, and it may be dead.
+bool InnerLoop::predates_restart(const FailoverState& state) const {
+  if (has_obeyed_ || control::rotors_off(state.flight.supervisor.mode)) return false;
+  return last_arrival_ns_.load(std::memory_order_relaxed) - restarted_ns_ < kOldFlightNs;
+}
+
 void InnerLoop::follow(std::uint32_t term) {
   FailoverState newest;
   if (!failover_state.take(newest)) return;
-  if (newest.term == term) {
+  if (newest.term == term && !predates_restart(newest)) {
     controller_.adopt(newest.flight, newest.mission, newest.trajectory);
     const control::SupervisorState& state = newest.flight.supervisor;
     const bool has_mission = state.guidance.mission.state == control::MissionState::kUploaded ||

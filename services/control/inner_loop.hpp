@@ -87,7 +87,11 @@ class InnerLoop {
   boost::lockfree::spsc_queue<Snapshot, boost::lockfree::capacity<256>> snapshots;
 
   // What the vehicle reports with the sample of the next step; from the IMU thread.
-  void set_obeyed(const plant::ObeyedCommand& obeyed) { controller_.set_obeyed(obeyed); }
+  // term: of this controller's commands.
+  void set_obeyed(const plant::ObeyedCommand& obeyed, std::uint32_t term);
+  // The vehicle was restarted before the sample of the next step, which arrived at now_ns; from the IMU thread. A standby adopts
+  // no flight from before.
+  void restart_vehicle(std::int64_t now_ns);
 
   // Call both from the IMU thread. step() returns the command. finish() does the rest of the step after the
   // command is sent, and returns true if there is new output. now_ns, monotonic: arrival of the sample for
@@ -147,6 +151,7 @@ class InnerLoop {
   void return_outcomes(const Clients& clients, std::int64_t stamp_ns);
   void count(const control::Outcome& setpoint_outcome);
   void follow(std::uint32_t term);
+  bool predates_restart(const FailoverState& state) const;
   void detect_airborne(std::int64_t stamp_ns);
   void take_heartbeats();
   bool status_changed() const;
@@ -171,8 +176,10 @@ class InnerLoop {
   Role snapshot_role_ = Role::kStandby;
   SetpointTally setpoints_;
   std::int64_t detecting_since_ns_ = kNotDetecting;
-  int rotor_samples_ = 0;    // rotor speed samples since detection began
-  bool knows_plan_ = false;  // plan of the followed flight is stored here
+  bool has_obeyed_ = true;         // the vehicle, since its last restart
+  std::int64_t restarted_ns_ = 0;  // arrival of the first sample after it; 0: never
+  int rotor_samples_ = 0;          // rotor speed samples since detection began
+  bool knows_plan_ = false;        // plan of the followed flight is stored here
   bool report_due_ = false;
   std::int64_t reported_ns_ = 0;
   bool rotors_running_ = false;

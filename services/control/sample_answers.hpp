@@ -8,6 +8,7 @@
 #include "swiftlet/services/control/inner_loop.hpp"
 #include "swiftlet/services/control/loop_delay.hpp"
 #include "swiftlet/services/control/semaphore.hpp"
+#include "swiftlet/services/control/vehicle_restarts.hpp"
 #include "swiftlet/services/control/vehicle_sample.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/messages/convert.hpp"
@@ -35,6 +36,8 @@ class SampleAnswers {
   // are answered, and the same command is published again.
   void repeat();
 
+  VehicleRestarts& restarts() { return restarts_; }
+
  private:
   void publish_command();
   void finish();
@@ -45,6 +48,7 @@ class SampleAnswers {
   Semaphore& wake_;
   dds::Publisher<messages::msg::ControllerState> reports_;
   messages::ControllerReport report_;
+  VehicleRestarts restarts_;
   Authority authority_;  // of the last sample
   plant::VehicleCommand last_answer_;
 };

@@ -14,6 +14,7 @@ struct VehicleSample {
   std::variant<plant::ImuSample, plant::OdometrySample> motion;
   plant::ObeyedCommand obeyed;
   plant::LockstepInputs lockstep;
+  bool of_another_process = false;  // than the sample before
 
   std::int64_t stamp_ns() const {
     return std::visit([](const auto& sample) { return sample.stamp_ns; }, motion);

@@ -171,8 +171,7 @@ class DdsReader final : public Reader, private Endpoint, private fastdds::DataRe
 
   // One of the two callbacks is given.
   DdsReader(std::shared_ptr<Impl> node, std::string vehicle, const messages::Topic<T>& topic,
-            Callback callback, RawCallback raw_callback, Delivery delivery,
-            std::optional<std::chrono::milliseconds> source_silence,
+            Callback callback, RawCallback raw_callback, Delivery delivery, std::optional<OneSource> source,
             std::function<void(const std::string&)> on_fault)
       : node_(std::move(node)),
         vehicle_(std::move(vehicle)),
@@ -184,7 +183,10 @@ class DdsReader final : public Reader, private Endpoint, private fastdds::DataRe
         callback_(std::move(callback)),
         raw_callback_(std::move(raw_callback)) {
     sample_.raw = raw_callback_ != nullptr;
-    if (source_silence) source_.emplace(*source_silence);
+    if (source) {
+      source_.emplace(source->silence);
+      on_next_source_ = std::move(source->on_next);
+    }
     node_->add(this);
   }
   ~DdsReader() override { node_->remove(this); }
@@ -279,7 +281,11 @@ class DdsReader final : public Reader, private Endpoint, private fastdds::DataRe
   bool is_from_source(const fastdds::SampleInfo& info) {
     const SenderId sender{info.sample_identity.writer_guid().guidPrefix};
     const auto now = std::chrono::steady_clock::now();
-    if (source_->accepts(sender, now)) return true;
+    const std::optional<SenderId> before = source_->id();
+    if (source_->accepts(sender, now)) {
+      if (on_next_source_ && before && !(*before == sender)) on_next_source_();
+      return true;
+    }
     const std::unique_lock<std::mutex> lock(conflict_mutex_, std::try_to_lock);
     if (lock) conflict_ = Conflict{*source_->id(), sender, now};
     return false;
@@ -299,6 +305,7 @@ class DdsReader final : public Reader, private Endpoint, private fastdds::DataRe
   Callback callback_;
   RawCallback raw_callback_;
   std::optional<SingleSource<SenderId>> source_;
+  std::function<void()> on_next_source_;
   ReceivedSample<T> sample_;
   fastrtps::GuidPrefix_t own_participant_;
   bool open_ = false;
@@ -315,9 +322,9 @@ Publisher<T> Node::publish(const messages::Topic<T>& topic) {
 
 template <class T>
 Subscription Node::subscribe(const messages::Topic<T>& topic, std::function<void(const T&)> callback,
-                             Delivery delivery, std::optional<std::chrono::milliseconds> source_silence) {
+                             Delivery delivery, std::optional<OneSource> source) {
   return Subscription(std::make_unique<detail::DdsReader<Participant::Impl, T>>(
-      participant_.impl_, vehicle_, topic, std::move(callback), nullptr, delivery, source_silence,
+      participant_.impl_, vehicle_, topic, std::move(callback), nullptr, delivery, std::move(source),
       on_fault_));
 }
 

@@ -276,7 +276,8 @@ class DiscoveryListener : public eprosima::fastdds::dds::DomainParticipantListen
             info.deadline.period,
             info.liveliness.kind,
             info.liveliness.lease_duration,
-            info.disable_positive_acks.enabled};
+            info.disable_positive_acks.enabled,
+            info.type_name.c_str()};
   }
 
   void on_participant_discovery(Participant*, fastrtps::ParticipantDiscoveryStatus status,
@@ -306,15 +307,17 @@ class DiscoveryListener : public eprosima::fastdds::dds::DomainParticipantListen
   using DomainParticipantListener::on_publisher_discovery;
   using DomainParticipantListener::on_subscriber_discovery;
 
-  template <class Qos>
-  static EndpointQos qos_of(const Qos& qos) {
+  template <class Proxy>
+  static EndpointQos qos_of(const Proxy& info) {
+    const auto& qos = info.m_qos;
     return {qos.m_reliability.kind,
             qos.m_durability.kind,
             qos.m_ownership.kind,
             qos.m_deadline.period,
             qos.m_liveliness.kind,
             qos.m_liveliness.lease_duration,
-            qos.m_disablePositiveACKs.enabled};
+            qos.m_disablePositiveACKs.enabled,
+            info.typeName().c_str()};
   }
 
   void on_participant_discovery(Participant*, fastrtps::ParticipantDiscoveryInfo&& found) final {
@@ -330,7 +333,7 @@ class DiscoveryListener : public eprosima::fastdds::dds::DomainParticipantListen
     if (is_own(own, info.guid())) return;
     using Info = fastrtps::WriterDiscoveryInfo;
     if (found.status == Info::DISCOVERED_WRITER)
-      on_writer(info.guid(), info.topicName().c_str(), qos_of(info.m_qos));
+      on_writer(info.guid(), info.topicName().c_str(), qos_of(info));
     if (found.status == Info::REMOVED_WRITER) on_writer_gone(info.guid());
   }
   void on_subscriber_discovery(Participant* own, fastrtps::ReaderDiscoveryInfo&& found) final {
@@ -338,7 +341,7 @@ class DiscoveryListener : public eprosima::fastdds::dds::DomainParticipantListen
     if (is_own(own, info.guid())) return;
     using Info = fastrtps::ReaderDiscoveryInfo;
     if (found.status == Info::DISCOVERED_READER)
-      on_reader(info.guid(), info.topicName().c_str(), qos_of(info.m_qos));
+      on_reader(info.guid(), info.topicName().c_str(), qos_of(info));
     if (found.status == Info::REMOVED_READER) on_reader_gone(info.guid());
   }
 #endif

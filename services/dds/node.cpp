@@ -63,7 +63,7 @@ Node::~Node() {
 
 std::vector<std::string> Participant::topics_seen() const { return impl_->topics_seen(); }
 std::vector<ProcessIdentity> Participant::processes_seen() const { return impl_->processes_seen(); }
-std::vector<std::string> Participant::qos_conflicts_seen() const { return impl_->qos_conflicts_seen(); }
+std::vector<std::string> Participant::mismatches_seen() const { return impl_->mismatches_seen(); }
 
 std::optional<std::string> Participant::become_source(const std::vector<std::string>& excluded,
                                                       std::function<void(const std::string&)> on_lost) {
@@ -79,13 +79,22 @@ void Node::on_peer(std::function<void(const PeerEvent&)> callback) {
   participant_.impl_->listen(this, vehicle_, std::move(callback));
 }
 
+std::vector<std::string> Node::mismatches_seen() const {
+  std::vector<std::string> all = participant_.mismatches_seen();
+  all.erase(
+      std::remove_if(all.begin(), all.end(),
+                     [&](const std::string& one) { return one.find(vehicle_ + "/") == std::string::npos; }),
+      all.end());
+  return all;
+}
+
 void Node::rejoin() { participant_.impl_->rejoin(); }
 
 #define SWIFTLET_INSTANTIATE(Name, ...)                                                               \
   template Publisher<messages::msg::Name> Node::publish(const messages::Topic<messages::msg::Name>&); \
   template Subscription Node::subscribe(const messages::Topic<messages::msg::Name>&,                  \
                                         std::function<void(const messages::msg::Name&)>, Delivery,    \
-                                        std::optional<std::chrono::milliseconds>);                    \
+                                        std::optional<OneSource>);                                    \
   template Subscription Node::subscribe_raw(const messages::Topic<messages::msg::Name>&,              \
                                             std::function<void(const RawSample&)>, Delivery);
 SWIFTLET_FOR_EACH_MESSAGE(SWIFTLET_INSTANTIATE)

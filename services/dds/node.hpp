@@ -192,9 +192,9 @@ class Participant {
   std::vector<std::string> topics_seen() const;
   // The other processes of the domain that are known now, of any vehicle.
   std::vector<ProcessIdentity> processes_seen() const;
-  // A sentence for each two of the other known processes that do not receive each other's topic,
-  // "rt/kl1/imu: control (...) does not receive from plant (...): reliability (...)".
-  std::vector<std::string> qos_conflicts_seen() const;
+  // A sentence for each two of the other known processes that do not receive each other's topic, "rt/kl1/imu: control (...) does
+  // not receive from plant (...): reliability (...)", and for each topic of Swiftlet that one has with another type, or without "rt/".
+  std::vector<std::string> mismatches_seen() const;
 
   // Checks that this process is the only source of settings.source_of for the vehicles that it serves, and that
   // none of `excluded` has a source either. Blocks for kSourceSearchTime, or kLongSourceSearchTime.
@@ -210,6 +210,13 @@ class Participant {
   struct Impl;
   explicit Participant(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
   std::shared_ptr<Impl> impl_;
+};
+
+// Of the processes that publish a topic one is heard: that which was first, until it has been silent for this time.
+struct OneSource {
+  std::chrono::milliseconds silence;
+  std::function<void()> on_next =
+      {};  // called before the first sample of the next one, in the thread of the callback
 };
 
 class Node {
@@ -230,12 +237,12 @@ class Node {
   Publisher<T> publish(const messages::Topic<T>& topic);
 
   // The callback runs in the thread that received the sample, once per sample, never concurrently. It must
-  // not block. What this participant publishes itself is not delivered. source_silence: if given, the samples of only one process are delivered, that which was heard
-  // first, until it has been silent for this time. Throws std::runtime_error.
+  // not block. What this participant publishes itself is not delivered. source: if given, the samples of only one process are.
+  // Throws std::runtime_error.
   template <class T>
   Subscription subscribe(const messages::Topic<T>& topic, std::function<void(const T&)> callback,
                          Delivery delivery = Delivery::kShared,
-                         std::optional<std::chrono::milliseconds> source_silence = std::nullopt);
+                         std::optional<OneSource> source = std::nullopt);
 
   // As subscribe(), for recorders.
   template <class T>
@@ -243,6 +250,8 @@ class Node {
                              Delivery delivery = Delivery::kShared);
 
   std::vector<std::string> topics_seen() const { return participant_.topics_seen(); }
+  // Those of the vehicle.
+  std::vector<std::string> mismatches_seen() const;
 
   // As Participant::become_source(), for settings.source_of alone. Throws std::logic_error if that is empty.
   std::optional<std::string> become_source(std::function<void(const std::string&)> on_lost = {});

@@ -50,7 +50,7 @@ struct Participant::Impl final : public DiscoveryListener {
 
   std::vector<std::string> topics_seen() const;
   std::vector<ProcessIdentity> processes_seen() const;
-  std::vector<std::string> qos_conflicts_seen() const;
+  std::vector<std::string> mismatches_seen() const;
   ProcessIdentity identity_of(const fastrtps::GuidPrefix_t& participant) const;
   // node: key of the callback; an empty callback removes it. Calls it at once for known peers of the vehicle.
   void listen(const Node* node, const std::string& vehicle, std::function<void(const PeerEvent&)> callback);

@@ -1,5 +1,6 @@
 // What a participant knows of the other processes of its domain.
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -11,6 +12,7 @@
 #include "swiftlet/io/text.hpp"
 #include "swiftlet/services/dds/participant.hpp"
 #include "swiftlet/services/dds/qos/qos_conflicts.hpp"
+#include "swiftlet/services/messages/topic_table.hpp"
 #include "swiftlet/services/messages/vehicle_names.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 
@@ -25,6 +27,31 @@ std::string named(const std::string& name, const fastrtps::GuidPrefix_t& partici
 
 fastrtps::GUID_t participant_guid(const fastrtps::GuidPrefix_t& participant) {
   return {participant, fastrtps::c_EntityId_RTPSParticipant};
+}
+
+// By the last part of their names: "imu", "swiftlet_msgs::msg::dds_::Imu_".
+std::map<std::string, std::string> types_of_topics() {
+  std::map<std::string, std::string> types;
+#define SWIFTLET_NOTE_TOPIC(Type, name, ...) types[name] = "swiftlet_msgs::msg::dds_::" #Type "_";
+#define SWIFTLET_NOTE_TOPIC_OF(Type, Constant, ...) SWIFTLET_NOTE_TOPIC(Type, __VA_ARGS__)
+  SWIFTLET_TOPICS(SWIFTLET_NOTE_TOPIC, SWIFTLET_NOTE_TOPIC_OF)
+#undef SWIFTLET_NOTE_TOPIC
+#undef SWIFTLET_NOTE_TOPIC_OF
+  return types;
+}
+
+// What is wrong with an endpoint of a topic of Swiftlet, "has the type X, expected Y"; empty: nothing, or it is another topic.
+std::string fault_of_endpoint(const std::string& topic, const std::string& type) {
+  static const std::map<std::string, std::string> kTypes = types_of_topics();
+  const bool is_of_ros = topic.rfind("rt/", 0) == 0;
+  const std::string name = is_of_ros ? topic.substr(3) : topic;
+  const std::size_t slash = name.find('/');
+  if (slash == std::string::npos || !messages::fault_of_vehicle_name(name.substr(0, slash)).empty())
+    return {};
+  const auto known = kTypes.find(name.substr(slash + 1));
+  if (known == kTypes.end()) return {};
+  if (!is_of_ros) return "has it without rt/, expected rt/" + topic;
+  return type.empty() || type == known->second ? "" : "has it as " + type + ", expected " + known->second;
 }
 
 // Anybody may announce itself under any name: logs and terminals get no control characters of it.
@@ -51,7 +78,7 @@ std::vector<ProcessIdentity> Participant::Impl::processes_seen() const {
   return processes;
 }
 
-std::vector<std::string> Participant::Impl::qos_conflicts_seen() const {
+std::vector<std::string> Participant::Impl::mismatches_seen() const {
   const runtime::RealtimeScope scope = realtime();
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   const auto process = [this](const Guid& guid) {
@@ -66,6 +93,12 @@ std::vector<std::string> Participant::Impl::qos_conflicts_seen() const {
       if (policies.empty()) continue;
       sentences.push_back(writer.topic + ": " + process(reader_guid) + " does not receive from " +
                           process(writer_guid) + ": " + policies);
+    }
+  }
+  for (const RemoteEndpoints* const endpoints : {&writers_, &readers_}) {
+    for (const auto& [guid, endpoint] : *endpoints) {
+      const std::string fault = fault_of_endpoint(endpoint.topic, endpoint.qos.type);
+      if (!fault.empty()) sentences.push_back(endpoint.topic + ": " + process(guid) + " " + fault);
     }
   }
   return sentences;

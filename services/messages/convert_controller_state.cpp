@@ -93,7 +93,13 @@ static_assert(static_cast<std::uint8_t>(control::Reason::kVehicleFault) ==
               msg::ControlStatus_Constants::REASON_VEHICLE_FAULT);
 static_assert(static_cast<std::uint8_t>(control::Reason::kRotorsNotRunning) ==
               msg::ControlStatus_Constants::REASON_ROTORS_NOT_RUNNING);
-static_assert(control::kReasonCount == 29);
+static_assert(static_cast<std::uint8_t>(control::Reason::kVehicleRestarted) ==
+              msg::ControlStatus_Constants::REASON_VEHICLE_RESTARTED);
+static_assert(static_cast<std::uint8_t>(control::Reason::kNotObeyed) ==
+              msg::ControlStatus_Constants::REASON_NOT_OBEYED);
+static_assert(static_cast<std::uint8_t>(control::Reason::kNoLiftOff) ==
+              msg::ControlStatus_Constants::REASON_NO_LIFT_OFF);
+static_assert(control::kReasonCount == 32);
 static_assert(static_cast<std::uint8_t>(control::Phase::kGround) ==
               msg::ControllerState_Constants::PHASE_ON_GROUND);
 static_assert(static_cast<std::uint8_t>(control::Phase::kSpoolUp) ==

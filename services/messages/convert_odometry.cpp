@@ -10,7 +10,7 @@ using namespace wire;
 
 plant::ObeyedCommand from_message(const msg::ObeyedCommand& in) {
   using namespace msg::ObeyedCommand_Constants;
-  return {in.state() != UNREPORTED, in.state() == OBEYED, in.term(), in.stamp_ns()};
+  return {in.state() != UNREPORTED, in.state() == OBEYED, in.term(), in.stamp_ns(), in.boot()};
 }
 
 msg::ObeyedCommand to_message(const plant::ObeyedCommand& in) {
@@ -19,6 +19,7 @@ msg::ObeyedCommand to_message(const plant::ObeyedCommand& in) {
   out.state(!in.reported ? UNREPORTED : in.any ? OBEYED : NONE);
   out.term(in.term);
   out.stamp_ns(in.stamp_ns);
+  out.boot(in.boot);
   return out;
 }
 

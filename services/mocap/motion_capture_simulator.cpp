@@ -20,7 +20,7 @@ MotionCaptureSimulator::MotionCaptureSimulator(const dds::Participant& participa
   dds::log_peers(node_);
   truth_ = node_.subscribe<messages::msg::GroundTruth>(
       messages::topics::kGroundTruth, [this](const auto& message) { on_truth(message); },
-      dds::Delivery::kSamples, dds::kSourceSilence);
+      dds::Delivery::kSamples, dds::OneSource{dds::kSourceSilence});
 }
 
 void MotionCaptureSimulator::log_end() {

@@ -45,7 +45,7 @@ LockstepLoop::LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSet
                                  [this](const ReceivedCommand& received) { on_command(received); });
   poses_ = node.subscribe<messages::msg::MocapPose>(
       messages::topics::kMocapPose, [this](const auto& message) { on_pose(message); }, dds::Delivery::kShared,
-      dds::kSourceSilence);
+      dds::OneSource{dds::kSourceSilence});
   if (lockstep.paused) {
     clock_ = node.subscribe<messages::msg::SimulationClock>(
         messages::topics::kSimulationClock, [this](const auto& message) { on_clock(message); });

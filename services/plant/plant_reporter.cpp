@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/services/messages/wire_version.hpp"
+#include "swiftlet/services/messages/vehicle_info.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
@@ -15,12 +15,9 @@ constexpr std::int64_t kTroublePeriodNs = 10'000'000'000;
 messages::msg::VehicleInfo describe(const plant::Vehicle& vehicle, const plant::SimulationSettings& settings,
                                     const std::string& autopilot) {
   messages::msg::VehicleInfo info;
-  info.wire_version(messages::kWireVersion);
-  info.name() = vehicle.name;
+  messages::describe(vehicle, info);
   info.simulated(true);
   info.autopilot() = autopilot;
-  info.rotor_count(static_cast<std::uint8_t>(vehicle.rotor_count()));
-  info.mass_kg(vehicle.mass_kg);
   info.imu_rate_hz(settings.imu.rate_hz);
   info.control_levels(settings.control_levels.bits());
   return info;
@@ -28,6 +25,7 @@ messages::msg::VehicleInfo describe(const plant::Vehicle& vehicle, const plant::
 
 void update(messages::msg::VehicleInfo& info, const PlantReport& report, const std::string& fault) {
   info.stamp_ns(report.stamp_ns);
+  info.boot(report.boot);
   info.sequence_number(info.sequence_number() + 1);
   info.rotors_running(report.rotors_running);
   info.paused(report.paused);

@@ -6,6 +6,7 @@
 
 #include "swiftlet/plant/simulation/streams.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
+#include "swiftlet/services/runtime/random_id.hpp"
 
 namespace swiftlet::services {
 namespace {
@@ -52,6 +53,7 @@ SimulatedVehicle::SimulatedVehicle(const plant::Vehicle& vehicle, const plant::S
       firmware_(vehicle, settings),
       answers_(plant::period_ns(settings.imu.rate_hz)),
       ground_truth_(node.publish(kGroundTruth)) {
+  report_.boot = runtime::boot_number();
   if (settings.odometry.source != plant::OdometrySource::kNone) odometry_.emplace(settings, seed);
   inform_firmware();
   if (truth_only) return;
@@ -115,6 +117,12 @@ void SimulatedVehicle::step() {
   inform_firmware();
 }
 
+plant::ObeyedCommand SimulatedVehicle::obeyed() const {
+  plant::ObeyedCommand obeyed = firmware_.obeyed();
+  obeyed.boot = report_.boot;
+  return obeyed;
+}
+
 void SimulatedVehicle::inform_firmware() {
   odometry_sample_.reset();
   if (simulation_.imu()) firmware_.on_imu(*simulation_.imu());
@@ -123,12 +131,12 @@ void SimulatedVehicle::inform_firmware() {
     firmware_.on_odometry(*odometry_sample_);
   }
   if (simulation_.battery()) firmware_.on_battery(*simulation_.battery());
-  if (telemetry_path_.has_radio()) telemetry_path_.collect(simulation_, firmware_.obeyed(), odometry_sample_);
+  if (telemetry_path_.has_radio()) telemetry_path_.collect(simulation_, obeyed(), odometry_sample_);
 }
 
 // Without a radio, the samples of this stamp are those that arrive.
 plant::TelemetryPacket SimulatedVehicle::present_samples() const {
-  return {{}, *simulation_.imu(), odometry_sample_, firmware_.obeyed()};
+  return {{}, *simulation_.imu(), odometry_sample_, obeyed()};
 }
 
 void SimulatedVehicle::prepare_imu(const plant::TelemetryPacket& packet) {

@@ -23,6 +23,7 @@ namespace swiftlet::services {
 // The loop's report to the rest of the process.
 struct PlantReport {
   std::int64_t stamp_ns = 0;
+  std::uint32_t boot = 0;  // as plant::ObeyedCommand::boot
   bool rotors_running = false;
   bool timed_out = false;      // command time-out: the vehicle stopped its rotors
   std::uint64_t outdated = 0;  // times that commands ceased while the rotors ran
@@ -103,6 +104,7 @@ class SimulatedVehicle {
   void prepare_imu(const plant::TelemetryPacket& packet);
   void publish_imu_in_order(const plant::TelemetryPacket& packet);
   plant::TelemetryPacket present_samples() const;
+  plant::ObeyedCommand obeyed() const;
   void inform_firmware();
   void refuse(const messages::Fault& fault);
   void publish_truth();

@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "swiftlet/services/dds/reach.hpp"
-#include "swiftlet/services/messages/wire_version.hpp"
+#include "swiftlet/services/messages/vehicle_info.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
@@ -44,10 +44,8 @@ Px4Bridge::Px4Bridge(const dds::Participant& participant, const std::string& nam
   } else {
     vehicle_odometry_ = node_.publish(topics::kVehicleOdometry);
   }
-  info_.wire_version(messages::kWireVersion);
-  info_.name() = settings.vehicle.name;
-  info_.rotor_count(static_cast<std::uint8_t>(settings.vehicle.rotor_count()));
-  info_.mass_kg(settings.vehicle.mass_kg);
+  messages::describe(settings.vehicle, info_);
+  info_.boot(settings.boot);
   info_.imu_rate_hz(kImuRateHz);
   info_.control_levels(settings.levels.bits());
   dds::log_peers(node_);
@@ -77,7 +75,7 @@ void Px4Bridge::subscribe() {
   }));
   add(node_.subscribe<messages::msg::MocapPose>(
       topics::kMocapPose, [this](const auto& message) { on_pose(message); }, Delivery::kSensors,
-      dds::kSourceSilence));
+      dds::OneSource{dds::kSourceSilence}));
   // Control sends at one level at a time.
   if (settings_.levels.has(plant::ControlLevel::kRates))
     add(node_.subscribe<messages::msg::RatesSetpoint>(

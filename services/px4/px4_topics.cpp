@@ -32,7 +32,7 @@ namespace swiftlet::dds {
   template dds::Publisher<px4::msg::Name> dds::Node::publish(const messages::Topic<px4::msg::Name>&);        \
   template dds::Subscription dds::Node::subscribe(const messages::Topic<px4::msg::Name>&,                    \
                                                   std::function<void(const px4::msg::Name&)>, dds::Delivery, \
-                                                  std::optional<std::chrono::milliseconds>);
+                                                  std::optional<dds::OneSource>);
 SWIFTLET_FOR_EACH_MESSAGE(SWIFTLET_INSTANTIATE)
 #undef SWIFTLET_INSTANTIATE
 

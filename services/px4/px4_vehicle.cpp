@@ -42,7 +42,7 @@ std::optional<messages::msg::Imu> Px4Vehicle::on_sensors(const msg::SensorCombin
   sample.stamp_ns = clock_.to_host(message.timestamp(), now_ns);
   sample.sequence = ++samples_;
   messages::msg::Imu out = messages::to_message(sample);
-  out.obeyed(messages::to_message(watchdog_.obeyed()));
+  out.obeyed(messages::to_message(obeyed()));
   return out;
 }
 
@@ -60,7 +60,7 @@ std::optional<messages::msg::VehicleOdometry> Px4Vehicle::on_odometry(const msg:
   estimate_.sequence = ++samples_;
   estimate_.fuses_mocap = vision_.passed() > 0;
   messages::msg::VehicleOdometry out = messages::to_message(estimate_);
-  out.obeyed(messages::to_message(watchdog_.obeyed()));
+  out.obeyed(messages::to_message(obeyed()));
   return out;
 }
 
@@ -75,6 +75,12 @@ std::optional<messages::msg::Battery> Px4Vehicle::on_battery(const msg::BatteryS
   sample.stamp_ns = now_ns;
   sample.sequence = ++battery_samples_;
   return messages::to_message(sample);
+}
+
+plant::ObeyedCommand Px4Vehicle::obeyed() const {
+  plant::ObeyedCommand obeyed = watchdog_.obeyed();
+  obeyed.boot = settings_.boot;
+  return obeyed;
 }
 
 void Px4Vehicle::on_status(const msg::VehicleStatus& message, std::int64_t now_ns) {

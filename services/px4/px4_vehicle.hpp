@@ -19,6 +19,7 @@
 #include "swiftlet/services/px4/translate.hpp"
 #include "swiftlet/services/px4/versions.hpp"
 #include "swiftlet/services/px4/vision.hpp"
+#include "swiftlet/services/runtime/random_id.hpp"
 
 namespace swiftlet::px4 {
 
@@ -32,6 +33,7 @@ struct Px4VehicleSettings {
   double control_silence_s = 0.2;
   std::optional<double> hover_throttle;
   VisionSettings vision;
+  std::uint32_t boot = runtime::boot_number();
 };
 
 // What PX4 is sent for a command of control: the proof of life, and the setpoint unless the rotors are off.
@@ -81,6 +83,7 @@ class Px4Vehicle {
   plant::CommandFault refusal() const { return refusal_; }  // of the last of them
 
  private:
+  plant::ObeyedCommand obeyed() const;
   OffboardStream stream(const plant::VehicleCommand& command);
   OffboardInputs inputs(std::int64_t now_ns) const;
   std::string arming_fault(std::int64_t now_ns) const;

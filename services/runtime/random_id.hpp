@@ -12,4 +12,7 @@ inline std::uint64_t random_id() {
   return static_cast<std::uint64_t>(device()) << 32U | device();
 }
 
+// The `boot` of a vehicle that starts now; never 0.
+inline std::uint32_t boot_number() { return static_cast<std::uint32_t>(random_id()) | 1U; }
+
 }  // namespace swiftlet::runtime

@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/services/messages/wire_version.hpp"
+#include "swiftlet/services/messages/vehicle_info.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
@@ -27,14 +27,13 @@ std::string quantiles(const runtime::LatencyHistogram& times) {
 
 }  // namespace
 
-LinkReporter::LinkReporter(dds::Node& node, const plant::Vehicle& vehicle, std::string link)
+LinkReporter::LinkReporter(dds::Node& node, const plant::Vehicle& vehicle, std::string link,
+                           std::uint32_t boot)
     : link_(std::move(link)),
       rotor_count_(vehicle.rotor_count()),
       publisher_(node.publish(messages::topics::kVehicleInfo)) {
-  info_.wire_version(messages::kWireVersion);
-  info_.name() = vehicle.name;
-  info_.rotor_count(static_cast<std::uint8_t>(rotor_count_));
-  info_.mass_kg(vehicle.mass_kg);
+  messages::describe(vehicle, info_);
+  info_.boot(boot);
 }
 
 void LinkReporter::update(const LinkMeasurements& measurements) {

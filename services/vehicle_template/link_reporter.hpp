@@ -13,7 +13,7 @@ namespace swiftlet::services {
 class LinkReporter {
  public:
   // link: as the user named it.
-  LinkReporter(dds::Node& node, const plant::Vehicle& vehicle, std::string link);
+  LinkReporter(dds::Node& node, const plant::Vehicle& vehicle, std::string link, std::uint32_t boot);
 
   // Logs what has changed.
   void update(const LinkMeasurements& measurements);

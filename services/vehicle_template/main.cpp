@@ -31,6 +31,7 @@
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "swiftlet/services/runtime/process.hpp"
+#include "swiftlet/services/runtime/random_id.hpp"
 #include "swiftlet/services/runtime/stop_signal.hpp"
 #include "swiftlet/services/runtime/version.hpp"
 #include "swiftlet/services/vehicle_template/link_reporter.hpp"
@@ -60,7 +61,7 @@ class Vehicle final : public runtime::HostedVehicle {
         imu_(node_.publish(messages::topics::kImu)),
         rotor_speeds_(node_.publish(messages::topics::kRotorSpeeds)),
         battery_(node_.publish(messages::topics::kBattery)),
-        reporter_(node_, parameters, link.name()),
+        reporter_(node_, parameters, link.name(), boot_),
         clock_server_(node_, [this] { return clock_ns(); }),
         commands_(node_.subscribe<messages::msg::ActuatorCommand>(
             messages::topics::kActuatorCommand, [this](const auto& message) { on_command(message); },
@@ -109,6 +110,7 @@ class Vehicle final : public runtime::HostedVehicle {
   // Each IMU sample is answered by one command, so it goes out before anything else is done.
   void publish(const protocol::Imu& sample) {
     messages::msg::Imu message = to_message(sample);
+    message.obeyed().boot(boot_);
     message.sequence_number(++imu_samples_);
     imu_.publish(message);
     measurements_.note(sample, link_.clock_ns(link_.arrived_ns()));
@@ -142,6 +144,7 @@ class Vehicle final : public runtime::HostedVehicle {
     return now_ns + served_clock_->offset_at(now_ns);
   }
 
+  const std::uint32_t boot_ = runtime::boot_number();
   const runtime::RealtimeSettings realtime_;
   runtime::RealtimeThread listener_;
   MicrocontrollerLink link_;

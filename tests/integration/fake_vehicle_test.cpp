@@ -80,6 +80,23 @@ class FakeVehicleFlight : public testing::Test {
     return command && !running(*command);
   }
 
+  void expect_no_flight_after_a_restart(plant::ControlLevel level) {
+    start_vehicle(level);
+    take_off();
+    ASSERT_TRUE(wait_for(Mode::kHolding)) << control_.errors();
+    vehicle_->restart();
+    ASSERT_TRUE(wait_for(Mode::kStopped)) << control_.errors();
+    EXPECT_STREQ(client_.view().control.message.reason().c_str(), "the vehicle was restarted");
+    ASSERT_TRUE(eventually([&] { return vehicle_->samples() > 1000; }, kTimeout));
+    EXPECT_EQ(vehicle_->fastest_rotor(), 0.0);
+    EXPECT_EQ(vehicle_->highest_m(), 0.0);
+
+    EXPECT_FALSE(ask(control::RequestKind::kArm).accepted());
+    ASSERT_TRUE(ask(control::RequestKind::kDisarm).accepted());
+    take_off();
+    EXPECT_TRUE(wait_for(Mode::kHolding)) << control_.errors();
+  }
+
   dds::DomainLock lock_;
   TemporaryFolder folder_;
   Program control_;
@@ -200,6 +217,14 @@ TEST_F(FakeVehicleFlight, DoesNotTakeOffBeforeTheVehicleReportsItsRotors) {
   take_off();
   EXPECT_TRUE(wait_for(Mode::kHolding)) << control_.errors();
   EXPECT_NEAR(vehicle_->height_m(), 0.6, 0.1);
+}
+
+// GIVEN hover WHEN the vehicle is restarted at once, with a clock that goes on THEN its rotors stay off until it is armed again.
+TEST_F(FakeVehicleFlight, ARestartedVehicleStandsUntilItIsArmedAgain) {
+  expect_no_flight_after_a_restart(plant::ControlLevel::kActuators);
+}
+TEST_F(FakeVehicleFlight, ARestartedVehicleOfLevelAttitudeStandsUntilItIsArmedAgain) {
+  expect_no_flight_after_a_restart(plant::ControlLevel::kAttitude);
 }
 
 // `./dev bench --only missions` measures the target of 1 s; the bound here allows for a busy machine.

@@ -31,6 +31,7 @@ FakeVehicle::FakeVehicle(const plant::Vehicle& parameters, const dds::NodeSettin
     subscription_ = node_.subscribe<messages::msg::AttitudeSetpoint>(
         messages::topics::kAttitudeSetpoint, [this](const messages::msg::AttitudeSetpoint& setpoint) {
           const std::lock_guard lock(mutex_);
+          if (setpoint.stamp_ns() <= started_ns_) return;  // for the vehicle before its restart
           attitude_ = setpoint;
           note_answer(setpoint.imu_sequence_number());
         });
@@ -38,6 +39,7 @@ FakeVehicle::FakeVehicle(const plant::Vehicle& parameters, const dds::NodeSettin
     subscription_ = node_.subscribe<messages::msg::ActuatorCommand>(
         messages::topics::kActuatorCommand, [this](const messages::msg::ActuatorCommand& command) {
           const std::lock_guard lock(mutex_);
+          if (command.stamp_ns() <= started_ns_) return;
           commands_.push_back(command);
           note_answer(command.imu_sequence_number());
         });
@@ -67,10 +69,26 @@ std::optional<messages::msg::ActuatorCommand> FakeVehicle::last_command() const 
 
 void FakeVehicle::run() {
   while (!stop_) {
+    if (restarts_.exchange(false)) begin_again();
     move();
     publish();
     wait_for_answer();
   }
+}
+
+void FakeVehicle::restart() {
+  restarts_ = true;
+  while (restarts_) std::this_thread::yield();
+}
+
+void FakeVehicle::begin_again() {
+  const std::lock_guard lock(mutex_);
+  started_ns_ += static_cast<std::int64_t>(imu_sequence_) * kPeriodNs;
+  imu_sequence_ = answered_ = 0;
+  commands_.clear();
+  attitude_ = {};
+  up_speed_ = rotor_speed_ = 0.0;
+  height_m_ = highest_m_ = fastest_rotor_ = 0.0;
 }
 
 void FakeVehicle::wait_for_answer() {
@@ -99,6 +117,7 @@ void FakeVehicle::move() {
       thrust_n = attitude_.thrust_n();
   }
   rotor_speed_ += (wanted_speed - rotor_speed_) * kPeriodS / parameters_.motor.time_constant_s;
+  fastest_rotor_ = std::max(fastest_rotor_.load(), rotor_speed_);
   const double lift =
       thrust_n + parameters_.rotor_count() * plant::thrust_from_speed(parameters_.rotor, rotor_speed_);
   up_acceleration_ = lift / parameters_.mass_kg - plant::kGravity;
@@ -111,7 +130,7 @@ void FakeVehicle::move() {
 
 void FakeVehicle::publish() {
   const std::uint64_t sequence = ++imu_sequence_;
-  const auto stamp_ns = static_cast<std::int64_t>(sequence) * kPeriodNs;
+  const std::int64_t stamp_ns = started_ns_ + static_cast<std::int64_t>(sequence) * kPeriodNs;
   if (seen_by_mocap && sequence % kImuPerFrame == 0) {
     messages::msg::MocapPose pose;
     pose.stamp_ns(stamp_ns);
@@ -140,9 +159,9 @@ void FakeVehicle::publish() {
 void FakeVehicle::publish_info() {
   messages::msg::VehicleInfo info;
   info.wire_version(messages::kWireVersion);
-  info.stamp_ns(static_cast<std::int64_t>(samples()) * kPeriodNs);
+  info.stamp_ns(started_ns_ + static_cast<std::int64_t>(samples()) * kPeriodNs);
   info.sequence_number(samples() / kImuPerInfo);
-  info.name("rail");
+  info.name() = parameters_.name;
   info.rotor_count(static_cast<std::uint8_t>(parameters_.rotor_count()));
   info.mass_kg(parameters_.mass_kg);
   info.imu_rate_hz(1e9 / static_cast<double>(kPeriodNs));

@@ -35,11 +35,16 @@ class FakeVehicle {
   std::atomic<bool> sends_imu{true};
   std::atomic<bool> reports_rotors{true};  // in vehicle_info, when they run
 
+  // Begins anew on the floor with its rotors off, its sequence numbers at 1, while its clock goes on. The commands received before
+  // are forgotten.
+  void restart();
+
   // Actuator commands received, in order.
   std::vector<messages::msg::ActuatorCommand> commands() const;
   std::optional<messages::msg::ActuatorCommand> last_command() const;
   double height_m() const { return height_m_; }
   double highest_m() const { return highest_m_; }
+  double fastest_rotor() const { return fastest_rotor_; }  // rad/s, since the start
   std::uint64_t samples() const { return imu_sequence_; }
 
   static constexpr std::int64_t kPeriodNs = 2'000'000;  // of the IMU
@@ -47,6 +52,7 @@ class FakeVehicle {
 
  private:
   void run();
+  void begin_again();
   void wait_for_answer();
   void note_answer(std::uint64_t imu_sequence);  // with mutex_ held
   void move();
@@ -59,6 +65,9 @@ class FakeVehicle {
   double up_speed_ = 0.0;
   double up_acceleration_ = 0.0;
   double rotor_speed_ = 0.0;
+  std::atomic<double> fastest_rotor_{0.0};
+  std::atomic<std::int64_t> started_ns_{0};
+  std::atomic<bool> restarts_{false};
   std::atomic<double> height_m_{0.0};
   std::atomic<double> highest_m_{0.0};
   std::atomic<std::uint64_t> imu_sequence_{0};

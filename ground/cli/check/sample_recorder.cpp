@@ -65,7 +65,7 @@ SampleRecorder::SampleRecorder(const dds::NodeSettings& settings)
     using Message = typename std::decay_t<decltype(topic)>::Message;
     return node_.subscribe<Message>(
         topic, [this, &record](const Message& message) { take(record, message); }, dds::Delivery::kSamples,
-        dds::kSourceSilence);
+        dds::OneSource{dds::kSourceSilence});
   };
   imu_ = subscribe(topics::kImu, recording_.imu);
   odometry_ = subscribe(topics::kVehicleOdometry, recording_.odometry);
@@ -180,6 +180,7 @@ VehicleRecording SampleRecorder::recording() const {
     recording = recording_;
   }
   recording.end_ns = now_ns();
+  recording.mismatches = node_.mismatches_seen();
   add_state(recording.imu, imu_);
   add_state(recording.odometry, odometry_);
   add_state(recording.battery, battery_);

@@ -32,7 +32,7 @@ TestCommands::TestCommands(const dds::NodeSettings& settings, int rotor_count, s
       publisher_(node_.publish(messages::topics::kActuatorCommand)),
       imu_(node_.subscribe<messages::msg::Imu>(
           messages::topics::kImu, [this](const messages::msg::Imu& imu) { answer(imu); },
-          dds::Delivery::kSamples, dds::kSourceSilence)) {}
+          dds::Delivery::kSamples, dds::OneSource{dds::kSourceSilence})) {}
 
 TestCommands::~TestCommands() {
   set({});

@@ -62,7 +62,7 @@ NetworkFacts examine(const DoctorNetworkOptions& options) {
   ground::NetworkProbe probe(options.network.domain, addresses, peer_addresses(options.network.network));
   facts.probe = probe.run(std::chrono::milliseconds(static_cast<std::int64_t>(options.time_s * 1e3)));
   facts.processes = participant.processes_seen();
-  facts.qos_conflicts = participant.qos_conflicts_seen();
+  facts.mismatches = participant.mismatches_seen();
   return facts;
 }
 

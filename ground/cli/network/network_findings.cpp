@@ -102,7 +102,7 @@ std::vector<NetworkFinding> findings(const NetworkFacts& facts) {
   judge_interfaces(facts, found);
   judge_multicast(facts, found);
   judge_hosts(facts, found);
-  for (const std::string& conflict : facts.qos_conflicts) found.push_back({true, conflict});
+  for (const std::string& mismatch : facts.mismatches) found.push_back({true, mismatch});
   if (facts.processes.empty() && facts.probe.hosts.empty())
     found.push_back(
         {true, fmt::format("nobody answers in domain {}: no process, and no `swiftlet doctor network` on "

@@ -15,7 +15,7 @@ struct NetworkFacts {
   std::vector<io::Interface> interfaces;  // those that are used
   ground::ProbeReport probe;
   std::vector<dds::ProcessIdentity> processes;  // discovered over DDS
-  std::vector<std::string> qos_conflicts;       // sentences
+  std::vector<std::string> mismatches;          // of types, QoS and topic names: sentences
 };
 
 struct NetworkFinding {

@@ -349,6 +349,38 @@ TEST_F(InFlight, AnswersRequestsAlsoWithAnInvalidImuSample) {
   EXPECT_EQ(loop_.command.rotor_state, plant::RotorState::kOff);
 }
 
+// GIVEN a vehicle with two cells WHEN the battery limits are those of one THEN they are refused, and so is the voltage of two cells by a
+// controller of one.
+TEST(FlightController, RefusesTheBatteryOfAnotherNumberOfCells) {
+  plant::Vehicle two_cells = kaylion();
+  two_cells.name = "lab25";
+  for (double& voltage_v : two_cells.battery.open_circuit_voltage_v) voltage_v *= 2.0;
+  try {
+    const FlightController controller(two_cells, settings("motor_lag"));
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(),
+                 "motor_lag: failsafe.low_battery_voltage_v is 3.30, must be above 5.30 and below 8.38, the "
+                 "battery of "
+                 "lab25");
+  }
+  ControlSettings never = settings("motor_lag");
+  never.failsafe.critical_battery_voltage = 2.65;
+  EXPECT_THROW(FlightController(kaylion(), never), std::invalid_argument);
+
+  ClosedLoop loop(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 1);
+  ASSERT_TRUE(loop.step_until([&] { return loop.time_s() > 1.0; }, 2.0));
+  plant::BatterySample sample;
+  sample.stamp_ns = loop.plant.stamp_ns();
+  sample.voltage_v = 8.36;
+  loop.controller.on_battery(sample);
+  const Outcome armed = loop.controller.request(request(RequestKind::kArm));
+  EXPECT_FALSE(armed.accepted);
+  EXPECT_NE(std::string(armed.reason).find("battery voltage 8.36 V is not one of this vehicle's battery, "),
+            std::string::npos)
+      << armed.reason;
+}
+
 TEST(FlightController, LandsWhenTheBatteryIsLow) {
   ControlSettings careful = settings("motor_lag");
   careful.failsafe.low_battery_voltage = 4.0;

@@ -120,6 +120,32 @@ TEST_P(Levels, NothingIsWoundUpOnTheGround) {
   EXPECT_TRUE(loop.firmware.rate_loop().integral().isZero(0.0));
 }
 
+// GIVEN hover WHEN the vehicle is restarted, and its clock goes on or begins again THEN not one command more lets its rotors run
+// until it is armed again.
+TEST_P(Levels, ARestartedVehicleGetsRotorsOff) {
+  for (const std::int64_t clock_ns : {0, -1'000'000'000}) {
+    ClosedLoop loop(vehicle_, world_, settings_, 1);
+    hover(loop);
+    control::FlightController& controller = loop.controller;
+    plant::ImuSample sample;
+    sample.specific_force_frd = {0.0, 0.0, -plant::kGravity};
+    sample.stamp_ns = loop.plant.stamp_ns() + clock_ns;
+    controller.restart_vehicle();
+    for (int i = 0; i < 1000; ++i) {
+      sample.stamp_ns += 2'000'000;
+      ++sample.sequence;
+      ASSERT_EQ(plant::header_of(controller.on_imu(sample)).rotor_state, plant::RotorState::kOff) << i;
+    }
+    EXPECT_EQ(mode(loop), control::Mode::kStopped);
+    EXPECT_EQ(controller.status().reason, control::Reason::kVehicleRestarted);
+    control::Request request;
+    request.kind = control::RequestKind::kTakeoff;
+    EXPECT_FALSE(controller.request(request).accepted);
+    request.kind = control::RequestKind::kDisarm;
+    EXPECT_TRUE(controller.request(request).accepted);
+  }
+}
+
 TEST_P(Levels, WithoutPosesTheVehicleDescendsAndStopsItsRotors) {
   ClosedLoop loop(vehicle_, world_, settings_, 1);
   hover(loop);

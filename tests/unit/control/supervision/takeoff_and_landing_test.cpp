@@ -139,6 +139,45 @@ TEST_F(TakeoffAndLanding, TakeOffEndsIfTheRotorsAreNotReportedToRun) {
   EXPECT_TRUE(step_until(Mode::kHolding, 10.0));
 }
 
+// GIVEN a vehicle that obeys another controller, or none, WHEN it is armed THEN that is not done, and ends after 1 s with that reason; one
+// that obeys after 0.9 s takes off, and not before.
+TEST_F(TakeoffAndLanding, ArmingIsDoneWhenTheVehicleObeys) {
+  inputs_.obeyed = false;
+  ASSERT_TRUE(ask(RequestKind::kArm).accepted);
+  EXPECT_FALSE(step_until(Mode::kDisarmed, 0.9));
+  EXPECT_EQ(supervisor_.requests().back().state, RequestState::kExecuting);
+  EXPECT_TRUE(step_until(Mode::kDisarmed, 0.2));
+  EXPECT_EQ(supervisor_.reason(), Reason::kNotObeyed);
+  EXPECT_EQ(supervisor_.requests().back().state, RequestState::kAborted);
+
+  ASSERT_TRUE(ask(RequestKind::kArm).accepted);
+  ASSERT_TRUE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
+  EXPECT_FALSE(step_until(Mode::kDisarmed, 0.9));
+  EXPECT_EQ(control_setpoint_.control_mode, ControlMode::kIdle);
+  inputs_.obeyed = true;
+  step();
+  const RequestStatuses& requests = supervisor_.requests();
+  EXPECT_EQ(requests[requests.size() - 2].kind, RequestKind::kArm);
+  EXPECT_EQ(requests[requests.size() - 2].state, RequestState::kSucceeded);
+  EXPECT_TRUE(step_until(Mode::kHolding, 10.0));
+}
+
+// GIVEN a vehicle that stays on the ground, whether its lift-off is observed or not, WHEN it is to take off, low or high, THEN the take-off is
+// not completed: it ends with that reason and the rotors off.
+TEST_F(TakeoffAndLanding, ATakeOffThatDoesNotLeaveTheGroundIsNotCompleted) {
+  follows_ = false;
+  for (const std::int64_t lift_off_ns : {std::int64_t{0}, kNoLiftOffYet}) {
+    for (const double height_m : {0.1, 0.5, 1.5}) {
+      inputs_.lift_off_ns = lift_off_ns;
+      ASSERT_TRUE(ask(RequestKind::kArm).accepted);
+      ASSERT_TRUE(ask(RequestKind::kTakeoff, {0, 0, -height_m}).accepted);
+      ASSERT_TRUE(step_until(Mode::kDisarmed, 10.0)) << height_m;
+      EXPECT_EQ(supervisor_.reason(), Reason::kNoLiftOff);
+      EXPECT_EQ(supervisor_.requests().back().state, RequestState::kAborted);
+    }
+  }
+}
+
 // GIVEN commands that the vehicle obeys late WHEN it spools up THEN the lift rises by no more than 0.08 of the weight in that time.
 TEST_F(TakeoffAndLanding, LiftRisesSlowerOverALinkWithDelay) {
   const auto steepest_rise = [&](double delay_s) {

@@ -130,11 +130,14 @@ void PrintTo(const Row& row, std::ostream* out) { *out << to_string(row.event); 
 const Row kGrid[] = {
     // clang-format off
     //                              DAtTHmMlJSLWOP
+    {Event::kVehicleRestarted, kLand, ".OOOOOOOOOOO.O", Reason::kVehicleRestarted, condition([](Placed& f) { f.inputs_.vehicle_restarted = true; })},
     {Event::kImuUnusable, kLand,   ".OOOOOOOOOOO.O", Reason::kImuUnusable, condition([](Placed& f) { f.inputs_.imu_unusable_s = 0.1; })},
     {Event::kImuGap, kLand,        ".OOOOOOOOOOO.O", Reason::kImuGap, condition([](Placed& f) { f.inputs_.imu_gap_s = 0.4; })},
     {Event::kTippedOver, kLand,    ".OOOOOOOOOOO.O", Reason::kTippedOver, condition([](Placed& f) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(1.5, Vector3d::UnitX()); })},
     {Event::kVehicleFault, kLand,  ".OOOOOOOOOOO.O", Reason::kVehicleFault, condition([](Placed& f) { f.inputs_.vehicle_fault_s = 0.5; })},
     {Event::kRotorsNotRunning, kLand, "  D  D        ", Reason::kRotorsNotRunning, lasting(10.1, [](Placed& f) { f.inputs_.rotors_running = false; })},
+    {Event::kNotObeyed, kLand,     " DD  D        ", Reason::kNotObeyed, lasting(1.1, [](Placed& f) { f.inputs_.obeyed = false; })},
+    {Event::kNoLiftOff, kLand,     "  D  D        ", Reason::kNoLiftOff, lasting(3.0, [](Placed& f) { f.follows_ = false; })},
     {Event::kImpact, kLand,        "..OOOOO OO  .O", Reason::kImpact, condition([](Placed& f) { f.inputs_.specific_force_frd.z() = -120.0; })},
     {Event::kImpact, kLand,        "       D  D   ", Reason::kLanded, condition([](Placed& f) { f.inputs_.specific_force_frd.z() = -120.0; })},
     {Event::kImpact, kLand,        "           D  ", Reason::kLandedWithoutPosition, condition([](Placed& f) { f.inputs_.specific_force_frd.z() = -120.0; })},

@@ -171,7 +171,8 @@ TEST_F(RealtimeService, AVehicleOfAnotherWireVersionIsNotArmed) {
     commands.publish(arm);
     return std::any_of(answers.items().begin(), answers.items().end(), [](const msg::CommandAck& answer) {
       return std::string(answer.reason().c_str())
-                 .find("the vehicle speaks version 3 of the messages, this program 2") != std::string::npos;
+                 .find(messages::fault_of_wire_version(messages::kWireVersion + 1, "the vehicle")) !=
+             std::string::npos;
     });
   }));
   for (const msg::CommandAck& answer : answers.items()) EXPECT_FALSE(answer.accepted());

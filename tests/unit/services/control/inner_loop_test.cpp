@@ -70,4 +70,28 @@ TEST_F(StandbyLoop, IsNotReadyAsLongAsItFollowsNobody) {
   EXPECT_TRUE(run(kPeriod, true));
 }
 
+// GIVEN a standby of a flight WHEN the vehicle is restarted THEN a report of the flight that was still on its way is not adopted,
+// and one from after the vehicle has obeyed again is.
+TEST_F(StandbyLoop, AdoptsNoFlightFromBeforeTheVehicleWasRestarted) {
+  const auto rotors_run_after_a_report = [this] {
+    FailoverState flying;
+    flying.number = 2;
+    flying.term = kTerm;
+    flying.flight.supervisor.mode = control::Mode::kHolding;
+    loop_.failover_state.put(flying);
+    run(kPeriod, true);
+    messages::ControllerReport report;
+    ++imu_.sequence;
+    imu_.stamp_ns += kPeriod;
+    const plant::VehicleCommand command = loop_.step(imu_, imu_.stamp_ns);
+    return plant::header_of(command).rotor_state == plant::RotorState::kRunning;
+  };
+  run(1'000'000'000, true);
+  ASSERT_TRUE(rotors_run_after_a_report());
+  loop_.restart_vehicle(imu_.stamp_ns);
+  EXPECT_FALSE(rotors_run_after_a_report());
+  loop_.set_obeyed({true, true, kTerm, imu_.stamp_ns}, kTerm);
+  EXPECT_TRUE(rotors_run_after_a_report());
+}
+
 }  // namespace swiftlet::services::inner_loop_test

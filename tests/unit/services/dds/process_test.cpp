@@ -128,6 +128,23 @@ TEST_F(Peers, AreReportedToALateListener) {
   node_.on_peer({});
 }
 
+// GIVEN one source of a topic WHEN it dies and another process takes its place THEN that is told before the first sample of this one.
+TEST_F(Peers, TheNextSourceIsTold) {
+  Inbox<std::string> told;
+  const auto subscription = node_.subscribe<messages::msg::ActuatorCommand>(
+      messages::topics::kActuatorCommand,
+      [&](const messages::msg::ActuatorCommand&) {
+        if (told.size() == 0 || told.items().back() != "sample") told.put("sample");
+      },
+      Delivery::kShared, OneSource{200ms, [&] { told.put("next"); }});
+  PeerProcess first = start();
+  ASSERT_TRUE(told.wait_for_count(1));
+  first.crash();
+  const PeerProcess second = start();
+  ASSERT_TRUE(told.wait_for_count(3));
+  EXPECT_EQ(told.items(), (std::vector<std::string>{"sample", "next", "sample"}));
+}
+
 // GIVEN a peer WHEN it stands still for longer than its lease THEN it is received again for as long as it runs. WHEN it dies THEN
 // that is reported within the lease.
 TEST_F(Peers, AreReceivedAgainAfterASuspensionAndReportedDeadWithinTheLease) {

@@ -154,9 +154,10 @@ TEST_F(Sources, StayTheSourceOfASubscriptionAfterARejoin) {
   Node plant(settings("plant", "imu"));
   Node control(settings("control", ""));
   Inbox<std::uint64_t> received;
+  std::atomic<int> others{0};
   const auto subscription = control.subscribe<messages::msg::Imu>(
       messages::topics::kImu, [&](const messages::msg::Imu& imu) { received.put(imu.sequence_number()); },
-      Delivery::kShared, 1h);
+      Delivery::kShared, OneSource{1h, [&] { ++others; }});
   auto publisher = plant.publish(messages::topics::kImu);
   messages::msg::Imu imu = messages::fixtures::example<messages::msg::Imu>();
   const auto receives = [&](std::uint64_t number) {
@@ -171,6 +172,7 @@ TEST_F(Sources, StayTheSourceOfASubscriptionAfterARejoin) {
   plant.rejoin();
   EXPECT_TRUE(receives(2));
   EXPECT_EQ(subscription.source_conflict().has_value(), false);
+  EXPECT_EQ(others, 0) << "it is the same process";
 }
 
 TEST(Interfaces, NameTheLoopbackInterface) {

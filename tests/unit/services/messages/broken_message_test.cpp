@@ -1,4 +1,5 @@
 // Bytes that are not a valid message of their topic's type are dropped; later messages are received.
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -42,11 +43,11 @@ Bytes cut(Bytes bytes, std::size_t size) {
 // A peer that publishes raw bytes on one topic.
 class RawPeer {
  public:
-  RawPeer(const dds::DomainLock& lock, const std::string& topic, const std::string& type, Qos qos)
+  RawPeer(const dds::DomainLock& lock, const std::string& topic, const std::string& type, Qos qos,
+          const std::string& prefix = "rt/kl1/")
       : session_(swiftlet::tests::settings_of("raw", lock), rtps::Announcement(),
                  std::make_shared<rtps::DatagramGuard>(), nullptr) {
-    fastdds::Topic* const raw_topic =
-        session_.topic("rt/kl1/" + topic, fastdds::TypeSupport(new RawType(type)));
+    fastdds::Topic* const raw_topic = session_.topic(prefix + topic, fastdds::TypeSupport(new RawType(type)));
     writer_ = session_.publisher->create_datawriter(raw_topic, dds::writer_qos(qos));
   }
   bool send(const Bytes& bytes) { return dds::write(*writer_, &bytes); }
@@ -116,24 +117,42 @@ TEST(WireVersion, IsAllThatIsTakenOfAMessageOfAnotherOne) {
   RawPeer peer(lock, "vehicle_info", dds::type_name(msg::VehicleInfoPubSubType()), Qos::kLatched);
   ASSERT_TRUE(eventually([&] { return messages.matched() == 1 && raw.matched() == 1; }));
   const Bytes whole = serialized<msg::VehicleInfoPubSubType>(example<msg::VehicleInfo>());
-  ASSERT_TRUE(peer.send(cut(changed(whole, kEncapsulation, 3), kEncapsulation + 12)));
+  ASSERT_TRUE(peer.send(cut(changed(whole, kEncapsulation, 4), kEncapsulation + 12)));
   ASSERT_TRUE(inbox.wait_for_count(1));
   ASSERT_TRUE(peer.send(whole));
   ASSERT_TRUE(inbox.wait_for_count(2));
   ASSERT_TRUE(payloads.wait_for_count(1));
   msg::VehicleInfo foreign;
-  foreign.wire_version(3);
+  foreign.wire_version(4);
   EXPECT_TRUE(inbox.items()[0] == foreign);
   EXPECT_TRUE(inbox.items()[1] == example<msg::VehicleInfo>());
   EXPECT_EQ(payloads.size(), 1U);
 }
 
+// GIVEN programs of others with the type of ROS 2, or without the prefix of its topics THEN each is named, with what is expected.
+TEST(Mismatches, OfTypesAndNamesAreToldByProcess) {
+  const dds::DomainLock lock;
+  const dds::Node node(swiftlet::tests::settings_of("node", lock));
+  const std::string type = dds::type_name(msg::CommandPubSubType());
+  const RawPeer right(lock, "command", type, Qos::kRequest);
+  const RawPeer wrong_type(lock, "command", "swiftlet_msgs::msg::Command", Qos::kRequest);
+  const RawPeer wrong_name(lock, "command", type, Qos::kRequest, "kl1/");
+  const RawPeer another_vehicle(lock, "command", "swiftlet_msgs::msg::Command", Qos::kRequest, "rt/kl2/");
+  ASSERT_TRUE(eventually([&] { return node.mismatches_seen().size() == 2; }));
+  std::vector<std::string> told = node.mismatches_seen();
+  std::sort(told.begin(), told.end());
+  EXPECT_EQ(told[0], "kl1/command: raw has it without rt/, expected rt/kl1/command");
+  EXPECT_EQ(told[1],
+            "rt/kl1/command: raw has it as swiftlet_msgs::msg::Command, expected "
+            "swiftlet_msgs::msg::dds_::Command_");
+}
+
 TEST(WireVersion, IsRefusedByName) {
   EXPECT_EQ(fault_of_wire_version(kWireVersion, "the vehicle"), "");
-  EXPECT_EQ(fault_of_wire_version(3, "the vehicle"),
-            "the vehicle speaks version 3 of the messages, this program 2");
+  EXPECT_EQ(fault_of_wire_version(4, "the vehicle"),
+            "the vehicle speaks version 4 of the messages, this program 3");
   EXPECT_EQ(fault_of_wire_version(0x51234567, "control"),
-            "control speaks another version of the messages than this program, 2");
+            "control speaks another version of the messages than this program, 3");
 }
 
 }  // namespace swiftlet::messages::fixtures::broken_message_test

@@ -129,8 +129,9 @@ TEST(Convert, RequestStatusHasStateAndReason) {
 }
 
 TEST(Convert, ImuSampleCarriesTheObeyedCommand) {
-  for (const plant::ObeyedCommand& obeyed : {plant::ObeyedCommand{}, plant::ObeyedCommand{true, false, 0, 0},
-                                             plant::ObeyedCommand{true, true, 7, 8}}) {
+  for (const plant::ObeyedCommand& obeyed :
+       {plant::ObeyedCommand{}, plant::ObeyedCommand{true, false, 0, 0, 5},
+        plant::ObeyedCommand{true, true, 7, 8}}) {
     msg::Imu message = example<msg::Imu>();
     message.obeyed(to_message(obeyed));
     const plant::ObeyedCommand got = from_message(message.obeyed());
@@ -138,6 +139,7 @@ TEST(Convert, ImuSampleCarriesTheObeyedCommand) {
     EXPECT_EQ(got.any, obeyed.any);
     EXPECT_EQ(got.term, obeyed.term);
     EXPECT_EQ(got.stamp_ns, obeyed.stamp_ns);
+    EXPECT_EQ(got.boot, obeyed.boot);
   }
   EXPECT_FALSE(from_message(msg::Imu().obeyed()).reported) << "a vehicle that does not set the fields";
 }

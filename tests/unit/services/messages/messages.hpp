@@ -410,6 +410,9 @@ inline msg::VehicleInfo example() {
   message.sense_to_actuate_p99_us(120.0);
   message.sense_to_actuate_max_us(400.0);
   message.fault() = "no actuator command for 0.2 s";
+  message.boot(12345);
+  message.full_battery_v(4.19);
+  message.empty_battery_v(2.65);
   return message;
 }
 

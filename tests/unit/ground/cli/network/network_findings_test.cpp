@@ -110,9 +110,9 @@ TEST(NetworkFindings, AreFaultsWithoutInterfaceOrAnswer) {
                                "nobody answers in domain 5: no process, and no `swiftlet doctor network` on "
                                "another host"}));
   facts = good_network();
-  facts.qos_conflicts = {"rt/kl1/imu: control does not receive from plant: deadline"};
+  facts.mismatches = {"rt/kl1/imu: control does not receive from plant: deadline"};
   facts.probe.silent_peers = {"10.0.0.9"};
-  EXPECT_EQ(faults(facts), facts.qos_conflicts);
+  EXPECT_EQ(faults(facts), facts.mismatches);
   EXPECT_TRUE(findings(facts).front().is_fault);
 }
 
