@@ -49,6 +49,29 @@ Row interpolated(const Row& a, const Row& b, std::int64_t stamp_ns) {
   return row;
 }
 
+// The tracked poses, with velocities between their neighbours.
+std::vector<TruthRow> captured_motion(const std::vector<plant::PoseSample>& poses) {
+  std::vector<TruthRow> rows;
+  for (const plant::PoseSample& pose : poses) {
+    if (!pose.tracked) continue;
+    const Eigen::Quaterniond& q = pose.q_ned_from_frd;
+    TruthRow row;
+    row.stamp_ns = pose.stamp_ns;
+    std::copy_n(pose.position_ned.data(), 3, row.position_ned.begin());
+    row.q_ned_from_frd = {q.w(), q.x(), q.y(), q.z()};
+    rows.push_back(row);
+  }
+  for (std::size_t i = 0; rows.size() > 1 && i < rows.size(); ++i) {
+    const TruthRow& before = rows[i == 0 ? 0 : i - 1];
+    const TruthRow& after = rows[std::min(i + 1, rows.size() - 1)];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      rows[i].velocity_ned[axis] = (after.position_ned[axis] - before.position_ned[axis]) /
+                                   math::seconds(after.stamp_ns - before.stamp_ns);
+    }
+  }
+  return rows;
+}
+
 bool is_over(const MissionRow& row) {
   const auto state = static_cast<control::MissionState>(row.state);
   return state == control::MissionState::kCompleted || state == control::MissionState::kAborted;
@@ -172,6 +195,27 @@ SWIFTLET_FOR_ROWS(TruthRow)
 SWIFTLET_FOR_ROWS(EstimateRow)
 #undef SWIFTLET_FOR_ROWS
 
+const char* to_string(Against against) {
+  switch (against) {
+    case Against::kGroundTruth:
+      return "ground truth";
+    case Against::kMotionCapture:
+      return "motion capture";
+    case Against::kEstimate:
+      return "estimate";
+  }
+  return "unknown";
+}
+
+TrackingErrors tracking_errors(const Flight& flight, Window window) {
+  if (!flight.truth.empty()) return tracking_errors(flight.truth, flight.reference, window);
+  const std::vector<TruthRow> captured = captured_motion(flight.poses);
+  TrackingErrors errors = captured.empty() ? tracking_errors(flight.estimate, flight.reference, window)
+                                           : tracking_errors(captured, flight.reference, window);
+  errors.against = captured.empty() ? Against::kEstimate : Against::kMotionCapture;
+  return errors;
+}
+
 bool enough_samples(const TrackingErrors& errors, Window window, double rate_hz) {
   const double expected = window.duration_s() * rate_hz;
   return errors.matched > 0 && static_cast<double>(errors.matched) >= kLeastMatchedFraction * expected &&
@@ -196,7 +240,7 @@ Evaluation evaluate(const Flight& flight) {
                                                            : flight.reference.back().stamp_ns;
     if (result.window) result.duration_s = math::seconds(end_ns - result.window->from_ns);
   }
-  result.errors = tracking_errors(flight.truth, flight.reference, result.window.value_or(Window{}));
+  result.errors = tracking_errors(flight, result.window.value_or(Window{}));
   return result;
 }
 

@@ -21,13 +21,18 @@ struct Window {
   double duration_s() const { return static_cast<double>(to_ns - from_ns) * 1e-9; }
 };
 
-// Position of the ground truth minus position of the reference, at the stamps of the reference.
+// By what a flight is judged: the best that is known of where the vehicle was.
+enum class Against : std::uint8_t { kGroundTruth, kMotionCapture, kEstimate };
+const char* to_string(Against against);  // "ground truth"
+
+// Position of the vehicle minus position of the reference, at the stamps of the reference.
 struct TrackingErrors {
+  Against against = Against::kGroundTruth;
   std::array<double, 3> rms_m{};   // north, east, down; all errors are NaN without a matched sample
   std::array<double, 3> peak_m{};  // largest absolute value
   double rms_3d_m = 0.0;
   double peak_3d_m = 0.0;
-  std::size_t matched = 0;     // references inside the window whose truth is known
+  std::size_t matched = 0;     // references inside the window at whose stamps the position is known
   double longest_gap_s = 0.0;  // between matched samples or a matched sample and an end of the window
 };
 
@@ -40,10 +45,12 @@ template <class Row>
 std::optional<Row> motion_at(const std::vector<Row>& rows, typename std::vector<Row>::const_iterator after,
                              std::int64_t stamp_ns);
 
-// flown: the ground truth, or the estimate of a vehicle whose true position nobody knows.
 template <class Row>
 TrackingErrors tracking_errors(const std::vector<Row>& flown, const std::vector<ReferenceRow>& reference,
                                Window window);
+// Of the flight in this window: against the ground truth, of a real vehicle against the poses of motion capture, without these against
+// the estimate.
+TrackingErrors tracking_errors(const Flight& flight, Window window);
 
 // True if there are enough samples to evaluate the flight: at least a quarter of the number expected at rate_hz in
 // the window, and no gap longer than kLongestGapS. In a longer gap a slow loop could diverge and return
@@ -61,7 +68,7 @@ struct Evaluation {
   bool completed = false;        // the mission
   std::string reason;            // why it was not completed, as its last status says
   double duration_s = 0.0;       // from its start to its end, or to that of the record
-  TrackingErrors errors;         // of the ground truth
+  TrackingErrors errors;
 };
 Evaluation evaluate(const Flight& flight);
 

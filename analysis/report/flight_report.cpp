@@ -40,6 +40,7 @@ nlohmann::ordered_json to_json(const FlightReport& report) {
   if (!report.record_fault.empty()) json["record_fault"] = report.record_fault;
   json["duration_s"] = report.duration_s;
   json["tolerance_m"] = report.tolerance_m;
+  json["errors_against"] = record::to_string(report.errors.against);
   json["rms_3d_m"] = report.errors.rms_3d_m;
   json["peak_3d_m"] = report.errors.peak_3d_m;
   json["rms_m"] = axes(report.errors.rms_m);
@@ -75,7 +76,10 @@ std::string to_text(const FlightReport& report) {
     text += fmt::format("    peak        mm  {:8.2f}{:8.2f}{:8.2f}{:8.2f}   (tolerance {:.0f})\n",
                         errors.peak_m[0] * kMm, errors.peak_m[1] * kMm, errors.peak_m[2] * kMm,
                         errors.peak_3d_m * kMm, report.tolerance_m * kMm);
-    text += fmt::format("    from {} samples, takeoff to {}\n", errors.matched, end_of(report));
+    text += fmt::format("    from {} samples, takeoff to {}", errors.matched, end_of(report));
+    if (errors.against != record::Against::kGroundTruth)
+      text += fmt::format(", against {}", record::to_string(errors.against));
+    text += "\n";
   }
   if (report.clock != kRealtime && report.wall_s > 0.0) {
     text += fmt::format("  simulated         {:.1f} s in {:.2f} s, {}: {:.0f} times real time\n",
@@ -86,9 +90,13 @@ std::string to_text(const FlightReport& report) {
                         report.control_rate_hz, static_cast<unsigned long long>(report.deadline_misses),
                         static_cast<unsigned long long>(report.cycles),
                         report.realtime_scheduling ? "" : " (no real-time scheduling)");
-    text += fmt::format("  sense to actuate  p50 {:.0f} us, p99 {:.0f} us, max {:.0f} us\n",
-                        report.sense_to_actuate.p50_us, report.sense_to_actuate.p99_us,
-                        report.sense_to_actuate.max_us);
+    if (report.sense_to_actuate.max_us > 0.0) {
+      text += fmt::format("  sense to actuate  p50 {:.0f} us, p99 {:.0f} us, max {:.0f} us\n",
+                          report.sense_to_actuate.p50_us, report.sense_to_actuate.p99_us,
+                          report.sense_to_actuate.max_us);
+    } else {
+      text += "  sense to actuate  not measured by the vehicle\n";
+    }
   }
   if (!report.dispersion.empty())
     text += fmt::format("  dispersion        {}, seed {}\n", report.dispersion.c_str(),

@@ -37,7 +37,7 @@ struct FlightReport {
   double tolerance_m = 0.0;       // limit of the peak 3-D error
   record::TrackingErrors errors;  // from mission start to the landing command
   double imu_rate_hz = 0.0;
-  double simulated_s = 0.0;  // simulated time since stamp 0
+  double simulated_s = 0.0;  // of the vehicle's clock: in real time from when it was ready, else from stamp 0
   double wall_s = 0.0;       // elapsed real time
 
   // Only for a flight in real time.

@@ -26,7 +26,8 @@ std::string shortfall(const analysis::FlightReport& report, record::Window windo
         report.errors.matched, window.duration_s() * record::kTelemetryRateHz, report.errors.longest_gap_s,
         record::kLeastMatchedFraction * 100.0, record::kLongestGapS);
   }
-  if (!std::isfinite(report.errors.rms_3d_m)) return "the ground truth is not finite";
+  if (!std::isfinite(report.errors.rms_3d_m))
+    return std::string("the ") + record::to_string(report.errors.against) + " is not finite";
   if (report.errors.peak_3d_m > report.tolerance_m) {
     return fmt::format("the peak tracking error was {:.3f} m, the tolerance is {:.3f} m",
                        report.errors.peak_3d_m, report.tolerance_m);

@@ -1,10 +1,14 @@
 #include "swiftlet/ground/flight/network_transport.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -32,22 +36,38 @@ constexpr auto kLastFiguresTimeout = 1500ms;
 constexpr auto kEndTimeout = 2s;
 constexpr auto kResultTimeout = 1s;    // of control_status after mission_status
 constexpr double kLongestStepS = 0.2;  // of this process, between two polls
-constexpr double kSilenceS = 3.0;      // without control_status or ground_truth
+constexpr double kSilenceS = 3.0;      // without control_status or motion
 constexpr double kLandingTimeoutS = 30.0;
 constexpr double kLandingSpeed = 0.4;  // m/s
 constexpr int kBeforeFlight = -1;      // progress stage; the later stages are the mission's items
 
 ControlMode mode_of(const View& view) { return static_cast<ControlMode>(view.control.message.mode()); }
 
+// Where the vehicle is: by the ground truth, or of a vehicle without one, by the estimate of control.
+struct Motion {
+  std::int64_t stamp_ns = 0;
+  std::uint64_t count = 0;  // of messages
+  std::array<double, 3> position_ned{};
+  std::array<double, 3> velocity_ned{};
+};
+Motion motion_of(const View& view) {
+  const auto motion = [](const auto& latest) {
+    const auto& message = latest.message;
+    return Motion{message.stamp_ns(), latest.count, message.position_ned(), message.velocity_ned()};
+  };
+  return view.truth.seen() ? motion(view.truth) : motion(view.estimate);
+}
+
 // The topics that are still missing; empty if all have arrived.
-std::string missing(const View& view) {
+std::string missing(const View& view, bool has_truth) {
   std::string list;
   const auto need = [&list](bool there, const char* what) {
     if (!there) list += (list.empty() ? "" : ", ") + std::string(what);
   };
   need(view.vehicle.seen(), "vehicle_info");
   need(view.battery.seen(), "battery");
-  need(view.truth.seen(), "ground_truth");
+  need(view.truth.seen() || !has_truth, "ground_truth");
+  need(view.estimate.seen(), "estimate");
   need(view.control.seen(), "control_status");
   need(view.reference.seen(), "reference");
   need(view.control.message.has_pose(), "a mocap_pose accepted by control");
@@ -65,7 +85,7 @@ std::string missing_peer(const View& view) {
 
 // Simulated time since `since_ns`. The time limits of a flight are in the vehicle's time.
 double simulated_s(const View& view, std::int64_t since_ns) {
-  return static_cast<double>(view.truth.message.stamp_ns() - since_ns) * 1e-9;
+  return static_cast<double>(motion_of(view).stamp_ns - since_ns) * 1e-9;
 }
 
 }  // namespace
@@ -101,12 +121,23 @@ void NetworkTransport::require_no_interrupt() const {
   if (watch_.interrupts() > 0) throw simulation::FlightFailure("interrupted before take-off");
 }
 
+double NetworkTransport::vehicle_s() const {
+  return ready_ns_ ? simulated_s(client_.view(), *ready_ns_) : 0.0;
+}
+
+bool NetworkTransport::publishes_truth() const {
+  const std::vector<std::string> topics = client_.node().topics_seen();
+  return std::count(topics.begin(), topics.end(),
+                    "rt/" + client_.vehicle() + "/" + messages::topics::kGroundTruth.name) > 0;
+}
+
 void NetworkTransport::wait_until_ready() {
   const auto start = Clock::now();
   while (true) {
     std::string absent;
+    const bool has_truth = !watch_.attached || publishes_truth();
     const bool ready = client_.wait(kStep, [&](const View& view) {
-      absent = lockstep_ ? missing_peer(view) : missing(view);
+      absent = lockstep_ ? missing_peer(view) : missing(view, has_truth);
       return absent.empty();
     });
     if (ready) break;
@@ -120,6 +151,7 @@ void NetworkTransport::wait_until_ready() {
     progress_.update(kBeforeFlight, "waiting for " + absent);
   }
   if (lockstep_) client_.simulation_clock().up_to(0);
+  ready_ns_ = lockstep_ ? 0 : motion_of(client_.view()).stamp_ns;
   wait_until_recorded();
   if (!lockstep_) {
     // In lockstep time stands still without this process, and the plant ends the run.
@@ -259,7 +291,7 @@ void NetworkTransport::advance() {
     if (const auto failure = watch_.barrier->failure()) abandon(*failure);
   }
   if (control_silence_.lasts(view.control.count)) fail_silent("control");
-  if (vehicle_silence_.lasts(view.truth.count)) fail_silent("the vehicle");
+  if (vehicle_silence_.lasts(motion_of(view).count)) fail_silent("the vehicle");
   // Another process may publish the truth (swiftlet-plant --truth-only): control repeats its status with the stamp of
   // the last sample.
   const auto answered_ns = static_cast<std::uint64_t>(view.control.message.stamp_ns());
@@ -287,7 +319,7 @@ simulation::MissionTransport::Status NetworkTransport::status() const {
   const View view = client_.view();
   const auto& mission = view.mission.message;
   const bool flown = mission.mission_id() == client_.mission_id();
-  return {view.truth.message.stamp_ns(),
+  return {motion_of(view).stamp_ns,
           flown ? static_cast<control::MissionState>(mission.state()) : control::MissionState::kNone,
           control::rotors_off(mode_of(view))};
 }
@@ -341,7 +373,7 @@ void NetworkTransport::abandon(const std::string& reason) {
   bool in_flight = start_.accepted() || (!rotors_off(mode) && mode != ControlMode::kArmed);
   progress_.say(reason + (in_flight ? "; landing" : "; disarming") +
                 (interrupts_before > 0 ? " (interrupt again to quit at once)" : ""));
-  const std::int64_t start_ns = client_.view().truth.message.stamp_ns();
+  const std::int64_t start_ns = motion_of(client_.view()).stamp_ns;
   Silence silence;
   Result landing;
   while (!rotors_off(mode_of(client_.view()))) {
@@ -349,7 +381,7 @@ void NetworkTransport::abandon(const std::string& reason) {
       throw simulation::FlightFailure(reason + "; while landing, " + *exited_process);
     if (watch_.interrupts() > std::max(1, interrupts_before))
       throw simulation::FlightFailure(reason + "; quit in flight");
-    if (silence.lasts(client_.view().truth.count))
+    if (silence.lasts(motion_of(client_.view()).count))
       throw simulation::FlightFailure(reason + "; while landing, the vehicle has sent nothing for 3 s");
     if (simulated_s(client_.view(), start_ns) > kLandingTimeoutS)
       throw simulation::FlightFailure(reason + "; the vehicle did not land within 30 s");
@@ -374,15 +406,15 @@ void NetworkTransport::abandon(const std::string& reason) {
 
 namespace {
 
-// Distance of the vehicle from its reference. The newest of both may be of different stamps, a few milliseconds apart: the truth is
+// Distance of the vehicle from its reference. The newest of both may be of different stamps, a few milliseconds apart: the motion is
 // carried on at its velocity.
 double newest_error_m(const View& view) {
-  if (!view.truth.seen() || !view.reference.seen()) return std::numeric_limits<double>::quiet_NaN();
-  const msg::GroundTruth& truth = view.truth.message;
+  const Motion motion = motion_of(view);
+  if (motion.count == 0 || !view.reference.seen()) return std::numeric_limits<double>::quiet_NaN();
   const msg::Reference& reference = view.reference.message;
-  const double ahead_s = 1e-9 * static_cast<double>(reference.stamp_ns() - truth.stamp_ns());
+  const double ahead_s = 1e-9 * static_cast<double>(reference.stamp_ns() - motion.stamp_ns);
   const auto along = [&](std::size_t axis) {
-    return truth.position_ned()[axis] + ahead_s * truth.velocity_ned()[axis] - reference.position_ned()[axis];
+    return motion.position_ned[axis] + ahead_s * motion.velocity_ned[axis] - reference.position_ned()[axis];
   };
   return std::hypot(along(0), along(1), along(2));
 }
@@ -391,10 +423,10 @@ double newest_error_m(const View& view) {
 
 void NetworkTransport::update_progress(const View& view) {
   const auto& mission = view.mission.message;
-  const auto& position = view.truth.message.position_ned();
+  const std::array<double, 3> position = motion_of(view).position_ned;
   const bool is_own = mission.mission_id() == client_.mission_id();
   if (is_own && !mission_began_ns_ && mode_of(view) == ControlMode::kMission)
-    mission_began_ns_ = view.truth.message.stamp_ns();
+    mission_began_ns_ = motion_of(view).stamp_ns;
   const double time_s = mission_began_ns_ ? simulated_s(view, *mission_began_ns_) : 0.0;
   const std::size_t item = std::min<std::size_t>(mission.item_index(), mission_.mission.items.size() - 1);
   const std::string text = fmt::format(

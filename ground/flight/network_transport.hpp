@@ -51,6 +51,9 @@ class NetworkTransport final : public simulation::MissionTransport {
   // After the flight: plant and control publish its timing figures with their next status.
   void wait_for_last_figures();
 
+  // Time of the vehicle's clock since it was ready, in lockstep since stamp 0; 0 before.
+  double vehicle_s() const;
+
  private:
   // When samples stop to come.
   class Silence {
@@ -71,6 +74,7 @@ class NetworkTransport final : public simulation::MissionTransport {
   void wait_until_recorded();
   void wait_until_paused_at(std::int64_t stamp_ns);
   [[noreturn]] void fail_silent(const std::string& who);
+  bool publishes_truth() const;
   void require_alive() const;
   void require_no_interrupt() const;
   void update_progress(const View& view);
@@ -85,7 +89,8 @@ class NetworkTransport final : public simulation::MissionTransport {
   std::int64_t paused_at_ns_ = 0;  // in lockstep, before the mission
   // In real time: the vehicle's clock minus the monotonic one of this host at its speed.
   std::optional<std::int64_t> clock_offset_ns_;
-  std::optional<std::int64_t> mission_began_ns_;  // by ground truth, for the progress
+  std::optional<std::int64_t> ready_ns_;          // stamps of the vehicle
+  std::optional<std::int64_t> mission_began_ns_;  // for the progress
   std::int64_t start_ns_ = 0;                     // on the vehicle's clock; 0: at once
   Result armed_;                                  // the answer to the last request to arm
   Result start_;                                  // the answer to the request that started the mission

@@ -1,6 +1,7 @@
 #include "swiftlet/ground/flight/process_flight.hpp"
 
 #include <chrono>
+#include <optional>
 #include <utility>
 
 #include "swiftlet/ground/client/client.hpp"
@@ -61,14 +62,15 @@ void ProcessFlight::finish(const std::vector<std::string>& end_errors, const std
 
 void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* barrier, io::Progress& progress) {
   const auto start = Clock::now();
+  std::optional<NetworkTransport> vehicle;
   try {
     const NetworkTransport::Watch watch{
         [this] { return processes_.exited_process(); },       [&] { return interrupts.count(); },
         [this] { return messages_.hears(network_.vehicle); }, barrier,
         plan_.launch_mode == LaunchMode::kAttached,           plan_.speed.value_or(1.0)};
-    NetworkTransport vehicle(client_, plan_.mission, plan_.clock, watch, progress);
-    simulation::fly_mission(vehicle, plan_.planned_duration_s);
-    vehicle.wait_for_last_figures();
+    vehicle.emplace(client_, plan_.mission, plan_.clock, watch, progress);
+    simulation::fly_mission(*vehicle, plan_.planned_duration_s);
+    vehicle->wait_for_last_figures();
   } catch (const simulation::FlightFailure& failure) {
     report_.reason = failure.what();
     // The end of a process may be noticed after what it caused.
@@ -82,7 +84,8 @@ void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* barrier, io:
     throw;
   }
   report_.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
-  report_.simulated_s = static_cast<double>(client_->view().truth.message.stamp_ns()) * 1e-9;
+  if (vehicle) report_.simulated_s = vehicle->vehicle_s();
+  vehicle.reset();
   take_figures(client_->view(), report_);
 }
 

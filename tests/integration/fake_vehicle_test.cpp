@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <fstream>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/client/client.hpp"
@@ -225,6 +227,31 @@ TEST_F(FakeVehicleFlight, ARestartedVehicleStandsUntilItIsArmedAgain) {
 }
 TEST_F(FakeVehicleFlight, ARestartedVehicleOfLevelAttitudeStandsUntilItIsArmedAgain) {
   expect_no_flight_after_a_restart(plant::ControlLevel::kAttitude);
+}
+
+// GIVEN a vehicle that publishes no ground truth, as real ones, WHEN it is flown with `fly --attach` THEN the flight is judged by motion
+// capture, and says so.
+TEST_F(FakeVehicleFlight, OneWithoutGroundTruthIsJudgedByMotionCapture) {
+  start_vehicle(plant::ControlLevel::kAttitude);
+  const std::string mission = folder_.write("hop.yaml",
+                                            "name: hop\nframe: ned\ntolerance_m: 0.2\nitems:\n"
+                                            "  - {kind: takeoff, height_m: 0.6, speed_m_s: 0.5, hold_s: 1}\n"
+                                            "  - {kind: land, speed_m_s: 0.5}\n");
+  const ProgramResult fly =
+      run_program("swiftlet",
+                  {"fly", mission, "--attach", "--skip-check", "--localhost-only", "--domain",
+                   std::to_string(lock_.domain()), "--record", folder_.path() / "record"},
+                  folder_.path());
+  ASSERT_EQ(fly.exit_code, 0) << fly.output << fly.errors;
+  EXPECT_NE(fly.output.find("samples, takeoff to landing, against motion capture\n"), std::string::npos)
+      << fly.output;
+  EXPECT_NE(fly.output.find("sense to actuate  not measured by the vehicle\n"), std::string::npos)
+      << fly.output;
+  std::ifstream file(folder_.path() / "record" / "report.json");
+  const nlohmann::json report = nlohmann::json::parse(file);
+  EXPECT_EQ(report["errors_against"], "motion capture");
+  EXPECT_GT(report["peak_3d_m"], 0.0);
+  EXPECT_LT(report["peak_3d_m"], 0.2);
 }
 
 // `./dev bench --only missions` measures the target of 1 s; the bound here allows for a busy machine.

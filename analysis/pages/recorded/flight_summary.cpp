@@ -117,13 +117,6 @@ std::string counts(const mcap::Reader& file) {
   return lost->second + " lost, " + dropped->second + " dropped";
 }
 
-// The tracking errors of the ground truth, or of the estimate if nobody knows the true position.
-record::TrackingErrors errors_of(const record::Flight& recorded) {
-  const record::Evaluation flown = record::evaluate(recorded);
-  if (!recorded.truth.empty() || !flown.window) return flown.errors;
-  return record::tracking_errors(recorded.estimate, recorded.reference, *flown.window);
-}
-
 std::string millimetres(const record::TrackingErrors& errors, double metres) {
   return errors.matched == 0 ? kMissing : fmt::format("{:.2f} mm", 1e3 * metres);
 }
@@ -132,7 +125,7 @@ std::string millimetres(const record::TrackingErrors& errors, double metres) {
 
 void add_summary(const mcap::Reader& file, const record::Flight& recorded, FlightLog& flight) {
   auto& rows = flight.summary;
-  const record::TrackingErrors errors = errors_of(recorded);
+  const record::TrackingErrors errors = record::evaluate(recorded).errors;
   const std::vector<double> latency = values_of(flight, "latency", "imu_to_command");
   rows.emplace_back("vehicle",
                     flight.vehicle + (recorded.vehicle.empty() ? "" : ", " + recorded.vehicle.back().name));
@@ -144,6 +137,7 @@ void add_summary(const mcap::Reader& file, const record::Flight& recorded, Fligh
   rows.emplace_back("recorded", fmt::format("{:.1f} s", flight.end_s - flight.start_s));
   rows.emplace_back("in flight", fmt::format("{:.1f} s", flying_time_s(flight)));
   rows.emplace_back("position from", flight.has_truth ? "ground truth" : "estimate");
+  rows.emplace_back("errors against", record::to_string(errors.against));
   rows.emplace_back("error 3-D, RMS", millimetres(errors, errors.rms_3d_m));
   rows.emplace_back("error 3-D, peak", millimetres(errors, errors.peak_3d_m));
   rows.emplace_back("top speed", number(values_of(flight, "path", "speed"), largest, "m/s", 2));

@@ -274,4 +274,44 @@ TEST(EnoughSamples, RejectsLongGaps) {
   EXPECT_FALSE(enough_samples(gap_at(800, 200), window, 500.0)) << "at the window's end";
 }
 
+// GIVEN a flight whose truth, poses and estimate have different errors WHEN the better ones are not recorded THEN it is judged by the next,
+// and says so. Poses come at a fifth of the reference's rate, and every third is lost.
+TEST(TrackingErrors, AreAgainstTheBestThatIsKnown) {
+  const auto off_by = [](double metres) {
+    return [metres](int) { return std::array<double, 3>{0.0, 0.0, metres}; };
+  };
+  Flight flight;
+  flight.truth = SyntheticFlight(1000, off_by(0.001)).truth;
+  flight.reference = SyntheticFlight(1000, off_by(0.0)).reference;
+  for (const TruthRow& row : SyntheticFlight(1000, off_by(0.002)).truth) {
+    plant::PoseSample pose;
+    pose.stamp_ns = row.stamp_ns;
+    if (row.stamp_ns % (5 * kStep) != 0) continue;
+    pose.tracked = row.stamp_ns % (15 * kStep) != 0;
+    pose.position_ned = {row.position_ned[0], row.position_ned[1], row.position_ned[2]};
+    if (!pose.tracked) pose.position_ned.setConstant(1e3);
+    flight.poses.push_back(pose);
+  }
+  for (const TruthRow& row : SyntheticFlight(1000, off_by(0.004)).truth) {
+    EstimateRow estimate;
+    estimate.stamp_ns = row.stamp_ns;
+    estimate.position_ned = row.position_ned;
+    estimate.velocity_ned = row.velocity_ned;
+    flight.estimate.push_back(estimate);
+  }
+  const Window window{20 * kStep, 980 * kStep};
+  const auto expect = [&](Against against, double metres, double tolerance) {
+    const TrackingErrors errors = tracking_errors(flight, window);
+    EXPECT_EQ(errors.against, against);
+    EXPECT_EQ(errors.matched, 960U);
+    EXPECT_NEAR(errors.rms_3d_m, metres, tolerance) << to_string(against);
+    EXPECT_NEAR(errors.peak_3d_m, metres, 2.0 * tolerance) << to_string(against);
+  };
+  expect(Against::kGroundTruth, 0.001, 1e-12);
+  flight.truth.clear();
+  expect(Against::kMotionCapture, 0.002, 1e-4);  // at 5 m/s and 25 m/s^2
+  for (plant::PoseSample& pose : flight.poses) pose.tracked = false;
+  expect(Against::kEstimate, 0.004, 1e-12);
+}
+
 }  // namespace swiftlet::record::evaluation_test
