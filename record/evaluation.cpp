@@ -119,11 +119,12 @@ bool is_tracked(const ReferenceRow& row) {
 std::optional<Window> mission_window(const MissionRows& mission, const References& reference) {
   const auto in_mission = [](const ReferenceRow& row) { return is_in(row, control::Mode::kMission); };
   const auto first = std::find_if(reference.begin(), reference.end(), in_mission);
-  if (first == reference.end()) return std::nullopt;
+  const std::int64_t end_ns = (mission.end - 1)->stamp_ns;
+  // Flown after it: another mission, whose status was lost.
+  if (first == reference.end() || (mission.is_ended() && first->stamp_ns > end_ns)) return std::nullopt;
   if (const auto landing_ns = mission.landing_ns()) return Window{first->stamp_ns, *landing_ns};
   auto last = reference.end() - 1;
-  const std::int64_t over_ns =
-      mission.is_ended() ? (mission.end - 1)->stamp_ns : std::numeric_limits<std::int64_t>::max();
+  const std::int64_t over_ns = mission.is_ended() ? end_ns : std::numeric_limits<std::int64_t>::max();
   while (last != first && (!in_mission(*last) || last->stamp_ns > over_ns)) --last;
   return Window{first->stamp_ns, last->stamp_ns + 1};
 }

@@ -11,6 +11,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kStatusPeriod{500};
+constexpr std::chrono::milliseconds kSourceSilence{1500};  // of replies, before those of another process count
 
 }  // namespace
 
@@ -21,7 +22,8 @@ ClockClient::ClockClient(dds::Node& node, std::function<std::int64_t()> own_ns, 
       status_(reporting == Reporting::kPublished ? std::optional(node.publish(messages::topics::kClockStatus))
                                                  : std::nullopt),
       replies_(node.subscribe<messages::msg::ClockReply>(
-          messages::topics::kClockReply, [this](const messages::msg::ClockReply& reply) { take(reply); })) {}
+          messages::topics::kClockReply, [this](const messages::msg::ClockReply& reply) { take(reply); },
+          dds::Delivery::kShared, dds::OneSource{kSourceSilence})) {}
 
 void ClockClient::ask_if_due() {
   latest_.take(known_);

@@ -28,6 +28,7 @@ constexpr double kVehicleClockStands_s = 0.5;
 
 // The battery is sampled at 10 Hz only. Well below battery_timeout_s, so that a restarted vehicle is heard in time.
 constexpr auto kBatterySourceSilence = 1000ms;
+constexpr auto kInfoSourceSilence = 1500ms;  // vehicle_info comes at 1 Hz
 
 }  // namespace
 
@@ -94,7 +95,8 @@ void ControlService::subscribe_sensors(dds::Node& node) {
 void ControlService::subscribe(dds::Node& node) {
   subscribe_sensors(node);
   subscriptions_.push_back(node.subscribe<msg::VehicleInfo>(
-      topics::kVehicleInfo, [this](const auto& message) { on_vehicle_info(message); }));
+      topics::kVehicleInfo, [this](const auto& message) { on_vehicle_info(message); }, Delivery::kShared,
+      dds::OneSource{kInfoSourceSilence}));
   subscriptions_.push_back(node.subscribe<msg::Setpoint>(
       topics::kSetpoint, [this](const auto& message) { put(message, loop_.setpoint, setpoint_faults_); }));
   subscriptions_.push_back(node.subscribe<msg::GroundLink>(
