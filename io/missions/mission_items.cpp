@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/control/planning/checks_in_frame.hpp"
 #include "swiftlet/control/planning/waypoint_path.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
@@ -91,10 +91,10 @@ class ItemReader {
     Eigen::Vector3d top_ned =
         0.5 * (limits_.fence_min_ned + limits_.fence_max_ned);  // horizontal position unknown
     top_ned.z() = item.position_ned.z();
-    require_inside_fence(height, top_ned);
     if (!control::check_height("", top_ned.z(), limits_).accepted)
       height.fail(fmt::format("is {:g} m, must be at least the minimum height, {:g} m", -top_ned.z(),
                               limits_.min_height_m));
+    require_in_air(height, top_ned);
     item.speed = speed(node);
     item.hold_s = hold(node);
     return item;
@@ -245,35 +245,24 @@ class ItemReader {
 
   // Checks the whole path, also between its points.
   void require_flyable(const control::PlannedPath& planned, const std::vector<ConfigNode>& points) const {
+    const std::string what = in_frame(frame_);
     std::size_t leg = 0;
     for (std::size_t i = 0; i < planned.segments.size(); ++i) {
       while (leg + 1 < planned.leg_begins.size() && planned.leg_begins[leg + 1] <= i) ++leg;
-      const control::Outcome outcome = control::check_segment("in NED", planned.segments[i], limits_);
+      const control::Outcome outcome =
+          control::check_segment({what.c_str(), frame_}, planned.segments[i], limits_);
       if (!outcome.accepted) points[leg].fail(std::string("the path from here, ") + outcome.reason);
     }
   }
 
-  void require_inside_fence(const ConfigNode& node, const Eigen::Vector3d& position_ned) const {
-    constexpr const char* kAxes[] = {"north", "east", "down"};
-    for (int axis = 0; axis < 3; ++axis) {
-      const double value = position_ned[axis];
-      const double low = limits_.fence_min_ned[axis];
-      const double high = limits_.fence_max_ned[axis];
-      if (value >= low && value <= high) continue;
-      node.fail(fmt::format("{} is {:g} m, must be inside the fence, {:g} to {:g} m", kAxes[axis], value, low,
-                            high));
-    }
-  }
-
-  void require_height(const ConfigNode& node, double z_ned) const {
-    const control::Outcome outcome = control::check_height("in NED", z_ned, limits_);
-    if (!outcome.accepted) node.fail(outcome.reason);
+  void require_in_air(const ConfigNode& node, const Eigen::Vector3d& position_ned) const {
+    const std::string fault = position_fault(position_ned, frame_, limits_);
+    if (!fault.empty()) node.fail(fault);
   }
 
   Eigen::Vector3d position(const ConfigNode& node) const {
     const Eigen::Vector3d position_ned = placement_.position(ned_from(frame_, node.vector3()));
-    require_height(node, position_ned.z());
-    require_inside_fence(node, position_ned);
+    require_in_air(node, position_ned);
     return position_ned;
   }
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/control/planning/checks_in_frame.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/math/euler.hpp"
@@ -131,7 +131,9 @@ TimedSetpoint SetpointRows::setpoint(const std::vector<double>& row, int line) {
   last_time_s_ = time_s;
   const Setpoint setpoint = setpoint_of(row);
   if (kind_ == SetpointKind::kPosition) {
-    const control::Outcome outcome = control::check_above_ground("in NED", setpoint.position_ned.z());
+    const std::string what = in_frame(columns_.frame());
+    const control::Outcome outcome =
+        control::check_above_ground({what.c_str(), columns_.frame()}, setpoint.position_ned.z());
     if (!outcome.accepted) throw ConfigError(file_, line, "z", outcome.reason);
   }
   return TimedSetpoint{time_s, setpoint};

@@ -218,6 +218,16 @@ INSTANTIATE_TEST_SUITE_P(
                      "m.yaml:5: items[1].position_m: east is 7.5 m, must be inside the fence, -3 to 3 m"},
         tests::Fault{"TooHigh", kHead + "  - {kind: takeoff, height_m: 9, speed_m_s: 0.5}\n",
                      "m.yaml:4: items[0].height_m: down is -9 m, must be inside the fence, -2.5 to 0 m"},
+        tests::Fault{
+            "BelowTheGroundInEnu",
+            "frame: enu\ntolerance_m: 0.1\nitems:\n" + kTakeoff +
+                "  - {kind: waypoint, position_m: [1, 0, -0.2], speed_m_s: 0.5}\n",
+            "m.yaml:5: items[1].position_m: in ENU: z = -0.200 m is below the ground, as z points up (ENU); "
+            "0.200 m above the ground is z = 0.200 m"},
+        tests::Fault{"TooHighInEnu",
+                     "frame: enu\ntolerance_m: 0.1\nitems:\n" + kTakeoff +
+                         "  - {kind: waypoint, position_m: [1, 0, 9], speed_m_s: 0.5}\n",
+                     "m.yaml:5: items[1].position_m: up is 9 m, must be inside the fence, 0 to 2.5 m"},
         tests::Fault{"TooFast", kHead + kTakeoff + "  - {kind: land, speed_m_s: 4}\n",
                      "m.yaml:5: items[1].speed_m_s: is 4, must be above 0 and at most 2"},
         tests::Fault{"NotANumber",

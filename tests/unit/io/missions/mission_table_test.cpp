@@ -58,7 +58,7 @@ TEST_F(MissionTableTest, PolynomialsOfUavTrajectories) {
     EXPECT_EQ(file.mission.segments.size(), 2U) << header;
   }
   EXPECT_EQ(refused(upper_header() + "\n\n# fast\n" + polynomial_row(0.1, 0.0, 5.0, 1.0) + "\n")
-                .rfind("f.csv:4: segment 1 in NED reaches ", 0),
+                .rfind("f.csv:4: segment 1 in ENU reaches ", 0),
             0U)
       << "the line of the file";
 }
