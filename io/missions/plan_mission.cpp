@@ -85,7 +85,7 @@ class PlanReader {
 
   MissionFile read() {
     if (plan_.home) read_home(*plan_.home);
-    set_speed(plan_.speed && plan_.speed->value ? plan_.speed->number(io::above(0.0)) : kDefaultSpeed);
+    set_speed(kDefaultSpeed);
     for (const PlanItem& item : plan_.items) read_item(item);
     complete();
     MissionFile file;
@@ -231,11 +231,15 @@ class PlanReader {
     if (item.kind != MissionItemKind::kLand) at_ = item.position_ned;
   }
 
-  // Returns the position in the plan: in NED from home, m. Take-offs and landings may omit the horizontal position.
+  // Returns the position in the plan: in NED from home, m. Take-offs and landings may omit the horizontal position. In
+  // geographic coordinates, Mission Planner and ArduPilot write 0, 0 for "here".
   Eigen::Vector3d position(const PlanItem& item, bool place_optional) {
     const std::vector<PlanNumber>& params = item.params;
     const int kind = item.frame.integer(255);
-    const bool placed = !place_optional || (item.params[4].value && item.params[5].value);
+    const bool here =
+        (kind == kGlobal || kind == kGlobalRelative) && params[4].value == 0.0 && params[5].value == 0.0;
+    const bool placed = !here && (!place_optional || (params[4].value && params[5].value));
+    if (here) here_.push_back(std::to_string(&item - plan_.items.data() + 1));
     switch (kind) {
       case kGlobal:
       case kGlobalRelative: {
@@ -293,8 +297,16 @@ class PlanReader {
     if (takeoff_aside_m_ > kSamePlace_m)
       all.push_back(
           fmt::format("it takes off where it stands; the plan says {:.2f} m away", takeoff_aside_m_));
+    if (!here_.empty())
+      all.push_back(fmt::format("latitude and longitude 0 of item{} {} mean here",
+                                here_.size() > 1 ? "s" : "", one_of(here_, " and ")));
     if (!for_aeroplanes_.empty())
       all.push_back(fmt::format("for aeroplanes, not used: parameter {}", fmt::join(for_aeroplanes_, ", ")));
+    if (plan_.estimates_speed)
+      all.push_back(fmt::format(
+          "hoverSpeed and cruiseSpeed of the plan are for the estimate of QGroundControl: it flies at {:g} "
+          "m/s, and at the speeds of its commands",
+          std::min(kDefaultSpeed, limits_.max_speed)));
     if (fastest_wanted_ > 0.0)
       all.push_back(fmt::format("flown at up to {:g} m/s, the limit; the plan wants {:g} m/s",
                                 limits_.max_speed, fastest_wanted_));
@@ -313,6 +325,7 @@ class PlanReader {
   double speed_ = kDefaultSpeed;
   double fastest_wanted_ = 0.0;  // m/s, largest speed above the limit; 0: none
   double takeoff_aside_m_ = 0.0;
+  std::vector<std::string> here_;            // numbers of items at latitude and longitude 0
   std::vector<std::string> for_aeroplanes_;  // parameters without effect
   bool landed_ = false, takeoff_added_ = false, landing_added_ = false, global_ = false, local_ = false;
 };

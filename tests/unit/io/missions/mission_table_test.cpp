@@ -159,6 +159,10 @@ TEST_F(MissionTableTest, ListOfWaypoints) {
   EXPECT_NEAR(file.mission.items[1].position_ned.x(), 10.0, 0.05);
   EXPECT_NEAR(file.mission.items[1].position_ned.z(), -2.0, 1e-9);
   EXPECT_TRUE(assumes(file, "a list of waypoints"));
+  std::string home_in_frame_3 = list;
+  home_in_frame_3.replace(home_in_frame_3.find("0\t1\t0\t16"), 8, "0\t1\t3\t16");
+  EXPECT_EQ(load("h.waypoints", home_in_frame_3).mission.items[1].position_ned,
+            file.mission.items[1].position_ned);
   std::string broken = list;
   broken.replace(broken.find("8.5455938\t2.0\t1\n2"), 9, "east");
   EXPECT_NE(

@@ -39,11 +39,11 @@ TEST(QGroundControlPlan, ReadsThePx4BoxMission) {
   EXPECT_NEAR(items[2].position_ned.y(), -19.05, 0.05);
   EXPECT_EQ(items[2].position_ned.z(), -10.0);
   EXPECT_TRUE(items[1].yaw_free);
-  EXPECT_EQ(items[1].speed, 2.0);
+  EXPECT_EQ(items[1].speed, 0.5) << "hoverSpeed is a setting of its estimate";
   EXPECT_LT((items[5].position_ned - items[4].position_ned).norm(), 0.1);  // above where it lands
   EXPECT_EQ(items[6].kind, MissionItemKind::kLand);
   EXPECT_TRUE(assumes(file, "home, 47.3977420, 8.5455940 deg and 488.0 m, is the origin"));
-  EXPECT_TRUE(assumes(file, "the plan wants 5 m/s"));
+  EXPECT_TRUE(assumes(file, "hoverSpeed and cruiseSpeed of the plan are for the estimate"));
   EXPECT_TRUE(assumes(file, "the plan says 0.40 m away"));
   EXPECT_TRUE(control::check(file.mission, field()).accepted) << control::check(file.mission, field()).reason;
 }
@@ -59,7 +59,7 @@ TEST(QGroundControlPlan, ReadsLocalCoordinatesInBothFrames) {
   EXPECT_EQ(items[1].hold_s, 2.5);
   EXPECT_FALSE(items[1].yaw_free);
   EXPECT_NEAR(items[1].yaw_rad, M_PI / 2, 1e-12);
-  EXPECT_EQ(items[1].speed, 0.8);
+  EXPECT_EQ(items[1].speed, 0.5);
   EXPECT_EQ(items[2].position_ned, Vector3d(2, 1, -1.5));
   EXPECT_EQ(items[2].speed, 0.4);
   EXPECT_EQ(items[3].hold_s, 3.0);
@@ -98,6 +98,19 @@ TEST(QGroundControlPlan, ReadsWhatElseACommandSays) {
   EXPECT_EQ(file.mission.items[2].hold_s, 2.0);
   EXPECT_TRUE(
       assumes(file, "for aeroplanes, not used: parameter 1 of 22 (take-off), 2 of 19 (loiter for a time)"));
+}
+
+TEST(QGroundControlPlan, ReadsPlaceZeroAsHere) {
+  const std::string up = item(22, 3, "0,0,0,0,0,0,1") + "," + item(16, 3, "0,0,0,null,47.40001,8.5,1");
+  const MissionFile file = qgc(plan(up + "," + item(21, 3, "0,0,0,0,0,0,0")));
+  ASSERT_EQ(file.mission.items.size(), 3U) << "it lands where it is";
+  EXPECT_NEAR(file.mission.items[1].position_ned.x(), 1.11, 0.01);
+  EXPECT_TRUE(assumes(file, "latitude and longitude 0 of items 1 and 3 mean here"));
+  EXPECT_EQ(qgc(plan(kUp + "," + item(16, 1, "0,0,0,null,1,1,-1") + "," + item(21, 1, "0,0,0,0,0,0,0")))
+                .mission.items[2]
+                .position_ned,
+            Vector3d(0, 0, -1))
+      << "local coordinates of 0 are home";
 }
 
 TEST(QGroundControlPlan, AcceptsAnyWhiteSpace) {
