@@ -37,10 +37,6 @@ char separator_of(std::string_view line) {
   return ' ';
 }
 
-bool is_comment(std::string_view line) {
-  return line.front() == '#' || line.front() == '%' || line.substr(0, 2) == "//";
-}
-
 // The lines of a file, apart.
 struct Parts {
   std::optional<CsvLine> comment;  // the last before the rows
@@ -310,8 +306,6 @@ Written written(const Parts& parts, const std::string& file, char separator) {
   table.file = file;
   const std::size_t columns = csv_fields(parts.rows.front().text, 1, separator).size();
   for (const CsvLine& line : parts.rows) {
-    if (separator == ';' && line.text.find(',') != std::string_view::npos)
-      throw ConfigError(file, line.number, "", "has commas beside semicolons: numbers must have points");
     table.lines.push_back(line.number);
     table.rows.push_back(csv_fields(line.text, columns, separator));
   }

@@ -118,7 +118,11 @@ Setpoint SetpointRows::setpoint_of(const std::vector<double>& row) const {
 std::optional<TimedSetpoint> SetpointRows::read(const std::string& line) {
   const std::vector<CsvLine> lines = csv_lines(line, file_, ++line_);
   if (lines.empty()) return std::nullopt;
-  return setpoint(csv_numbers(csv_fields(lines.front().text, names_.size()), names_, file_, line_), line_);
+  return read(lines.front());
+}
+
+TimedSetpoint SetpointRows::read(const CsvLine& line) {
+  return setpoint(csv_numbers(csv_fields(line.text, names_.size()), names_, file_, line.number), line.number);
 }
 
 TimedSetpoint SetpointRows::setpoint(const std::vector<double>& row, int line) {

@@ -104,7 +104,7 @@ TEST_F(MissionTableTest, SeparatorsCommentsAndNames) {
   expect_still(load("s.csv", "// exported\nTime\tpx\tpy\tpz\tyaw\n" + rows("{}\t0.1\t0.2\t1.5\t1.5708")),
                0.0);
   expect_still(load("s.csv", "t,x,y,z,yaw\n\n% at rest\n" + rows("{},0.1,0.2,1.5,1.5708")), 0.0);
-  EXPECT_EQ(refused("t;x;y;z\n0;0,1;0;1\n"),
+  EXPECT_EQ(refused("t;x;y;z\n0;0,1;0;1.5\n"),
             "f.csv:2: has commas beside semicolons: numbers must have points");
   EXPECT_EQ(refused("t,x,y,z,colour\n0,0,0,1,3\n")
                 .rfind("f.csv:1: header: has the column colour, which is not known", 0),
