@@ -7,8 +7,10 @@
 
 namespace swiftlet::io {
 
-const Units kSeconds = {
-    {"s", 1.0, {"sec"}}, {"ms", 1e-3}, {"us", 1e-6, {"\xc2\xb5s", "\xce\xbcs"}}, {"ns", 1e-9}};
+const Units kSeconds = {{"s", 1.0, {"sec"}},
+                        {"ms", 1e-3, {"msec"}},
+                        {"us", 1e-6, {"usec", "\xc2\xb5s", "\xce\xbcs"}},
+                        {"ns", 1e-9, {"nsec"}}};
 const Units kMetres = {{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}};
 const Units kMetresPerSecond = {{"m/s", 1.0, {"m s^-1"}}, {"cm/s", 1e-2}};
 const Units kAccelerations = {{"m/s^2", 1.0, {"m/s2", "m/s\xc2\xb2", "m s^-2"}},

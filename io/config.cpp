@@ -11,6 +11,7 @@
 #include "swiftlet/io/config_tree.hpp"
 #include "swiftlet/io/nearest_name.hpp"
 #include "swiftlet/io/text.hpp"
+#include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::io {
 
@@ -34,7 +35,7 @@ std::string alternatives(const std::vector<std::string>& names) {
 
 std::string unknown_key(const std::vector<std::string>& known, const std::string& key) {
   if (known.empty()) return "is unknown, must be left out";
-  return "is unknown, must be one of " + alternatives(known) + or_nearest(known, key);
+  return "is unknown, must be one of " + alternatives(known) + or_nearest(known, key) + typography_in(key);
 }
 
 }  // namespace
@@ -179,7 +180,7 @@ double ConfigNode::number(const Bounds& bounds) const {
                   (error == std::errc::result_out_of_range || !std::isfinite(number)))) {
     fail_type("a finite number");
   }
-  if (error != std::errc() || end != text.data() + text.size()) fail_type("a number");
+  if (error != std::errc() || end != text.data() + text.size()) fail_type("a number" + typography_in(text));
   if (!bounds.contains(number)) fail_type(bounds.to_string());
   return number;
 }
@@ -191,7 +192,7 @@ std::int64_t ConfigNode::integer(std::int64_t min, std::int64_t max) const {
   std::int64_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   const bool whole = end == text.data() + text.size();
-  if (!whole || error == std::errc::invalid_argument) fail_type("a whole number");
+  if (!whole || error == std::errc::invalid_argument) fail_type("a whole number" + typography_in(text));
   if (error == std::errc::result_out_of_range || number < min || number > max) {
     fail_type("a whole number from " + std::to_string(min) + " to " + std::to_string(max));
   }

@@ -43,6 +43,7 @@ void check_text(std::string_view text, const std::string& file) {
     throw ConfigError(file, 0, "", "is too large, must hold at most " + std::to_string(kMaxBytes) + " bytes");
   }
   if (text.empty()) throw ConfigError(file, 0, "", "is empty, must be a YAML map");
+  refuse_utf16(text, file);
   int line = 1;
   for (std::size_t i = 0; i < text.size();) {
     const char c = text[i];
@@ -56,6 +57,45 @@ void check_text(std::string_view text, const std::string& file) {
   if (text.back() != '\n') {
     throw ConfigError(file, line, "", "is truncated: the last line must end with a newline");
   }
+}
+
+// The parser reports an unclosed { or [ where the next one is. Throws ConfigError where it opens, if there is one: a bracket
+// opens where a value may begin, and not within quotes or comments.
+void refuse_unclosed(std::string_view text, const std::string& file) {
+  std::vector<std::pair<char, int>> open;  // bracket and line
+  char quote = 0;
+  char before = '\n';  // the last character that is no blank
+  int line = 1;
+  const auto refuse = [&] {
+    throw ConfigError(file, open.back().second, "",
+                      std::string("is not valid YAML: the ") + open.back().first + " here is not closed");
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\n') ++line;
+    const bool begins = std::string_view("\n:-,[{").find(before) != std::string_view::npos;
+    if (quote != 0) {
+      if (c == quote) quote = 0;
+    } else if (c == '#' && (i == 0 || std::string_view(" \n").find(text[i - 1]) != std::string_view::npos)) {
+      i = std::min(text.find('\n', i), text.size()) - 1;
+    } else if (begins && (c == '"' || c == '\'')) {
+      quote = c;
+    } else if (begins && (c == '{' || c == '[')) {
+      open.emplace_back(c, line);
+    } else if (!open.empty() && (c == '}' || c == ']')) {
+      if ((c == '}') != (open.back().first == '{')) refuse();
+      open.pop_back();
+    }
+    if (c != ' ') before = c;
+  }
+  if (!open.empty()) refuse();
+}
+
+// The text from a line on; empty behind the last.
+std::string_view from_line(std::string_view text, int number) {
+  for (; number > 1 && !text.empty(); --number)
+    text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  return text;
 }
 
 // Builds the tree from the parser's events. Refuses unsupported YAML as soon as it occurs.
@@ -196,9 +236,14 @@ ConfigNode parse_config(std::string_view text, const std::string& file_name) {
     while (parser.HandleNextDocument(builder)) {
     }
   } catch (const ConfigError&) {
+    refuse_unclosed(text, file_name);
     throw;
   } catch (const YAML::Exception& e) {
-    throw ConfigError(file_name, e.mark.is_null() ? 0 : e.mark.line + 1, "", "is not valid YAML: " + e.msg);
+    refuse_unclosed(text, file_name);
+    const int line = e.mark.is_null() ? 0 : e.mark.line + 1;
+    const std::string_view before = from_line(text, line - 1);
+    const std::string_view there = before.substr(0, before.size() - from_line(text, line + 1).size());
+    throw ConfigError(file_name, line, "", "is not valid YAML: " + e.msg + typography_in(there));
   } catch (const std::exception& e) {
     throw ConfigError(file_name, 0, "", std::string("cannot be read: ") + e.what());
   }
@@ -208,8 +253,9 @@ ConfigNode parse_config(std::string_view text, const std::string& file_name) {
   if (!tree->root || tree->root->kind == NodeKind::kNull)
     throw ConfigError(file_name, 0, "", "is empty, must be a YAML map");
   if (tree->root->kind != NodeKind::kMap) {
-    throw ConfigError(file_name, tree->root->line, "",
-                      "is " + tree->root->describe() + ", must be a YAML map");
+    throw ConfigError(
+        file_name, tree->root->line, "",
+        "is " + tree->root->describe() + ", must be a YAML map" + typography_in(tree->root->scalar));
   }
   ConfigNode::Value* const root = tree->root.get();
   return {std::move(tree), root};

@@ -97,6 +97,7 @@ fs::path configuration_file(const ConfigurationKind& kind, const std::string& na
   for (const ConfigurationFile& file : configuration_files(kind)) {
     if (file.name == name) return file.path;
   }
+  if (fs::exists(name + ".yaml")) return name + ".yaml";
   refuse_name(kind, name);
 }
 

@@ -43,44 +43,91 @@ bool read_number(std::string_view field, double& number) {
   return error == std::errc() && stop == end && std::isfinite(number);
 }
 
-// Iterates over the lines of a text. An empty last line does not count.
-class Lines {
- public:
-  // first_line: of the text in the file. Throws ConfigError for control characters.
-  Lines(std::string_view text, const std::string& file, int first_line = 1)
-      : rest_(text), number_(first_line - 1) {
-    const int line = line_of_control_character(text);
-    if (line > 0)
-      throw ConfigError(file, number_ + line, "", "is not a text file: it has control characters");
-    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-    if (rest_.substr(0, kByteOrderMark.size()) == kByteOrderMark) rest_.remove_prefix(kByteOrderMark.size());
+bool has_decimal_point(std::string_view line) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    if ((line[i] == '.' && is_digit(line[i - 1])) || (line[i - 1] == '.' && is_digit(line[i]))) return true;
   }
+  return false;
+}
 
-  bool next(std::string_view& line) {
-    if (rest_.empty()) return false;
-    const std::size_t end = rest_.find('\n');
-    line = rest_.substr(0, end);
-    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    ++number_;
-    return true;
+// UTF-8 with LF at the ends of lines and blanks where the text has no-break spaces.
+std::string with_plain_blanks(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  const auto skip = [&text](std::string_view characters) {
+    const bool found = text.substr(0, characters.size()) == characters;
+    if (found) text.remove_prefix(characters.size());
+    return found;
+  };
+  skip("\xef\xbb\xbf");
+  while (true) {
+    const std::size_t plain = std::min(text.find_first_of("\r\xc2\xe2"), text.size());
+    out += text.substr(0, plain);
+    text.remove_prefix(plain);
+    if (text.empty()) return out;
+    if (skip("\r\n") || skip("\r")) {
+      out += '\n';
+    } else if (skip("\xc2\xa0") || skip("\xe2\x80\xaf")) {
+      out += ' ';
+    } else {
+      out += text.front();
+      text.remove_prefix(1);
+    }
   }
-  int number() const { return number_; }
-  bool only_blank_left() const { return rest_.find_first_not_of(" \t\r\n") == std::string_view::npos; }
+}
 
- private:
-  std::string_view rest_;
-  int number_;
-};
+// A line with commas between its columns, without the quotes around them. Commas in numbers become points where
+// another separator stands between columns, or quotes around them.
+std::string with_commas(std::string_view line, char separator) {
+  std::string out;
+  bool quoted = false;
+  bool at_start = true;  // of a field
+  for (const char c : line) {
+    if (c == '"' && (at_start || quoted)) {
+      quoted = !quoted;
+    } else if (c == separator && !quoted) {
+      out += ',';
+    } else {
+      out += c == ',' ? '.' : c;
+    }
+    at_start = (at_start && c == ' ') || (c == separator && !quoted);
+  }
+  return out;
+}
 
-Table read_rows(Lines& lines, const std::string& file_name, const std::vector<std::string>& columns,
-                std::size_t min_rows) {
+// What separates the columns: blanks count as a comma, since only missions have such tables.
+char separator_in(const std::vector<CsvLine>& lines) {
+  const auto first =
+      std::find_if(lines.begin(), lines.end(), [](const CsvLine& l) { return !is_comment(l.text); });
+  if (first == lines.end()) return ',';
+  if (first->text.find(';') != std::string::npos) return ';';
+  return first->text.find(',') == std::string::npos && first->text.find('\t') != std::string::npos ? '\t'
+                                                                                                   : ',';
+}
+
+// Throws ConfigError for commas and points in numbers: one of them could separate thousands.
+void refuse_two_points(const std::vector<CsvLine>& lines, const std::string& file, char separator) {
+  const auto has_comma = [](const CsvLine& l) {
+    return !is_comment(l.text) && l.text.find(',') != std::string::npos;
+  };
+  const auto comma = std::find_if(lines.begin(), lines.end(), has_comma);
+  const bool points = std::any_of(lines.begin() + 1, lines.end(), [](const CsvLine& l) {
+    return !is_comment(l.text) && has_decimal_point(l.text);
+  });
+  if (comma == lines.end() || !points) return;
+  throw ConfigError(file, comma->number, "",
+                    std::string("has commas beside ") + (separator == ';' ? "semicolons" : "tabs") +
+                        ": numbers must have points");
+}
+
+Table read_rows(const std::vector<CsvLine>& lines, const std::string& file_name,
+                const std::vector<std::string>& columns, std::size_t min_rows) {
   Table table(file_name, columns);
-  std::string_view line;
-  while (!lines.only_blank_left() && lines.next(line)) {
-    std::vector<std::string_view> fields = all_fields(line);
-    if (trimmed(line).empty()) fields.clear();
-    table.add_row(lines.number(), fields);
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const int next = lines[i - 1].number + 1;
+    if (lines[i].number > next) table.add_row(next, {});  // a blank line, which is refused
+    table.add_row(lines[i].number, csv_fields(lines[i].text, columns.size()));
   }
   table.require_rows(min_rows);
   return table;
@@ -109,7 +156,8 @@ void require_fields(const std::vector<std::string_view>& fields, const std::vect
 double csv_number(std::string_view field, const std::string& column, const std::string& file_name, int line) {
   double number = 0.0;
   if (!read_number(field, number))
-    throw ConfigError(file_name, line, column, "is " + shown_field(field) + ", must be a finite number");
+    throw ConfigError(file_name, line, column,
+                      "is " + shown_field(field) + ", must be a finite number" + typography_in(field));
   return number;
 }
 
@@ -125,29 +173,23 @@ std::vector<double> csv_numbers(const std::vector<std::string_view>& fields,
 
 Table parse_csv(std::string_view text, const std::string& file_name, const std::vector<std::string>& columns,
                 std::size_t min_rows) {
-  Lines lines(text, file_name);
-  if (lines.only_blank_left())
+  const std::vector<CsvLine> lines = csv_lines(text, file_name);
+  if (lines.empty())
     throw ConfigError(file_name, 0, "", "is empty, must begin with the header " + joined(columns, ","));
-  std::string_view header;
-  lines.next(header);
-  require_header(all_fields(header), columns, file_name);
+  require_header(all_fields(lines.front().text), columns, file_name, lines.front().number);
   return read_rows(lines, file_name, columns, min_rows);
 }
 
 Table parse_csv_as_headed(std::string_view text, const std::string& file_name, std::size_t min_rows) {
-  Lines lines(text, file_name);
-  std::string_view header;
-  if (lines.only_blank_left()) throw ConfigError(file_name, 0, "", "is empty, must begin with a header");
-  lines.next(header);
+  const std::vector<CsvLine> lines = csv_lines(text, file_name);
+  if (lines.empty()) throw ConfigError(file_name, 0, "", "is empty, must begin with a header");
+  const std::string& header = lines.front().text;
   std::vector<std::string> columns;
   for (const std::string_view name : all_fields(header)) {
     if (name.empty() || is_number(name))
-      throw ConfigError(file_name, 1, "header", "is " + shown_field(header) + ", must name every column");
+      throw ConfigError(file_name, lines.front().number, "header",
+                        "is " + shown_field(header) + ", must name every column");
     columns.emplace_back(name);
-  }
-  if (columns.size() == 1 && columns.front().find_first_of(";\t") != std::string::npos) {
-    throw ConfigError(file_name, 1, "header",
-                      "has semicolons or tabs between its columns, must have commas, and points in numbers");
   }
   return read_rows(lines, file_name, columns, min_rows);
 }
@@ -157,14 +199,26 @@ Table load_csv(const std::string& path, const std::vector<std::string>& columns,
 }
 
 std::vector<CsvLine> csv_lines(std::string_view text, const std::string& file_name, int first_line) {
-  Lines lines(text, file_name, first_line);
-  std::vector<CsvLine> out;
-  std::string_view line;
-  while (lines.next(line)) {
-    line = trimmed(line, " \t\r");
-    if (!line.empty()) out.push_back({lines.number(), line});
+  refuse_utf16(text, file_name);
+  const std::string plain = with_plain_blanks(text);
+  if (const int line = line_of_control_character(plain); line > 0)
+    throw ConfigError(file_name, first_line - 1 + line, "", "is not a text file: it has control characters");
+  std::vector<CsvLine> lines;
+  int number = first_line;
+  for (std::size_t at = 0; at < plain.size(); ++number) {
+    const std::size_t end = std::min(plain.find('\n', at), plain.size());
+    const std::string_view line = trimmed(std::string_view(plain).substr(at, end - at));
+    const bool names_separator = number == first_line && line.size() == 5 && line.substr(0, 4) == "sep=";
+    if (!line.empty() && !names_separator) lines.push_back({number, std::string(line)});
+    at = end + 1;
   }
-  return out;
+  const char separator = separator_in(lines);
+  if (separator != ',') refuse_two_points(lines, file_name, separator);
+  for (CsvLine& line : lines) {
+    const bool is_plain = separator == ',' && line.text.find('"') == std::string::npos;
+    if (!is_plain && !is_comment(line.text)) line.text = with_commas(line.text, separator);
+  }
+  return lines;
 }
 
 std::vector<std::string_view> csv_fields(std::string_view line, std::size_t columns, char separator) {
@@ -174,10 +228,15 @@ std::vector<std::string_view> csv_fields(std::string_view line, std::size_t colu
 }
 
 std::vector<std::string> first_csv_line(std::string_view text, const std::string& file_name) {
-  const std::vector<CsvLine> lines = csv_lines(text, file_name);
+  constexpr std::size_t kLongestHeader = std::size_t{1} << 16;
+  const std::vector<CsvLine> lines = csv_lines(text.substr(0, kLongestHeader), file_name);
   if (lines.empty()) return {};
   const std::vector<std::string_view> fields = csv_fields(lines.front().text);
   return {fields.begin(), fields.end()};
+}
+
+bool is_comment(std::string_view line) {
+  return line.front() == '#' || line.front() == '%' || line.substr(0, 2) == "//";
 }
 
 bool is_number(std::string_view field) { return parse_number(field).has_value(); }

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 #include <system_error>
+#include <utility>
 
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/text.hpp"
@@ -48,6 +49,24 @@ std::string printable(std::string_view text) {
     text.remove_prefix(std::max<std::size_t>(length, 1));
   }
   return text.empty() ? out : out + "...";
+}
+
+void refuse_utf16(std::string_view text, const std::string& file) {
+  const std::string_view begin = text.substr(0, 2);
+  if (begin == "\xff\xfe" || begin == "\xfe\xff") throw ConfigError(file, 0, "", "is UTF-16, must be UTF-8");
+}
+
+std::string typography_in(std::string_view number) {
+  constexpr std::pair<const char*, const char*> kCharacters[] = {
+      {"\xe2\x88\x92", "U+2212, a minus sign of typography"},
+      {"\xe2\x80\x93", "U+2013, a dash"},
+      {"\xc2\xa0", "U+00A0, a no-break space"},
+      {"\xe2\x80\xaf", "U+202F, a no-break space"},
+  };
+  for (const auto& [utf8, name] : kCharacters) {
+    if (number.find(utf8) != std::string_view::npos) return std::string(": it has ") + name;
+  }
+  return "";
 }
 
 int line_of_control_character(std::string_view text) {

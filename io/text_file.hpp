@@ -18,6 +18,13 @@ std::size_t utf8_length(std::string_view text);
 // after 2000 bytes.
 std::string printable(std::string_view text);
 
+// Throws ConfigError for a text that begins as UTF-16 does.
+void refuse_utf16(std::string_view text, const std::string& file);
+
+// Why a number cannot be read although it looks like one: ": it has U+2212, a minus sign of typography". Empty if it
+// has only characters that a keyboard types.
+std::string typography_in(std::string_view number);
+
 // The line, from 1, of the first control character that no text file has; 0 if there is none.
 int line_of_control_character(std::string_view text);
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "swiftlet/control/planning/bernstein.hpp"
+#include "swiftlet/control/planning/checks_in_frame.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -18,27 +19,51 @@ bool finite(const Polynomial& p) {
   return std::all_of(p.begin(), p.end(), [](double c) { return std::isfinite(c); });
 }
 
+// An axis of NED in the frame of a reason: its name, and -1 if it points the other way.
 struct NamedAxis {
   char name;
-  int index;
-  const Polynomial& polynomial;
+  double sign;
 };
 
-Outcome check_axis(const char* what, const NamedAxis& axis, double duration_s, const Limits& limits) {
-  const double low = limits.fence_min_ned[axis.index];
-  const double high = axis.index == 2 ? lowest_z_ned(limits) : limits.fence_max_ned[axis.index];
-  const Bernstein position = bernstein(axis.polynomial, duration_s);
+NamedAxis axis_in(Frame frame, int ned_axis) {
+  if (frame == Frame::kNed) return {"xyz"[ned_axis], 1.0};
+  if (frame == Frame::kEnu) return {"yxz"[ned_axis], ned_axis == 2 ? -1.0 : 1.0};
+  return {"xyz"[ned_axis], ned_axis == 0 ? 1.0 : -1.0};
+}
+
+// low, high: of the fence, in NED as what was reached.
+Outcome outside_fence(InFrame named, int ned_axis, double reached, double low, double high) {
+  const NamedAxis axis = axis_in(named.frame, ned_axis);
+  const double ends[] = {axis.sign * low + 0.0, axis.sign * high + 0.0};  // no -0.000
+  return refuse("%s: %c is %.3f m, outside the fence of %.3f to %.3f m", named.what, axis.name,
+                axis.sign * reached, std::min(ends[0], ends[1]), std::max(ends[0], ends[1]));
+}
+
+Outcome check_inside_fence(InFrame named, const Eigen::Vector3d& position_ned, const Limits& limits) {
+  for (int i = 0; i < 3; ++i) {
+    if (!std::isfinite(position_ned[i]))
+      return refuse("%s: %c is not a finite number", named.what, axis_in(named.frame, i).name);
+    if (position_ned[i] < limits.fence_min_ned[i] || position_ned[i] > limits.fence_max_ned[i])
+      return outside_fence(named, i, position_ned[i], limits.fence_min_ned[i], limits.fence_max_ned[i]);
+  }
+  return accept();
+}
+
+Outcome check_axis(InFrame named, int ned_axis, const Polynomial& polynomial, double duration_s,
+                   const Limits& limits) {
+  const double low = limits.fence_min_ned[ned_axis];
+  const double high = ned_axis == 2 ? lowest_z_ned(limits) : limits.fence_max_ned[ned_axis];
+  const Bernstein position = bernstein(polynomial, duration_s);
   if (position.least() >= low - kPlaceTolerance_m && position.greatest() <= high + kPlaceTolerance_m)
     return accept();
   const double most = maximum(position, kPlacePrecision_m).value;
-  if (axis.index == 2) {
-    const Outcome height = check_height(what, most, limits);
+  if (ned_axis == 2) {
+    const Outcome height = check_height(named, most, limits);
     if (!height.accepted) return height;
   }
   for (const double reached : {minimum(position, kPlacePrecision_m).value, most}) {
     if (reached >= low - kPlaceTolerance_m && reached <= high + kPlaceTolerance_m) continue;
-    return refuse("%s: %c is %.3f m, outside the fence of %.3f to %.3f m", what, axis.name, reached, low,
-                  high);
+    return outside_fence(named, ned_axis, reached, low, high);
   }
   return accept();
 }
@@ -66,6 +91,17 @@ Outcome check_segments(const char* of, const PolynomialSegment* segments, std::s
     if (!outcome.accepted) return outcome;
   }
   return check_end("the trajectory", segments[count - 1], yaw_free);
+}
+
+Outcome check_motion(InFrame named, const PolynomialSegment& segment, const Limits& limits) {
+  const Polynomial* const axes[] = {&segment.x, &segment.y, &segment.z};
+  for (int i = 0; i < 3; ++i) {
+    const Outcome outcome = check_axis(named, i, *axes[i], segment.duration_s, limits);
+    if (!outcome.accepted) return outcome;
+  }
+  const Outcome outcome = check_length(named.what, segment, 1, limits.max_speed, "m/s");
+  if (!outcome.accepted) return outcome;
+  return check_length(named.what, segment, 2, limits.max_acceleration, "m/s^2");
 }
 
 // verb: "start" or "end".
@@ -138,40 +174,46 @@ Outcome refuse(const char* format, ...) {
   return outcome;
 }
 
-Outcome check_position(const char* what, const Eigen::Vector3d& position_ned, const Limits& limits) {
-  const Outcome height = check_height(what, position_ned.z(), limits);
+Outcome check_position(InFrame named, const Eigen::Vector3d& position_ned, const Limits& limits) {
+  const Outcome height = check_height(named, position_ned.z(), limits);
   if (!height.accepted && position_ned.allFinite()) return height;
-  return check_inside_fence(what, position_ned, limits);
+  return check_inside_fence(named, position_ned, limits);
+}
+
+Outcome check_position(const char* what, const Eigen::Vector3d& position_ned, const Limits& limits) {
+  return check_position(InFrame{what, Frame::kNed}, position_ned, limits);
 }
 
 Outcome check_inside_fence(const char* what, const Eigen::Vector3d& position_ned, const Limits& limits) {
-  constexpr char kAxis[] = "xyz";
-  for (int i = 0; i < 3; ++i) {
-    if (!std::isfinite(position_ned[i])) return refuse("%s: %c is not a finite number", what, kAxis[i]);
-    if (position_ned[i] < limits.fence_min_ned[i] || position_ned[i] > limits.fence_max_ned[i]) {
-      return refuse("%s: %c is %.3f m, outside the fence of %.3f to %.3f m", what, kAxis[i], position_ned[i],
-                    limits.fence_min_ned[i], limits.fence_max_ned[i]);
-    }
+  return check_inside_fence(InFrame{what, Frame::kNed}, position_ned, limits);
+}
+
+Outcome check_height(InFrame named, double z_ned, const Limits& limits) {
+  const double least_m = limits.min_height_m;
+  if (z_ned <= kPlaceTolerance_m - least_m) return accept();
+  const bool down = named.frame == Frame::kNed;
+  const double z = down ? z_ned : -z_ned;
+  if (z_ned > 0.0) {
+    return refuse(
+        "%s: z = %+.3f m is below the ground, as z points %s (%s); %.3f m above the ground is z = %.3f m",
+        named.what, z, down ? "down" : "up", frame_title(named.frame), z_ned, -z);
   }
-  return accept();
+  return refuse("%s: z = %.3f m is %.3f m above the ground; the minimum height is %.3f m, z = %.3f m",
+                named.what, z, std::abs(z), least_m, down ? -least_m : least_m);
 }
 
 Outcome check_height(const char* what, double z_ned, const Limits& limits) {
-  const double least_m = limits.min_height_m;
-  if (z_ned <= kPlaceTolerance_m - least_m) return accept();
-  if (z_ned > 0.0) {
-    return refuse(
-        "%s: z = +%.3f m is below the ground, as z points down (NED); %.3f m above the ground is z = -%.3f m",
-        what, z_ned, z_ned, z_ned);
-  }
-  return refuse("%s: z = %.3f m is %.3f m above the ground; the minimum height is %.3f m, z = -%.3f m", what,
-                z_ned, std::abs(z_ned), least_m, least_m);
+  return check_height(InFrame{what, Frame::kNed}, z_ned, limits);
+}
+
+Outcome check_above_ground(InFrame named, double z_ned) {
+  Limits any_height;
+  any_height.min_height_m = 0.0;
+  return check_height(named, z_ned, any_height);
 }
 
 Outcome check_above_ground(const char* what, double z_ned) {
-  Limits any_height;
-  any_height.min_height_m = 0.0;
-  return check_height(what, z_ned, any_height);
+  return check_above_ground(InFrame{what, Frame::kNed}, z_ned);
 }
 
 Outcome check_yaw(const char* what, double yaw_rad) {
@@ -269,26 +311,23 @@ Outcome check(const Trajectory& trajectory, const Limits& limits) {
   return check_segments("", trajectory.segments.data(), count, false, limits);
 }
 
-Outcome check_segment(const char* what, const PolynomialSegment& segment, const Limits& limits) {
+Outcome check_segment(InFrame named, const PolynomialSegment& segment, const Limits& limits) {
   if (!std::isfinite(segment.duration_s) || segment.duration_s <= 0.0 ||
       segment.duration_s > kLongestSegment_s) {
-    return refuse("%s: duration is %.3f s, must be above 0 and at most %.0f s", what, segment.duration_s,
-                  kLongestSegment_s);
+    return refuse("%s: duration is %.3f s, must be above 0 and at most %.0f s", named.what,
+                  segment.duration_s, kLongestSegment_s);
   }
   if (!finite(segment.x) || !finite(segment.y) || !finite(segment.z) || !finite(segment.yaw))
-    return refuse("%s: a coefficient is not a finite number", what);
-  return check_motion(what, segment, limits);
+    return refuse("%s: a coefficient is not a finite number", named.what);
+  return check_motion(named, segment, limits);
+}
+
+Outcome check_segment(const char* what, const PolynomialSegment& segment, const Limits& limits) {
+  return check_segment(InFrame{what, Frame::kNed}, segment, limits);
 }
 
 Outcome check_motion(const char* what, const PolynomialSegment& segment, const Limits& limits) {
-  for (const NamedAxis& axis :
-       {NamedAxis{'x', 0, segment.x}, NamedAxis{'y', 1, segment.y}, NamedAxis{'z', 2, segment.z}}) {
-    const Outcome outcome = check_axis(what, axis, segment.duration_s, limits);
-    if (!outcome.accepted) return outcome;
-  }
-  const Outcome outcome = check_length(what, segment, 1, limits.max_speed, "m/s");
-  if (!outcome.accepted) return outcome;
-  return check_length(what, segment, 2, limits.max_acceleration, "m/s^2");
+  return check_motion(InFrame{what, Frame::kNed}, segment, limits);
 }
 
 Outcome check_joint(const char* what, const PolynomialSegment& before, const PolynomialSegment& next) {

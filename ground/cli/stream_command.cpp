@@ -2,7 +2,6 @@
 #include <cstdio>
 #include <iostream>
 #include <iterator>
-#include <sstream>
 #include <thread>
 #include <vector>
 
@@ -50,15 +49,6 @@ struct StreamResult {
   std::string fault;    // a sentence; empty if the whole stream was sent
 };
 
-// Reads the whole file, so that nothing is flown of a file with an error further down.
-std::vector<io::TimedSetpoint> rows_of(io::SetpointRows& reader, std::istream& in) {
-  std::vector<io::TimedSetpoint> rows;
-  for (std::string line; std::getline(in, line);) {
-    if (const auto row = reader.read(line)) rows.push_back(*row);
-  }
-  return rows;
-}
-
 void require_rate(const std::vector<io::TimedSetpoint>& rows, const std::string& file) {
   if (rows.size() < 2)
     throw io::ConfigError(file, 0, "", "has " + std::to_string(rows.size()) + " rows, must have at least 2");
@@ -80,9 +70,9 @@ io::SetpointSource each_of(std::vector<io::TimedSetpoint> rows) {
   };
 }
 
-io::SetpointSource lines_of(std::shared_ptr<io::SetpointRows> reader, std::istream& in) {
-  return [reader = std::move(reader), &in]() -> std::optional<io::TimedSetpoint> {
-    for (std::string line; std::getline(in, line);) {
+io::SetpointSource piped_lines(std::shared_ptr<io::SetpointRows> reader) {
+  return [reader = std::move(reader)]() -> std::optional<io::TimedSetpoint> {
+    for (std::string line; std::getline(std::cin, line);) {
       if (auto row = reader->read(line)) return row;
     }
     return std::nullopt;
@@ -100,25 +90,30 @@ io::SetpointSource at_rate(io::SetpointSource source, const std::optional<double
   return io::resampled(std::move(source), *rate_hz);
 }
 
+// Reads a whole file, so that nothing is flown of one with an error further down.
 io::SetpointSource open(const StreamOptions& options) {
   const bool piped = options.file == "-";
   const std::string name = piped ? "standard input" : options.file;
-  auto file = std::make_shared<std::istringstream>(piped ? "" : io::read_text_file(options.file));
-  std::istream& in = piped ? std::cin : *file;
-  std::string first;
-  std::getline(in, first);
-  const std::vector<std::string> header = io::first_csv_line(first, name);
+  std::string text;
+  if (piped) {
+    std::getline(std::cin, text);
+  } else {
+    text = io::read_text_file(options.file);
+  }
+  const std::vector<std::string> header = io::first_csv_line(text, name);
   if (header.empty()) throw io::ConfigError(name, 0, "", "is empty, must hold setpoints such as t,x,y,z");
   std::vector<io::TimedSetpoint> rows;
   if (io::is_flight_csv(header)) {
-    const io::Table reference = io::reference_of_flight(first + "\n" + rest_of(in), name);
+    if (piped) text += "\n" + rest_of(std::cin);
+    const io::Table reference = io::reference_of_flight(text, name);
     say(name, io::extent_of(reference));
     rows = io::setpoints_of(reference, options.frame);
   } else {
     auto reader = std::make_shared<io::SetpointRows>(header, name, options.frame);
     if (reader->assumption()) say(name, *reader->assumption());
-    if (piped) return at_rate(lines_of(std::move(reader), in), options.rate_hz);
-    rows = rows_of(*reader, in);
+    if (piped) return at_rate(piped_lines(std::move(reader)), options.rate_hz);
+    const std::vector<io::CsvLine> lines = io::csv_lines(text, name);
+    for (std::size_t i = 1; i < lines.size(); ++i) rows.push_back(reader->read(lines[i]));
   }
   if (!options.rate_hz) require_rate(rows, name);
   return at_rate(each_of(std::move(rows)), options.rate_hz);

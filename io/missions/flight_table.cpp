@@ -104,7 +104,8 @@ void stop(std::vector<double>& numbers) {
 
 Table reference_of_flight(std::string_view text, const std::string& file_name) {
   const std::vector<CsvLine> lines = csv_lines(text, file_name);
-  const std::vector<std::string> header = first_csv_line(text, file_name);
+  const std::vector<std::string_view> names = csv_fields(lines.front().text);
+  const std::vector<std::string> header(names.begin(), names.end());
   const std::vector<std::size_t> at = places(header, file_name);
   std::vector<Row> rows = rows_of(lines, header, at, file_name);
   const auto flown = [](const Row& row) { return row.is_between_takeoff_and_landing(); };

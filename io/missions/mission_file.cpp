@@ -80,7 +80,8 @@ void read_fence(const ConfigNode& node, MissionFrame frame, const Placement& pla
   bounds = fenced(bounds, placement.position(ned_from(frame, least)),
                   placement.position(ned_from(frame, greatest)));
   const control::Outcome outcome = control::check(bounds, settings);
-  if (!outcome.accepted) node.fail(outcome.reason);
+  if (!outcome.accepted)
+    node.fail((frame == MissionFrame::kNed ? "" : "in NED: ") + std::string(outcome.reason));
 }
 
 // Requires all other keys before the items: otherwise a truncated file would lose them without an error.

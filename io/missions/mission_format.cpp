@@ -40,13 +40,13 @@ void refuse_other_options(const Source& source, const std::string& file, const F
 
 Source parse_source(const std::string& text, const std::string& file_name, const FileOptions& options) {
   const std::string extension = lower(std::filesystem::path(file_name).extension().string());
-  const std::string_view content = trimmed(text, " \t\r\n");
+  const std::string_view content = trimmed(text, " \t\r\n\xef\xbb\xbf");  // also without a byte order mark
   Source source;
   if (is_crazyflie_log(text)) {
     if (!options.columns.empty())
       throw ConfigError(file_name, 0, "", "is no table: --columns is for CSV files");
     take(source, read_crazyflie_log(text, file_name));
-  } else if (is_waypoint_list(text)) {
+  } else if (is_waypoint_list(content)) {
     source.plan = plan_of_waypoint_list(text, file_name);
     source.assumptions.emplace_back("a list of waypoints, read like a plan of QGroundControl");
   } else if (extension == ".plan" || (!content.empty() && content.front() == '{')) {

@@ -2,23 +2,24 @@
 #pragma once
 
 #include <cmath>
+#include <string>
 
 #include <Eigen/Core>
 
+#include "swiftlet/control/types/frame.hpp"
+
 namespace swiftlet::io {
 
-// kNed: x north, y east, z down; yaw clockwise from north. kEnu: x east, y north, z up; yaw counter-clockwise
-// from east. kNwu: x north, y west, z up; yaw counter-clockwise from north.
-enum class MissionFrame { kNed, kEnu, kNwu };
+using MissionFrame = control::Frame;
+using control::frame_title;
 
 // "ned", as options and the endings of columns have it.
 inline const char* frame_name(MissionFrame frame) {
   return frame == MissionFrame::kNed ? "ned" : frame == MissionFrame::kEnu ? "enu" : "nwu";
 }
-// "NED", for sentences.
-inline const char* frame_title(MissionFrame frame) {
-  return frame == MissionFrame::kNed ? "NED" : frame == MissionFrame::kEnu ? "ENU" : "NWU";
-}
+
+// "in NED", what the checks call a place.
+inline std::string in_frame(MissionFrame frame) { return std::string("in ") + frame_title(frame); }
 
 // Turns a position, velocity or acceleration.
 inline Eigen::Vector3d ned_from(MissionFrame frame, const Eigen::Vector3d& vector) {

@@ -8,11 +8,12 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/control/planning/checks_in_frame.hpp"
 #include "swiftlet/control/planning/waypoint_path.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
 #include "swiftlet/io/text_file.hpp"
+#include "swiftlet/math/angles.hpp"
 
 namespace swiftlet::io {
 namespace {
@@ -47,8 +48,8 @@ class ItemReader {
       : frame_(frame), placement_(placement), time_scale_(time_scale), limits_(limits), file_(file) {}
 
   void read(const ConfigNode& node) {
-    node.allow({"kind", "height_m", "position_m", "points", "file", "duration_s", "yaw_rad", "speed_m_s",
-                "acceptance_radius_m", "hold_s", "straight", "corridor_m", "smoothness"});
+    node.allow({"kind", "height_m", "position_m", "points", "file", "duration_s", "yaw_rad", "yaw_deg",
+                "speed_m_s", "acceptance_radius_m", "hold_s", "straight", "corridor_m", "smoothness"});
     const auto item = node.at("kind").choice<ReadItem>({{"takeoff", &ItemReader::takeoff},
                                                         {"waypoint", &ItemReader::waypoint},
                                                         {"path", &ItemReader::path},
@@ -68,9 +69,9 @@ class ItemReader {
   using ReadItem = MissionItem (ItemReader::*)(const ConfigNode&);
 
   void read_set(const ConfigNode& node) {
-    node.allow({"kind", "speed_m_s", "yaw_rad", "acceptance_radius_m", "hold_s"});
+    node.allow({"kind", "speed_m_s", "yaw_rad", "yaw_deg", "acceptance_radius_m", "hold_s"});
     const auto speed = node.find("speed_m_s");
-    const auto yaw = node.find("yaw_rad");
+    const auto yaw = yaw_in(node);
     const auto radius = node.find("acceptance_radius_m");
     const auto hold = node.find("hold_s");
     if (!speed && !yaw && !radius && !hold)
@@ -91,17 +92,17 @@ class ItemReader {
     Eigen::Vector3d top_ned =
         0.5 * (limits_.fence_min_ned + limits_.fence_max_ned);  // horizontal position unknown
     top_ned.z() = item.position_ned.z();
-    require_inside_fence(height, top_ned);
     if (!control::check_height("", top_ned.z(), limits_).accepted)
       height.fail(fmt::format("is {:g} m, must be at least the minimum height, {:g} m", -top_ned.z(),
                               limits_.min_height_m));
+    require_in_air(height, top_ned);
     item.speed = speed(node);
     item.hold_s = hold(node);
     return item;
   }
 
   MissionItem waypoint(const ConfigNode& node) {
-    node.allow({"kind", "position_m", "yaw_rad", "speed_m_s", "acceptance_radius_m", "hold_s"});
+    node.allow({"kind", "position_m", "yaw_rad", "yaw_deg", "speed_m_s", "acceptance_radius_m", "hold_s"});
     MissionItem item;
     item.kind = MissionItemKind::kWaypoint;
     item.position_ned = position(node.at("position_m"));
@@ -132,8 +133,8 @@ class ItemReader {
   }
 
   MissionItem path(const ConfigNode& node) {
-    node.allow({"kind", "points", "yaw_rad", "speed_m_s", "acceptance_radius_m", "hold_s", "straight",
-                "corridor_m", "smoothness"});
+    node.allow({"kind", "points", "yaw_rad", "yaw_deg", "speed_m_s", "acceptance_radius_m", "hold_s",
+                "straight", "corridor_m", "smoothness"});
     const std::vector<ConfigNode> points = node.at("points").items(2, kMaxPoints);
     control::WaypointPath path;
     const bool yaw_free = read_points(points, yaw_or_default(node), path.points);
@@ -210,10 +211,10 @@ class ItemReader {
       if (node.is_list()) {
         point.position_ned = position(node);
       } else {
-        node.allow({"position_m", "yaw_rad", "stop"});
+        node.allow({"position_m", "yaw_rad", "yaw_deg", "stop"});
         point.position_ned = position(node.at("position_m"));
         if (const auto stop = node.find("stop")) point.stop = stop->boolean();
-        if (const auto yaw = node.find("yaw_rad")) {
+        if (const auto yaw = yaw_in(node)) {
           const double to = wrapped_yaw_ned(*yaw);
           last = {false, last.free ? to : last.rad + std::remainder(to - last.rad, 2.0 * M_PI)};
         }
@@ -245,35 +246,24 @@ class ItemReader {
 
   // Checks the whole path, also between its points.
   void require_flyable(const control::PlannedPath& planned, const std::vector<ConfigNode>& points) const {
+    const std::string what = in_frame(frame_);
     std::size_t leg = 0;
     for (std::size_t i = 0; i < planned.segments.size(); ++i) {
       while (leg + 1 < planned.leg_begins.size() && planned.leg_begins[leg + 1] <= i) ++leg;
-      const control::Outcome outcome = control::check_segment("in NED", planned.segments[i], limits_);
+      const control::Outcome outcome =
+          control::check_segment({what.c_str(), frame_}, planned.segments[i], limits_);
       if (!outcome.accepted) points[leg].fail(std::string("the path from here, ") + outcome.reason);
     }
   }
 
-  void require_inside_fence(const ConfigNode& node, const Eigen::Vector3d& position_ned) const {
-    constexpr const char* kAxes[] = {"north", "east", "down"};
-    for (int axis = 0; axis < 3; ++axis) {
-      const double value = position_ned[axis];
-      const double low = limits_.fence_min_ned[axis];
-      const double high = limits_.fence_max_ned[axis];
-      if (value >= low && value <= high) continue;
-      node.fail(fmt::format("{} is {:g} m, must be inside the fence, {:g} to {:g} m", kAxes[axis], value, low,
-                            high));
-    }
-  }
-
-  void require_height(const ConfigNode& node, double z_ned) const {
-    const control::Outcome outcome = control::check_height("in NED", z_ned, limits_);
-    if (!outcome.accepted) node.fail(outcome.reason);
+  void require_in_air(const ConfigNode& node, const Eigen::Vector3d& position_ned) const {
+    const std::string fault = position_fault(position_ned, frame_, limits_);
+    if (!fault.empty()) node.fail(fault);
   }
 
   Eigen::Vector3d position(const ConfigNode& node) const {
     const Eigen::Vector3d position_ned = placement_.position(ned_from(frame_, node.vector3()));
-    require_height(node, position_ned.z());
-    require_inside_fence(node, position_ned);
+    require_in_air(node, position_ned);
     return position_ned;
   }
 
@@ -292,18 +282,35 @@ class ItemReader {
     return given ? given->number(io::between(0.0, kLargestRadiusM)) : defaults_.acceptance_radius_m;
   }
 
-  double wrapped_yaw_ned(const ConfigNode& node) const {
-    const double yaw_ned = ned_yaw_from(frame_, node.number(io::between(-M_PI, M_PI)));
-    return std::remainder(placement_.yaw(yaw_ned), 2 * M_PI);
+  static std::optional<ConfigNode> yaw_in(const ConfigNode& node) {
+    const auto rad = node.find("yaw_rad");
+    const auto deg = node.find("yaw_deg");
+    if (rad && deg) deg->fail("is given beside yaw_rad, must be one of both");
+    return rad ? rad : deg;
   }
 
-  // Reads a number in rad, or the word free.
+  static double radians(const ConfigNode& node) {
+    if (node.key().substr(node.key().size() - 3) == "deg")
+      return math::kRadPerDeg * node.number(io::between(-180.0, 180.0));
+    const io::Bounds half_turns = io::between(-M_PI, M_PI);
+    const double yaw = node.number();
+    if (!half_turns.contains(yaw))
+      node.fail(fmt::format("is {:g}, must be {}: {:g} degrees are {:.4f} rad, yaw_deg takes degrees", yaw,
+                            half_turns.to_string(), yaw, math::kRadPerDeg * yaw));
+    return yaw;
+  }
+
+  double wrapped_yaw_ned(const ConfigNode& node) const {
+    return std::remainder(placement_.yaw(ned_yaw_from(frame_, radians(node))), 2 * M_PI);
+  }
+
+  // Reads a number in rad or degrees, or the word free.
   Yaw yaw_of(const ConfigNode& node) const {
     if (node.is_scalar() && node.text() == "free") return {};
     return {false, wrapped_yaw_ned(node)};
   }
   Yaw yaw_or_default(const ConfigNode& node) const {
-    const auto given = node.find("yaw_rad");
+    const auto given = yaw_in(node);
     return given ? yaw_of(*given) : defaults_.yaw;
   }
 

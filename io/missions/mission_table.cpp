@@ -26,19 +26,15 @@ using Fields = std::vector<std::string_view>;
 
 // Parts of the orientation, and the beginnings of the names of quantities that a path does not need.
 const Names kQuaternions = {"q*", "q_*", "q_rs_*", "orientation.*", "stateestimate.q*"};
-const Names kLeftOut = {"w_",   "wx",   "wy",   "wz",   "omega", "a_rot", "u_",    "jerk",
-                        "snap", "b_w_", "b_a_", "roll", "pitch", "rpm",   "motor", "gyro.",
-                        "acc.", "pm.",  "rate", "tau",  "mot_",  "f_",    "thrust"};
+const Names kLeftOut = {"w_",   "wx",   "wy",   "wz",    "omega",  "a_rot", "u_",    "jerk", "snap",
+                        "b_w_", "b_a_", "roll", "pitch", "rpm",    "motor", "gyro.", "acc.", "pm.",
+                        "rate", "tau",  "mot_", "f_",    "thrust", "red",   "green", "blue", "white"};
 
 char separator_of(std::string_view line) {
   for (const char separator : {';', ',', '\t'}) {
     if (line.find(separator) != std::string_view::npos) return separator;
   }
   return ' ';
-}
-
-bool is_comment(std::string_view line) {
-  return line.front() == '#' || line.front() == '%' || line.substr(0, 2) == "//";
 }
 
 // The lines of a file, apart.
@@ -110,7 +106,7 @@ std::string unit_of_stamps(std::string_view first) {
 
 int decimals_of_unit(const std::string& unit) { return unit == "ns" ? 9 : unit == "us" ? 6 : 3; }
 
-// A stamp in ns, us or ms from the first one, in s, exactly: a double does not hold the ns since 1970.
+// A stamp in ns, us or ms from the first one, in s. Whole ones exactly: a double does not hold the ns since 1970.
 std::string seconds_since(std::string_view first, std::string_view stamp, const std::string& unit) {
   std::int64_t a = 0;
   std::int64_t b = 0;
@@ -119,8 +115,11 @@ std::string seconds_since(std::string_view first, std::string_view stamp, const 
     return error == std::errc() && end == text.data() + text.size();
   };
   const int decimals = decimals_of_unit(unit);
-  if (!whole(first, a) || !whole(stamp, b)) return std::string(stamp);
-  return fmt::format("{:.{}f}", static_cast<double>(b - a) / std::pow(10.0, decimals), decimals);
+  if (whole(first, a) && whole(stamp, b))
+    return fmt::format("{:.{}f}", static_cast<double>(b - a) / std::pow(10.0, decimals), decimals);
+  const std::size_t point = std::min(stamp.find('.'), stamp.size() - 1);
+  const double from_first = parse_number(stamp).value_or(0.0) - parse_number(first).value_or(0.0);
+  return fmt::format("{:.{}f}", from_first / std::pow(10.0, decimals), decimals + stamp.size() - 1 - point);
 }
 
 // Names of columns, in which line they stand, and the rows below as they are written.
@@ -211,18 +210,20 @@ class Translation {
  private:
   // Units of SI may be dropped, since a table of another program names no frame. Large stamps become seconds.
   void settle_units() {
-    const bool plain = std::all_of(columns_.begin(), columns_.end(), [](const ForeignColumn& column) {
-      return !column.motion || column.unit.empty() || column.unit == "ns" ||
-             column.unit == units_of(*column.motion).front().name;
-    });
     for (std::size_t i = 0; i < columns_.size(); ++i) {
-      ForeignColumn& column = columns_[i];
-      if (column.motion == Motion::kT) {
-        first_stamp_ = table_.rows.front()[i];
-        stamps_are_guessed_ = column.unit.empty() && !unit_of_stamps(first_stamp_).empty();
-        stamp_unit_ = column.unit.empty() ? unit_of_stamps(first_stamp_) : column.unit == "ns" ? "ns" : "";
-        if (!stamp_unit_.empty()) column.unit.clear();
-      }
+      ForeignColumn& stamps = columns_[i];
+      if (stamps.motion != Motion::kT) continue;
+      first_stamp_ = table_.rows.front()[i];
+      stamps_are_guessed_ = stamps.unit.empty() && !unit_of_stamps(first_stamp_).empty();
+      const bool converted =
+          stamps.unit == "ns" || (foreign_ && (stamps.unit == "us" || stamps.unit == "ms"));
+      stamp_unit_ = stamps.unit.empty() ? unit_of_stamps(first_stamp_) : converted ? stamps.unit : "";
+      if (!stamp_unit_.empty()) stamps.unit.clear();
+    }
+    const bool plain = std::all_of(columns_.begin(), columns_.end(), [](const ForeignColumn& column) {
+      return !column.motion || column.unit.empty() || column.unit == units_of(*column.motion).front().name;
+    });
+    for (ForeignColumn& column : columns_) {
       if (foreign_ && plain) column.unit.clear();
       has_units_ = has_units_ || (column.motion && !column.unit.empty());
     }
@@ -305,8 +306,6 @@ Written written(const Parts& parts, const std::string& file, char separator) {
   table.file = file;
   const std::size_t columns = csv_fields(parts.rows.front().text, 1, separator).size();
   for (const CsvLine& line : parts.rows) {
-    if (separator == ';' && line.text.find(',') != std::string_view::npos)
-      throw ConfigError(file, line.number, "", "has commas beside semicolons: numbers must have points");
     table.lines.push_back(line.number);
     table.rows.push_back(csv_fields(line.text, columns, separator));
   }
@@ -328,15 +327,35 @@ Written written(const Parts& parts, const std::string& file, char separator) {
   return table;
 }
 
+// A name of --columns with the frame and the unit that the header states for the column, unless the option names a unit.
+std::string named(const std::string& name, const std::string& given, const Written& table) {
+  const MotionDeclaration by_option = motion_declaration_of(name);
+  const MotionDeclaration by_header = motion_declaration_of(given);
+  const auto refuse = [&](const std::string& why) {
+    throw ConfigError(table.file, table.header_line, "header",
+                      "has the column " + given + ", which --columns names " + name + why);
+  };
+  const std::optional<Motion> motion = motion_of(by_option.name);
+  if (!motion) return name;
+  if (!by_option.axes.empty() && !by_header.axes.empty() && by_option.axes != by_header.axes)
+    refuse(": which frame is it?");
+  const std::string unit = by_option.unit.value_or(by_header.unit.value_or(""));
+  if (!unit.empty() && unit_of(units_of(*motion), unit) == nullptr) refuse(": that has no unit " + unit);
+  return by_option.name + (by_option.axes.empty() ? by_header.axes : by_option.axes) +
+         (unit.empty() ? "" : " [" + unit + "]");
+}
+
 // The names of the columns where the file does not say them, or --columns says others.
 void name_columns(Written& table, const std::string& columns, std::vector<std::string>& assumptions) {
   if (!columns.empty()) {
     const Fields names = csv_fields(columns);
-    table.header.assign(names.begin(), names.end());
-    if (!table.rows.empty() && table.header.size() != table.rows.front().size())
+    if (!table.rows.empty() && names.size() != table.rows.front().size())
       throw ConfigError(
           table.file, table.lines.front(), "",
-          fmt::format("has {} columns, --columns names {}", table.rows.front().size(), table.header.size()));
+          fmt::format("has {} columns, --columns names {}", table.rows.front().size(), names.size()));
+    table.header.resize(names.size());
+    for (std::size_t i = 0; i < names.size(); ++i)
+      table.header[i] = named(std::string(names[i]), table.header[i], table);
   } else if (table.header.empty()) {
     table.header = assumed_columns(table.rows, table.file, table.lines.front());
     assumptions.push_back(

@@ -79,6 +79,7 @@ class MotionColumns {
   double factor(std::size_t index) const { return factors_[index]; }
   bool declares_units() const { return declares_units_; }
   MissionFrame frame() const { return frame_; }
+  bool frame_is_assumed() const { return assumed_; }
   // A sentence if frame and units were assumed. what: "waypoints"
   std::optional<std::string> assumption(const std::string& what) const;
 

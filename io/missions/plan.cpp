@@ -83,12 +83,12 @@ Plan plan_of_json(const std::string& text, const std::string& file_name) {
     type.fail("is " + type.text() + ", must be Plan");
   const ConfigNode mission = root.at("mission");
   const ConfigNode items = mission.at("items");
-  Plan plan{place_of(mission), place_of(items), {}, {}, {}};
+  Plan plan{place_of(mission), place_of(items), {}, false, {}};
   if (const auto home = mission.find("plannedHomePosition")) {
     const std::vector<ConfigNode> values = home->items(3, 3);
     plan.home = {number_of(values[0]), number_of(values[1]), number_of(values[2])};
   }
-  if (const auto speed = mission.find("hoverSpeed")) plan.speed = number_of(*speed);
+  plan.estimates_speed = mission.find("hoverSpeed").has_value();
   for (const ConfigNode& item : items.items(1, control::kMaxMissionItems))
     plan.items.push_back(item_of(item));
   return plan;
@@ -101,7 +101,7 @@ Plan plan_of_waypoint_list(const std::string& text, const std::string& file_name
   if (lines.front().text.find("110") == std::string_view::npos)
     throw ConfigError(file_name, 1, "",
                       "is " + std::string(lines.front().text.substr(0, 40)) + ", must be QGC WPL 110");
-  Plan plan{{file_name, 0, ""}, {file_name, 0, ""}, {}, {}, {}};
+  Plan plan{{file_name, 0, ""}, {file_name, 0, ""}, {}, false, {}};
   for (std::size_t i = 1; i < lines.size(); ++i) {
     const auto& [line, written] = lines[i];
     const std::vector<std::string_view> fields = csv_fields(written, kColumns.size(), ' ');
@@ -112,7 +112,8 @@ Plan plan_of_waypoint_list(const std::string& text, const std::string& file_name
       row.push_back({{file_name, line, key}, csv_number(fields[k], key, file_name, line)});
     }
     const auto begin = row.begin() + kFirstParameter;
-    if (i == 1 && row[kFrame].value == 0.0) {
+    const bool is_global = row[kFrame].value == 0.0 || row[kFrame].value == 3.0;
+    if (i == 1 && is_global && row[kCommand].value == 16.0) {
       plan.home = {row[8], row[9], row[10]};
     } else {
       plan.items.push_back({{file_name, line, ""}, row[kCommand], row[kFrame], {begin, begin + kParameters}});

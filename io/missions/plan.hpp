@@ -49,7 +49,7 @@ struct PlanItem {
 struct Plan {
   PlanPlace place, items_place;
   std::optional<std::array<PlanNumber, 3>> home;  // latitude and longitude, deg, and altitude, m
-  std::optional<PlanNumber> speed;                // m/s
+  bool estimates_speed = false;  // hoverSpeed, with which QGroundControl estimates the duration
   std::vector<PlanItem> items;
 };
 

@@ -43,12 +43,12 @@ TrajectoryFile read_polynomials(const Table& table, const control::Limits& limit
   std::vector<std::string> assumptions = {std::string("taken as a polynomial trajectory in ") +
                                           frame_title(frame) +
                                           ": m, rad and s, from the origin of motion capture"};
-  const double raise_m = raise_by(heights_of(segments), frame, table.file(), assumptions);
+  const double raise_m = raise_by(heights_of(segments), {frame, !options.frame}, table.file(), assumptions);
   for (control::PolynomialSegment& segment : segments) {
     segment.z[0] -= raise_m;
     segment = options.placement.segment(segment);
   }
-  return checked({std::move(segments), std::move(assumptions)}, limits, options,
+  return checked({std::move(segments), std::move(assumptions)}, frame, limits, options,
                  [&](const PathFault& fault) { table.fail(fault.segment, "", fault.sentence()); });
 }
 

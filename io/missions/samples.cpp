@@ -375,7 +375,8 @@ TrajectoryFile read_samples(const Table& table, const control::Limits& limits, c
     assumptions.emplace_back("yaw_rate is not used: the rate follows from the yaw");
   Heights heights;
   for (const PositionYaw& place : samples.places) heights.add(place.z());
-  const double raise_m = raise_by(heights, columns.frame(), table.file(), assumptions);
+  const double raise_m =
+      raise_by(heights, {columns.frame(), columns.frame_is_assumed()}, table.file(), assumptions);
   for (PositionYaw& place : samples.places) place.z() -= raise_m;
 
   if (given.velocity && samples.velocities.front().norm() > control::kJoin_m_s)
@@ -391,7 +392,7 @@ TrajectoryFile read_samples(const Table& table, const control::Limits& limits, c
   say(table, columns, samples, path, with_derivatives, assumptions);
   for (control::PolynomialSegment& segment : path.segments) segment = options.placement.segment(segment);
   const std::vector<control::PolynomialSegment> segments = path.segments;
-  return checked({std::move(path.segments), std::move(assumptions)}, limits, options,
+  return checked({std::move(path.segments), std::move(assumptions)}, columns.frame(), limits, options,
                  [&](const PathFault& fault) {
                    const std::size_t row = row_of(samples, segments, fault.segment);
                    const std::string motion =

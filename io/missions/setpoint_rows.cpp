@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/control/planning/checks_in_frame.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/math/euler.hpp"
@@ -118,7 +118,11 @@ Setpoint SetpointRows::setpoint_of(const std::vector<double>& row) const {
 std::optional<TimedSetpoint> SetpointRows::read(const std::string& line) {
   const std::vector<CsvLine> lines = csv_lines(line, file_, ++line_);
   if (lines.empty()) return std::nullopt;
-  return setpoint(csv_numbers(csv_fields(lines.front().text, names_.size()), names_, file_, line_), line_);
+  return read(lines.front());
+}
+
+TimedSetpoint SetpointRows::read(const CsvLine& line) {
+  return setpoint(csv_numbers(csv_fields(line.text, names_.size()), names_, file_, line.number), line.number);
 }
 
 TimedSetpoint SetpointRows::setpoint(const std::vector<double>& row, int line) {
@@ -131,7 +135,9 @@ TimedSetpoint SetpointRows::setpoint(const std::vector<double>& row, int line) {
   last_time_s_ = time_s;
   const Setpoint setpoint = setpoint_of(row);
   if (kind_ == SetpointKind::kPosition) {
-    const control::Outcome outcome = control::check_above_ground("in NED", setpoint.position_ned.z());
+    const std::string what = in_frame(columns_.frame());
+    const control::Outcome outcome =
+        control::check_above_ground({what.c_str(), columns_.frame()}, setpoint.position_ned.z());
     if (!outcome.accepted) throw ConfigError(file_, line, "z", outcome.reason);
   }
   return TimedSetpoint{time_s, setpoint};

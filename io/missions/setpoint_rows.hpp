@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "swiftlet/control/types/request.hpp"
+#include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/missions/motion_columns.hpp"
 #include "swiftlet/io/table.hpp"
 
@@ -38,6 +39,8 @@ class SetpointRows {
   // Returns the setpoint of the next line; nothing for a blank line. Throws io::ConfigError for an
   // invalid row, or if its time is not later than that of the previous row.
   std::optional<TimedSetpoint> read(const std::string& line);
+  // The same for a line of a table that is there as a whole.
+  TimedSetpoint read(const CsvLine& line);
   // The same for the numbers of a row that was read already.
   TimedSetpoint setpoint(const std::vector<double>& row, int line);
 

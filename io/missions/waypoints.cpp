@@ -3,7 +3,7 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/control/planning/checks_in_frame.hpp"
 #include "swiftlet/control/planning/waypoint_path.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/missions/motion_columns.hpp"
@@ -52,15 +52,18 @@ TrajectoryFile read_waypoints(const Table& table, const control::Limits& limits,
   std::vector<std::string> assumptions;
   if (const auto assumption = columns.assumption("waypoints")) assumptions.push_back(*assumption);
   if (!columns.has(Motion::kYaw)) assumptions.emplace_back("the file has no yaw: the vehicle faces north");
+  const std::string what = in_frame(columns.frame());
   Heights heights;
   for (const control::PathPoint& point : path.points) heights.add(point.position_ned.z());
-  const double raise_m = raise_by(heights, columns.frame(), table.file(), assumptions);
+  const double raise_m =
+      raise_by(heights, {columns.frame(), columns.frame_is_assumed()}, table.file(), assumptions);
   for (std::size_t row = 0; row < path.points.size(); ++row) {
     Eigen::Vector3d& position_ned = path.points[row].position_ned;
     position_ned.z() -= raise_m;
     position_ned = options.placement.position(position_ned);
     path.points[row].yaw_rad = options.placement.yaw(path.points[row].yaw_rad);
-    const control::Outcome inside = control::check_position("in NED", position_ned, limits);
+    const control::Outcome inside =
+        control::check_position({what.c_str(), columns.frame()}, position_ned, limits);
     if (!inside.accepted) table.fail(row, "x,y,z", inside.reason);
   }
   assumptions.push_back(fmt::format(
@@ -74,7 +77,7 @@ TrajectoryFile read_waypoints(const Table& table, const control::Limits& limits,
   }
   for (control::PolynomialSegment& segment : planned.segments)
     segment = control::stretched(segment, options.time_scale);
-  return checked({std::move(planned.segments), std::move(assumptions)}, limits, options,
+  return checked({std::move(planned.segments), std::move(assumptions)}, columns.frame(), limits, options,
                  [&](const PathFault& fault) {
                    table.fail(row_of(planned, fault.segment), "", "the path from here: " + fault.sentence());
                  });

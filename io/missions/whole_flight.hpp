@@ -32,11 +32,21 @@ struct Heights {
 // Along the whole path.
 Heights heights_of(const std::vector<control::PolynomialSegment>& segments);
 
+// The frame in which a path was read, and whether that is assumed because neither the file nor --frame names one.
+struct ReadFrame {
+  MissionFrame frame;
+  bool is_assumed;
+};
+
 // Returns by how much a path must be raised, m; 0 if it stays above kLeastHeight_m. Adds the decision to the
 // assumptions. Throws io::ConfigError for a path that lies below the ground as a whole: its z probably
-// points the other way. frame: in which it was read.
-double raise_by(const Heights& heights, MissionFrame frame, const std::string& file_name,
+// points the other way; and for one that goes below the ground in an assumed frame: z could point either way.
+double raise_by(const Heights& heights, ReadFrame read, const std::string& file_name,
                 std::vector<std::string>& assumptions);
+
+// Why a position is not in the air inside the fence; empty if it is.
+std::string position_fault(const Eigen::Vector3d& position_ned, MissionFrame frame,
+                           const control::Limits& limits);
 
 // Why a path cannot be flown.
 struct PathFault {
@@ -49,8 +59,8 @@ struct PathFault {
 };
 
 // Returns the path if it can be flown. Else calls `refuse`, which must throw.
-TrajectoryFile checked(TrajectoryFile path, const control::Limits& limits, const FileOptions& options,
-                       const std::function<void(const PathFault&)>& refuse);
+TrajectoryFile checked(TrajectoryFile path, MissionFrame frame, const control::Limits& limits,
+                       const FileOptions& options, const std::function<void(const PathFault&)>& refuse);
 
 // Returns take-off to the height of the path's start, the path, and landing.
 MissionFile whole_flight(const std::string& file_name, TrajectoryFile path, const control::Limits& limits);

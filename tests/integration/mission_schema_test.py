@@ -29,6 +29,9 @@ POINTS = "[[0, 0, -1], [1, 0, -1]]"
 VALID = {
     "all of a waypoint": mission(
         "{kind: waypoint, position_m: [1, 0, -1], yaw_rad: 1, speed_m_s: 1, acceptance_radius_m: 0.1, hold_s: 1}"),
+    "yaws in degrees": mission(
+        "{kind: set, yaw_deg: -180}", "{kind: waypoint, position_m: [1, 0, -1], yaw_deg: 90, speed_m_s: 1}",
+        "{kind: path, speed_m_s: 1, yaw_deg: free, points: [[1, 0, -1], {position_m: [2, 0, -1], yaw_deg: 90}]}"),
     "free yaw": mission("{kind: waypoint, position_m: [1, 0, -1], yaw_rad: free, speed_m_s: 1}"),
     "all of a path": mission(
         f"{{kind: path, points: {POINTS}, yaw_rad: 1, speed_m_s: 1, acceptance_radius_m: 0.1, hold_s: 1,"
@@ -59,6 +62,8 @@ INVALID_FORM = {
     "a quoted number": mission("{kind: waypoint, position_m: [1, 0, -1], speed_m_s: '1'}"),
     "speed of 0": mission("{kind: waypoint, position_m: [1, 0, -1], speed_m_s: 0}"),
     "yaw in degrees": mission("{kind: waypoint, position_m: [1, 0, -1], yaw_rad: 90, speed_m_s: 1}"),
+    "two yaws": mission("{kind: waypoint, position_m: [1, 0, -1], yaw_rad: 1, yaw_deg: 57, speed_m_s: 1}"),
+    "degrees beyond half a turn": mission("{kind: waypoint, position_m: [1, 0, -1], yaw_deg: 181, speed_m_s: 1}"),
     "yaw that is a word": mission("{kind: waypoint, position_m: [1, 0, -1], yaw_rad: north, speed_m_s: 1}"),
     "hold below 0": mission("{kind: waypoint, position_m: [1, 0, -1], speed_m_s: 1, hold_s: -1}"),
     "radius below 0": mission("{kind: waypoint, position_m: [1, 0, -1], speed_m_s: 1, acceptance_radius_m: -1}"),

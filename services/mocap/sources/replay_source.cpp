@@ -9,6 +9,7 @@
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/network/sockets.hpp"
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
@@ -19,7 +20,12 @@ using io::ConfigError;
 
 const std::vector<std::string> kColumns = {"t", "x", "y", "z", "qx", "qy", "qz", "qw"};
 
-bool is_table(const std::string& text) { return text.compare(0, 2, "t,") == 0; }
+// Its header begins with t, whatever program wrote it.
+bool is_table(const std::string& text) {
+  const std::string_view begin = io::trimmed(std::string_view(text).substr(0, 8), "\xef\xbb\xbf\" ");
+  return begin.size() > 1 && begin.front() == 't' &&
+         std::string_view(",;\t\"").find(begin[1]) != std::string_view::npos;
+}
 
 // The servers whose descriptions were captured.
 std::set<std::uint32_t> servers_in(const std::vector<CapturedDatagram>& datagrams) {

@@ -91,7 +91,21 @@ TEST(Config, RefusesTextThatIsNotOneMap) {
       {"a: &x 1\n", "f.yaml:1: has an anchor, must be without"},
       {"a: !!float 1\n", "f.yaml:1: has the tag tag:yaml.org,2002:float, must be without"},
       {"a: 1\n---\nb: 2\n", "f.yaml:2: starts a second document, must be one"},
-      {"a: [1, 2\n", "f.yaml:2: is not valid YAML: end of sequence flow not found"},
+      {"a: [1, 2\n", "f.yaml:1: is not valid YAML: the [ here is not closed"},
+      {"a:\n  - {b: 1, c: 2\n  - {b: 3}\n", "f.yaml:2: is not valid YAML: the { here is not closed"},
+      {"a:\n  - {b: '}', c: 2  # }\n  - {b: 3}\n  - {b: 3}\n",
+       "f.yaml:2: is not valid YAML: the { here is not closed"},
+      {"a:\n  - {b: 1, c: [2, 3}\n  - {b: 3}\n", "f.yaml:2: is not valid YAML: the [ here is not closed"},
+      {"a: {b: 1,\n  c: 2\nd: {e: 3}\n", "f.yaml:1: is not valid YAML: the { here is not closed"},
+      {"a:\xc2\xa0"
+       "1\n",
+       "f.yaml:1: is a:\xc2\xa0"
+       "1, must be a YAML map: it has U+00A0, a no-break space"},
+      {"a:\n\xc2\xa0\xc2\xa0- {b: 1}\n  - {b: 2}\n",
+       "f.yaml:3: is not valid YAML: illegal map value: it has U+00A0, a no-break space"},
+      {"\xff\xfe"
+       "a: 1\n",
+       "f.yaml: is UTF-16, must be UTF-8"},
       {"a: b: c\n", "f.yaml:1: is not valid YAML: illegal map value"},
       {"a: 'x\n", "f.yaml:2: is not valid YAML: illegal document indicator in scalar"},
       {"a: \"x\n", "f.yaml:2: is not valid YAML: illegal document indicator in scalar"},
@@ -186,6 +200,20 @@ TEST(Config, RefusesValuesWithKeyLineValueAndLimit) {
   EXPECT_EQ(refusal([&] { root.at("l").quantity("kg"); }), "f.yaml:12: l.unit: is g, must be kg");
   EXPECT_EQ(refusal([&] { root.at("m").quantity("kg"); }), "f.yaml:13: m.source: is missing, must be given");
   EXPECT_EQ(refusal([&] { root.at("n").quantity("kg"); }), "f.yaml:14: n.source: is \"\", must be a text");
+}
+
+TEST(Config, NamesCharactersOfTypographyInNumbers) {
+  const ConfigNode root = parse_config(
+      "a: \xe2\x88\x92"
+      "1\nb: \xc2\xa0"
+      "2\n",
+      "f.yaml");
+  EXPECT_EQ(refusal([&] { root.at("a").number(); }),
+            "f.yaml:1: a: is \xe2\x88\x92"
+            "1, must be a number: it has U+2212, a minus sign of typography");
+  EXPECT_EQ(refusal([&] { root.at("b").number(); }),
+            "f.yaml:2: b: is \xc2\xa0"
+            "2, must be a number: it has U+00A0, a no-break space");
 }
 
 // Reads a, b.c and b.kind as a loader does.

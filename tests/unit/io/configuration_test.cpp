@@ -80,6 +80,15 @@ TEST_F(FindConfig, TakesNamesOfAKind) {
             0U);
 }
 
+TEST_F(FindConfig, TakesTheNameOfAFileHere) {
+  const fs::path here = fs::current_path();
+  fs::current_path(folder_);
+  std::ofstream("house.yaml") << "a: 1\n";
+  const fs::path found = configuration_file(kinds::kMission, "house");
+  fs::current_path(here);
+  EXPECT_EQ(found, "house.yaml");
+}
+
 TEST_F(FindConfig, SearchesAnAbsolutePathOnce) {
   EXPECT_EQ(refusal([] { find_config("/nonexistent.yaml"); }),
             "/nonexistent.yaml: is not found, looked for /nonexistent.yaml");

@@ -136,6 +136,14 @@ TEST(Measurements, NamesAMissingColumn) {
             "f.csv:1: header: has no column thrust [N], must have one");
 }
 
+TEST(Measurements, ReadsWhatASpreadsheetWrites) {
+  const std::vector<Quantity> both = {Quantity::kSpeed, Quantity::kThrust};
+  const Measurements table = parse_measurements(
+      "\xef\xbb\xbfsep=;\r\n\"speed [rad/s]\";\"thrust [N]\"\r\n100;0,25\r\n", "f.csv", both);
+  EXPECT_EQ(table.column(Quantity::kThrust).front(), 0.25);
+  EXPECT_EQ(table.line(0), 3);
+}
+
 TEST(Measurements, RefusesNumbersThatAreNotFinite) {
   EXPECT_EQ(refusal([] { parse_measurements("rpm\nnan\n", "f.csv", {Quantity::kSpeed}); }),
             "f.csv:2: rpm: is nan, must be a finite number");

@@ -218,6 +218,16 @@ INSTANTIATE_TEST_SUITE_P(
                      "m.yaml:5: items[1].position_m: east is 7.5 m, must be inside the fence, -3 to 3 m"},
         tests::Fault{"TooHigh", kHead + "  - {kind: takeoff, height_m: 9, speed_m_s: 0.5}\n",
                      "m.yaml:4: items[0].height_m: down is -9 m, must be inside the fence, -2.5 to 0 m"},
+        tests::Fault{
+            "BelowTheGroundInEnu",
+            "frame: enu\ntolerance_m: 0.1\nitems:\n" + kTakeoff +
+                "  - {kind: waypoint, position_m: [1, 0, -0.2], speed_m_s: 0.5}\n",
+            "m.yaml:5: items[1].position_m: in ENU: z = -0.200 m is below the ground, as z points up (ENU); "
+            "0.200 m above the ground is z = 0.200 m"},
+        tests::Fault{"TooHighInEnu",
+                     "frame: enu\ntolerance_m: 0.1\nitems:\n" + kTakeoff +
+                         "  - {kind: waypoint, position_m: [1, 0, 9], speed_m_s: 0.5}\n",
+                     "m.yaml:5: items[1].position_m: up is 9 m, must be inside the fence, 0 to 2.5 m"},
         tests::Fault{"TooFast", kHead + kTakeoff + "  - {kind: land, speed_m_s: 4}\n",
                      "m.yaml:5: items[1].speed_m_s: is 4, must be above 0 and at most 2"},
         tests::Fault{"NotANumber",
@@ -244,7 +254,7 @@ INSTANTIATE_TEST_SUITE_P(
         tests::Fault{
             "MisspeltKey", kHead + "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5, hold: 2}\n",
             "m.yaml:4: items[0].hold: is unknown, must be one of kind, height_m, position_m, points, file, "
-            "duration_s, yaw_rad, speed_m_s, acceptance_radius_m, hold_s, straight, corridor_m or "
+            "duration_s, yaw_rad, yaw_deg, speed_m_s, acceptance_radius_m, hold_s, straight, corridor_m or "
             "smoothness; "
             "nearest is hold_s"},
         tests::Fault{
@@ -255,13 +265,13 @@ INSTANTIATE_TEST_SUITE_P(
             kHead + kTakeoff + "  - {kind: waypoint, positon_m: [1, 0, -1], speed_m_s: 1}\n",
             "m.yaml:5: items[1].positon_m: is unknown, must be one of kind, height_m, position_m, points, "
             "file, "
-            "duration_s, yaw_rad, speed_m_s, acceptance_radius_m, hold_s, straight, corridor_m or "
+            "duration_s, yaw_rad, yaw_deg, speed_m_s, acceptance_radius_m, hold_s, straight, corridor_m or "
             "smoothness; "
             "nearest is position_m"},
         tests::Fault{
             "MisspeltKind", kHead + "  - {knd: takeoff, height_m: 1, speed_m_s: 0.5}\n",
             "m.yaml:4: items[0].knd: is unknown, must be one of kind, height_m, position_m, points, file, "
-            "duration_s, yaw_rad, speed_m_s, acceptance_radius_m, hold_s, straight, corridor_m or "
+            "duration_s, yaw_rad, yaw_deg, speed_m_s, acceptance_radius_m, hold_s, straight, corridor_m or "
             "smoothness; "
             "nearest is kind"},
         tests::Fault{
@@ -324,6 +334,17 @@ INSTANTIATE_TEST_SUITE_P(
             kHead + kTakeoff + "  - {kind: waypoint, position_m: [1, 0, -1], speed_m_s: 1, yaw_rad: north}\n",
             "m.yaml:5: items[1].yaw_rad: is north, must be a number"},
         tests::Fault{
+            "YawInDegrees",
+            kHead + kTakeoff + "  - {kind: waypoint, position_m: [1, 0, -1], speed_m_s: 1, yaw_rad: 180}\n",
+            "m.yaml:5: items[1].yaw_rad: is 180, must be at least -3.14159 and at most 3.14159: 180 degrees "
+            "are "
+            "3.1416 rad, yaw_deg takes degrees"},
+        tests::Fault{
+            "YawTwice",
+            kHead + kTakeoff +
+                "  - {kind: waypoint, position_m: [1, 0, -1], speed_m_s: 1, yaw_rad: 1, yaw_deg: 57}\n",
+            "m.yaml:5: items[1].yaw_deg: is given beside yaw_rad, must be one of both"},
+        tests::Fault{
             "RadiusBelowZero",
             kHead + kTakeoff +
                 "  - {kind: waypoint, position_m: [1, 0, -1], speed_m_s: 1, acceptance_radius_m: -1}\n",
@@ -336,6 +357,18 @@ INSTANTIATE_TEST_SUITE_P(
         tests::Fault{"NameWithAFolder", "name: ../x\n" + kHead + kTakeoff,
                      "m.yaml:1: name: must be at most 64 characters and hold no /"}),
     tests::name_of);
+
+TEST(MissionFile, ReadsDegreesWhereTheKeySaysSo) {
+  const MissionFile file =
+      parse(kHead + kTakeoff + "  - {kind: waypoint, position_m: [1, 0, -1], speed_m_s: 1, yaw_deg: 180}\n" +
+            "  - {kind: set, yaw_deg: -45}\n  - {kind: waypoint, position_m: [2, 0, -1], speed_m_s: 1}\n" +
+            "  - {kind: path, speed_m_s: 1, points: [[2, 0, -1], {position_m: [2, 1, -1], yaw_deg: 90}]}\n" +
+            kLand);
+  EXPECT_NEAR(std::abs(file.mission.items[1].yaw_rad), M_PI, 1e-12);
+  EXPECT_NEAR(file.mission.items[2].yaw_rad, -M_PI / 4, 1e-12);
+  const control::PolynomialSegment& last = file.mission.segments.back();
+  EXPECT_NEAR(control::evaluate(last, last.duration_s).yaw_rad, M_PI / 2, 1e-9);
+}
 
 TEST(MissionFile, RefusesEveryTruncation) {
   const std::string whole =

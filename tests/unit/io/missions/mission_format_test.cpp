@@ -69,6 +69,37 @@ TEST(CsvFrame, OfAPathBelowTheGroundIsSuspected) {
             0U);
 }
 
+TEST(CsvFrame, IsAskedForWhereZCouldPointEitherWay) {
+  const control::Limits limits;
+  const std::string samples = "t,x,y,z\n0,0,0,0\n1,0,0,0\n4,0,0,-1.4\n5,0,0,-1.4\n";
+  const std::string sentence =
+      "f.csv: z goes from -1.40 to 0.00 m, and the file names no frame. If z points up, the path is about a "
+      "hover and is raised by 2.40 m: --frame enu or nwu. If z points down, its heights are 0.00 to 1.40 m: "
+      "--frame ned. A header such as z_enu [m] says it too";
+  for (const std::string& text : {samples, std::string("0,0,0\n0,0,-1.4\n"),
+                                  kPolynomialHeader + "\n" + polynomial_row(4.0, 0.0, 1.0, 0.0) + "\n" +
+                                      polynomial_row(4.0, 1.0, 1.0, -1.4)})
+    EXPECT_EQ(refusal([&] { parse_any_mission_file(text, "f.csv", limits); }), sentence) << text;
+  const auto start = [&](MissionFrame frame) {
+    return at_path_start(parse_any_mission_file(samples, "f.csv", limits, {frame, {}})).position_ned.z();
+  };
+  EXPECT_NEAR(start(MissionFrame::kNed), -1.0, 1e-3);
+  EXPECT_NEAR(start(MissionFrame::kEnu), -2.4, 1e-3);
+  const std::string noisy = "t,x,y,z\n0,0,0,-0.02\n1,0,0,-0.02\n4,0,0,1.4\n5,0,0,1.4\n";
+  EXPECT_TRUE(assumes(parse_any_mission_file(noisy, "f.csv", limits), "raised by 1.02 m"))
+      << "an estimate on the ground";
+}
+
+TEST(CsvFrame, IsThatOfTheMessages) {
+  const control::Limits limits;
+  EXPECT_EQ(refusal([&] { parse_any_mission_file("0,0,1\n0,0,9\n", "w.csv", limits); }),
+            "w.csv:2: x,y,z: in ENU: z is 9.000 m, outside the fence of 0.000 to 2.500 m");
+  EXPECT_EQ(refusal([&] {
+              parse_any_mission_file("x_nwu [m],y_nwu [m],z_nwu [m]\n0,0,1\n0,-4,1\n", "w.csv", limits);
+            }),
+            "w.csv:3: x,y,z: in NWU: y is -4.000 m, outside the fence of -3.000 to 3.000 m");
+}
+
 TEST(LoadTrajectoryFile, AddsNeitherTakeOffNorLanding) {
   const TrajectoryFile path = load_trajectory_file(kData + "uav_waypoints.csv", control::Limits());
   EXPECT_EQ(path.segments.size(), 17U);

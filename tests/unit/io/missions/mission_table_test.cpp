@@ -58,7 +58,7 @@ TEST_F(MissionTableTest, PolynomialsOfUavTrajectories) {
     EXPECT_EQ(file.mission.segments.size(), 2U) << header;
   }
   EXPECT_EQ(refused(upper_header() + "\n\n# fast\n" + polynomial_row(0.1, 0.0, 5.0, 1.0) + "\n")
-                .rfind("f.csv:4: segment 1 in NED reaches ", 0),
+                .rfind("f.csv:4: segment 1 in ENU reaches ", 0),
             0U)
       << "the line of the file";
 }
@@ -104,7 +104,7 @@ TEST_F(MissionTableTest, SeparatorsCommentsAndNames) {
   expect_still(load("s.csv", "// exported\nTime\tpx\tpy\tpz\tyaw\n" + rows("{}\t0.1\t0.2\t1.5\t1.5708")),
                0.0);
   expect_still(load("s.csv", "t,x,y,z,yaw\n\n% at rest\n" + rows("{},0.1,0.2,1.5,1.5708")), 0.0);
-  EXPECT_EQ(refused("t;x;y;z\n0;0,1;0;1\n"),
+  EXPECT_EQ(refused("t;x;y;z\n0;0,1;0;1.5\n"),
             "f.csv:2: has commas beside semicolons: numbers must have points");
   EXPECT_EQ(refused("t,x,y,z,colour\n0,0,0,1,3\n")
                 .rfind("f.csv:1: header: has the column colour, which is not known", 0),
@@ -145,6 +145,38 @@ TEST_F(MissionTableTest, AsksWhetherALargeYawIsInDegrees) {
   expect_still(load("f.csv", "t,x,y,z,yaw\n" + text, options), 0.0);
 }
 
+TEST_F(MissionTableTest, KeepsTheUnitsOfAHeader) {
+  const std::string show =
+      "Time [msec],x [m],y [m],z [m],Red,Green,Blue\n" + rows("{},0.1,0.2,1.5,255,0,40", 100.0, 0);
+  MissionFile file = load("show.csv", show);
+  expect_still(file, 0.0);
+  EXPECT_TRUE(assumes(file, "not used: Red, Green, Blue"));
+  FileOptions options;
+  options.frame = MissionFrame::kEnu;
+  options.columns = "t,x,y,z,w_,w_,w_";
+  expect_still(load("show.csv", show, options), 0.0);
+  options.columns = "t,x [cm],y,z,w_,w_,w_";
+  EXPECT_NEAR(at_path_start(load("show.csv", show, options)).position_ned.y(), 0.001, 1e-9)
+      << "the option names another unit";
+  options.columns = "x,t,y,z,w_,w_,w_";
+  EXPECT_EQ(refused(show, options),
+            "f.csv:1: header: has the column Time [msec], which --columns names x: that has no unit msec");
+  options.columns = "t,x,y,z_ned";
+  EXPECT_EQ(refused("t [ms],x [cm],y [cm],z_enu [cm]\n" + rows("{},10,20,150", 100.0, 0), options),
+            "f.csv:1: header: has the column z_enu [cm], which --columns names z_ned: which frame is it?");
+  const std::string fractions = "time [ms],pos_x,pos_y,pos_z,heading\n";
+  expect_still(load("ms.csv", fractions + rows("{},0.1,0.2,1.5,1.5708", 100.0, 3)), 0.0);
+  EXPECT_EQ(refused("time [ms],pos_x [cm],pos_y [cm],pos_z [cm]\n" + rows("{},10,20,150", 100.0, 0))
+                .rfind("f.csv:1: header: names no frame: ", 0),
+            0U);
+}
+
+TEST_F(MissionTableTest, RefusesUnitsThatAreNotKnown) {
+  EXPECT_EQ(refused("Time [min],pos_x [m],pos_y [m],pos_z [m]\n" + rows("{},0.1,0.2,1.5", 1.0, 0))
+                .rfind("f.csv:1: header: has the column t [min] with an unknown unit, must be ", 0),
+            0U);
+}
+
 TEST_F(MissionTableTest, ListOfWaypoints) {
   const std::string list =
       "QGC WPL 110\n"
@@ -159,6 +191,10 @@ TEST_F(MissionTableTest, ListOfWaypoints) {
   EXPECT_NEAR(file.mission.items[1].position_ned.x(), 10.0, 0.05);
   EXPECT_NEAR(file.mission.items[1].position_ned.z(), -2.0, 1e-9);
   EXPECT_TRUE(assumes(file, "a list of waypoints"));
+  std::string home_in_frame_3 = list;
+  home_in_frame_3.replace(home_in_frame_3.find("0\t1\t0\t16"), 8, "0\t1\t3\t16");
+  EXPECT_EQ(load("h.waypoints", home_in_frame_3).mission.items[1].position_ned,
+            file.mission.items[1].position_ned);
   std::string broken = list;
   broken.replace(broken.find("8.5455938\t2.0\t1\n2"), 9, "east");
   EXPECT_NE(

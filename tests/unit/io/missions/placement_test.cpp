@@ -179,11 +179,11 @@ TEST_F(PlacementTest, EveryFormIsHeldInsideTheFenceOption) {
   EXPECT_TRUE(file.mission.bounds.fenced);
   EXPECT_EQ(file.mission.bounds.fence_min_ned, Vector3d(-1.0, -1.0, -2.0));
   EXPECT_EQ(file.mission.bounds.fence_max_ned, Vector3d(0.5, 2.5, 0.1));
-  EXPECT_NE(refused("w.csv", "x,y,z\n0,0,1\n2,1,1\n").find("w.csv:3: x,y,z: in NED: x is 1.000 m"),
+  EXPECT_NE(refused("w.csv", "x,y,z\n0,0,1\n2,1,1\n").find("w.csv:3: x,y,z: in ENU: y is 1.000 m"),
             std::string::npos)
       << refused("w.csv", "x,y,z\n0,0,1\n2,1,1\n");
   const std::string polynomials = kPolynomialHeader + "\n" + polynomial_row(9.0, 0.0, 2.6, 1.0);
-  EXPECT_NE(refused("p.csv", polynomials).find("p.csv:2: segment 1 in NED"), std::string::npos)
+  EXPECT_NE(refused("p.csv", polynomials).find("p.csv:2: segment 1 in ENU"), std::string::npos)
       << refused("p.csv", polynomials);
   // In place of the file's own, which the waypoint is inside of.
   EXPECT_NE(refused("m.yaml", kSquare).find("is 2 m, must be inside the fence, -1 to 0.5 m"),

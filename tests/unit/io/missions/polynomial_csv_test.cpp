@@ -100,18 +100,18 @@ INSTANTIATE_TEST_SUITE_P(
         tests::Fault{"too_many_segments", repeated_hover(1025),
                      "p.csv:1026: duration: is segment 1025, at most 1024 fit"},
         tests::Fault{"outside_the_fence", kPolynomialHeader + "\n" + polynomial_row(9.0, 0.0, 3.01, 1.0),
-                     "p.csv:2: segment 1 in NED: y is 3.010 m, outside the fence of -3.000 to 3.000 m"},
+                     "p.csv:2: segment 1 in ENU: x is 3.010 m, outside the fence of -3.000 to 3.000 m"},
         tests::Fault{"too_fast", kPolynomialHeader + "\n" + polynomial_row(1.8, 0.0, 2.0, 1.0),
-                     "p.csv:2: segment 1 in NED reaches 2.08 m/s, the limit is 2.00 m/s; slower by 1.05: "
+                     "p.csv:2: segment 1 in ENU reaches 2.08 m/s, the limit is 2.00 m/s; slower by 1.05: "
                      "--time-scale 1.05"},
         tests::Fault{
             "discontinuous",
             kPolynomialHeader + "\n" + polynomial_row(4.0, 0.0, 1.0, 1.0) + "\n" +
                 polynomial_row(4.0, 1.1, 1.0, 1.0),
-            "p.csv:3: segment 2 in NED does not start where the previous one ends: 0.100 m and 0.000 m/s "
+            "p.csv:3: segment 2 in ENU does not start where the previous one ends: 0.100 m and 0.000 m/s "
             "apart"},
         tests::Fault{"starts_in_motion", kPolynomialHeader + "\n" + replaced(kRow, 2, "0.5"),
-                     "p.csv:2: segment 1 in NED starts at 0.50 m/s, must start at rest"}),
+                     "p.csv:2: segment 1 in ENU starts at 0.50 m/s, must start at rest"}),
     tests::name_of);
 
 TEST(PolynomialCsv, AcceptsTheMaximumOfSegments) {

@@ -22,6 +22,7 @@ std::string plan(const std::string& items, const std::string& home = "47.4, 8.5,
          "\"plannedHomePosition\": [" +
          home + "],\n\"items\": [\n" + items + "\n]}}\n";
 }
+const std::string kUp = item(22, 1, "0,0,0,null,null,null,-1");
 MissionFile qgc(const std::string& text, const control::Limits& limits = control::Limits()) {
   return parse_any_mission_file(text, "q.plan", limits);
 }
@@ -38,11 +39,11 @@ TEST(QGroundControlPlan, ReadsThePx4BoxMission) {
   EXPECT_NEAR(items[2].position_ned.y(), -19.05, 0.05);
   EXPECT_EQ(items[2].position_ned.z(), -10.0);
   EXPECT_TRUE(items[1].yaw_free);
-  EXPECT_EQ(items[1].speed, 2.0);
+  EXPECT_EQ(items[1].speed, 0.5) << "hoverSpeed is a setting of its estimate";
   EXPECT_LT((items[5].position_ned - items[4].position_ned).norm(), 0.1);  // above where it lands
   EXPECT_EQ(items[6].kind, MissionItemKind::kLand);
   EXPECT_TRUE(assumes(file, "home, 47.3977420, 8.5455940 deg and 488.0 m, is the origin"));
-  EXPECT_TRUE(assumes(file, "the plan wants 5 m/s"));
+  EXPECT_TRUE(assumes(file, "hoverSpeed and cruiseSpeed of the plan are for the estimate"));
   EXPECT_TRUE(assumes(file, "the plan says 0.40 m away"));
   EXPECT_TRUE(control::check(file.mission, field()).accepted) << control::check(file.mission, field()).reason;
 }
@@ -58,7 +59,7 @@ TEST(QGroundControlPlan, ReadsLocalCoordinatesInBothFrames) {
   EXPECT_EQ(items[1].hold_s, 2.5);
   EXPECT_FALSE(items[1].yaw_free);
   EXPECT_NEAR(items[1].yaw_rad, M_PI / 2, 1e-12);
-  EXPECT_EQ(items[1].speed, 0.8);
+  EXPECT_EQ(items[1].speed, 0.5);
   EXPECT_EQ(items[2].position_ned, Vector3d(2, 1, -1.5));
   EXPECT_EQ(items[2].speed, 0.4);
   EXPECT_EQ(items[3].hold_s, 3.0);
@@ -83,6 +84,35 @@ TEST(QGroundControlPlan, ConvertsReturnToLaunch) {
   EXPECT_EQ(file.mission.items[3].kind, MissionItemKind::kLand);
 }
 
+TEST(QGroundControlPlan, ReadsWhatElseACommandSays) {
+  const MissionFile file =
+      qgc(plan(item(22, 1, "15,0,0,null,null,null,-1") + "," + item(178, 2, "0,9,-1,0,0,0,0") + "," +
+               item(16, 1, "0,0.3,0,null,1,1,-1") + "," + item(178, 2, "1,-2,-1,0,0,0,0") + "," +
+               item(178, 2, "1,-1,-1,0,0,0,0") + "," + item(19, 1, "2,1,50,1,1,1,-1")));
+  ASSERT_EQ(file.mission.items.size(), 4U);
+  EXPECT_EQ(file.mission.items[1].acceptance_radius_m, 0.3);
+  EXPECT_EQ(file.mission.items[1].speed, 2.0);
+  EXPECT_TRUE(assumes(file, "the plan wants 9 m/s"));
+  EXPECT_EQ(file.mission.items[2].speed, 0.5) << "-2 is the default";
+  EXPECT_TRUE(file.mission.items[2].yaw_free) << "parameter 4 of command 19 is no yaw";
+  EXPECT_EQ(file.mission.items[2].hold_s, 2.0);
+  EXPECT_TRUE(
+      assumes(file, "for aeroplanes, not used: parameter 1 of 22 (take-off), 2 of 19 (loiter for a time)"));
+}
+
+TEST(QGroundControlPlan, ReadsPlaceZeroAsHere) {
+  const std::string up = item(22, 3, "0,0,0,0,0,0,1") + "," + item(16, 3, "0,0,0,null,47.40001,8.5,1");
+  const MissionFile file = qgc(plan(up + "," + item(21, 3, "0,0,0,0,0,0,0")));
+  ASSERT_EQ(file.mission.items.size(), 3U) << "it lands where it is";
+  EXPECT_NEAR(file.mission.items[1].position_ned.x(), 1.11, 0.01);
+  EXPECT_TRUE(assumes(file, "latitude and longitude 0 of items 1 and 3 mean here"));
+  EXPECT_EQ(qgc(plan(kUp + "," + item(16, 1, "0,0,0,null,1,1,-1") + "," + item(21, 1, "0,0,0,0,0,0,0")))
+                .mission.items[2]
+                .position_ned,
+            Vector3d(0, 0, -1))
+      << "local coordinates of 0 are home";
+}
+
 TEST(QGroundControlPlan, AcceptsAnyWhiteSpace) {
   std::string text = plan(item(16, 1, "0,0,0,null,1,1,-1"));
   std::string tight;
@@ -93,8 +123,6 @@ TEST(QGroundControlPlan, AcceptsAnyWhiteSpace) {
   for (char& c : text) c = c == ' ' ? '\t' : c;
   EXPECT_EQ(qgc(text).mission.items.size(), 3U);
 }
-
-const std::string kUp = item(22, 1, "0,0,0,null,null,null,-1");
 
 class BadPlan : public testing::TestWithParam<tests::Fault> {};
 TEST_P(BadPlan, IsRefusedWithASentence) {
@@ -136,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(
             "home_out_of_range", plan(kUp, "47, 181, 0"),
             "q.plan:3: mission.plannedHomePosition[1]: is 181, must be at least -180 and at most 180"},
         tests::Fault{"outside_the_fence", plan(kUp + ",\n" + item(16, 1, "0,0,0,null,3.5,1,-1")),
-                     "q.plan:6: mission.items[1]: north is 3.500 m, must be inside the fence, -3 to 3 m"},
+                     "q.plan:6: mission.items[1]: north is 3.5 m, must be inside the fence, -3 to 3 m"},
         tests::Fault{
             "takes_off_elsewhere", plan(item(22, 1, "0,0,0,null,2,0,-1")),
             "q.plan:5: mission.items[0]: takes off 2.0 m from home, must be at most 1 m: the vehicle stands "
@@ -151,6 +179,29 @@ INSTANTIATE_TEST_SUITE_P(
                      "q.plan:5: mission.items[0].params[0]: is 3601, must be at least 0 and at most 3600"},
         tests::Fault{"zero_speed", plan(item(178, 2, "1,0,-1,0,0,0,0")),
                      "q.plan:5: mission.items[0].params[1]: is 0, must be above 0"},
+        tests::Fault{"climb_speed", plan(item(178, 2, "2,0.4,-1,0,0,0,0")),
+                     "q.plan:5: mission.items[0].params[0]: is 2, must be 0 or 1, a speed of flight: a speed "
+                     "of climb or "
+                     "descent is not read"},
+        tests::Fault{"relative_speed", plan(item(178, 2, "1,0.4,-1,1,0,0,0")),
+                     "q.plan:5: mission.items[0].params[3]: is 1, must be 0 or empty: parameter 4 of 178 "
+                     "(change speed) is "
+                     "not read"},
+        tests::Fault{
+            "throttle", plan(item(178, 2, "1,0.4,50,0,0,0,0")),
+            "q.plan:5: mission.items[0].params[2]: is 50, must be -1, 0 or empty: a throttle is not read"},
+        tests::Fault{"pass_radius", plan(item(16, 1, "0,0,2,null,1,1,-1")),
+                     "q.plan:5: mission.items[0].params[2]: is 2, must be 0 or empty: parameter 3 of 16 "
+                     "(waypoint) is not "
+                     "read"},
+        tests::Fault{"yaw_of_a_landing", plan(kUp + ",\n" + item(21, 1, "0,0,0,90,0,0,0")),
+                     "q.plan:6: mission.items[1].params[3]: is 90, must be 0 or empty: parameter 4 of 21 "
+                     "(land) is not "
+                     "read"},
+        tests::Fault{"lands_on_a_roof", plan(kUp + ",\n" + item(21, 1, "0,0,0,0,0,0,-3")),
+                     "q.plan:6: mission.items[1].params[6]: is 3 m above home, must be within 0.1 m: the "
+                     "vehicle lands on "
+                     "the ground"},
         tests::Fault{"no_item_to_fly", plan(item(178, 2, "1,1,-1,0,0,0,0")),
                      "q.plan:4: mission.items: has no item to fly, must have a take-off or a waypoint"}),
     tests::name_of);

@@ -250,11 +250,11 @@ INSTANTIATE_TEST_SUITE_P(
         tests::Fault{
             "seems_to_start_in_motion",
             "t,x,y,z\n0,0,0,1\n0.1,0.05,0,1\n0.2,0.1,0,1\n0.3,0.1,0,1\n0.4,0.1,0,1\n",
-            "s.csv:2: the path starts at about 0.50 m/s, must start at rest: segment 1 in NED reaches "
+            "s.csv:2: the path starts at about 0.50 m/s, must start at rest: segment 1 in ENU reaches "
             "14.42 m/s^2, the limit is 5.00 m/s^2"},
         tests::Fault{"seems_to_end_in_motion",
                      "t,x,y,z\n0,0,0,1\n0.1,0,0,1\n0.2,0,0,1\n0.3,0.05,0,1\n0.4,0.1,0,1\n",
-                     "s.csv:3: the path ends at about 0.50 m/s, must end at rest: segment 4 in NED reaches "
+                     "s.csv:3: the path ends at about 0.50 m/s, must end at rest: segment 4 in ENU reaches "
                      "5.60 m/s^2, the limit is 5.00 m/s^2"},
         tests::Fault{
             "step", "t,x,y,z\n0,0,0,1\n1,0,0,1\n1.01,0.3,0,1\n2,0.3,0,1\n",

@@ -46,8 +46,9 @@ TEST(SetpointRows, RefusePositionsBelowTheGround) {
             "s.csv:3: z: in NED: z = +0.100 m is below the ground, as z points down (NED); 0.100 m above the "
             "ground "
             "is z = -0.100 m");
-  EXPECT_NE(refusal("t,x,y,z", {"0,0,0,-1"}).find("s.csv:2: z: in NED: z = +1.000 m is below"),
-            std::string::npos);
+  EXPECT_EQ(refusal("t,x,y,z", {"0,0,0,-1"}),
+            "s.csv:2: z: in ENU: z = -1.000 m is below the ground, as z points up (ENU); 1.000 m above the "
+            "ground is z = 1.000 m");
   EXPECT_EQ(refusal("t [s],vx_ned [m/s],vy_ned [m/s],vz_ned [m/s]", {"0,0,0,1"}), "none");
 }
 

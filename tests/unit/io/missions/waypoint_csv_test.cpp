@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(
                      "w.csv:2: yaw: waypoint 2: yaw is 90 rad, more than a full turn: 90 degrees are 1.5708 "
                      "rad, 90 rad are the yaw 2.0354 rad"},
         tests::Fault{"outside_the_fence", "0,0,1\n3.1,0,1\n",
-                     "w.csv:2: x,y,z: in NED: y is 3.100 m, outside the fence of -3.000 to 3.000 m"},
+                     "w.csv:2: x,y,z: in ENU: x is 3.100 m, outside the fence of -3.000 to 3.000 m"},
         tests::Fault{"equal_points", "0,0,1\n0,0,1\n",
                      "w.csv: the path has no length: all points are at one place"},
         tests::Fault{"too_many_points", hover_points(1026),
@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(WaypointCsv, NamesTheWaypointBeforeAFenceViolation) {
   const std::string sentence = refusal([] { waypoints("0,0,1\n3,0,1\n3,2.9,1\n0,0,1\n"); });
-  EXPECT_EQ(sentence.find("w.csv:2: the path from here: segment 2 in NED: y is "), 0U) << sentence;
+  EXPECT_EQ(sentence.find("w.csv:2: the path from here: segment 2 in ENU: x is "), 0U) << sentence;
   EXPECT_NE(sentence.find("outside the fence of -3.000 to 3.000 m"), std::string::npos) << sentence;
 }
 

@@ -113,6 +113,16 @@ TEST(Replay, PlaysATableToItsEnd) {
   EXPECT_FALSE(source.receive(first, 1ms));
 }
 
+TEST(Replay, PlaysATableOfASpreadsheet) {
+  const tests::TemporaryFolder folder;
+  const std::string file = (folder.path() / "drone.csv").string();
+  std::ofstream(file) << "\xef\xbb\xbf\"t\";x;y;z;qx;qy;qz;qw\r\n0;1;2;3,5;0;0;0;1\r\n";
+  ReplaySource source(replay_of(file));
+  SourceFrame frame;
+  ASSERT_TRUE(source.receive(frame, 500ms));
+  EXPECT_EQ(frame.poses[0].position.z(), 3.5);
+}
+
 TEST(Replay, RefusesWhatItCannotPlay) {
   const tests::TemporaryFolder folder;
   const auto refusal = [&](const std::string& text) {
