@@ -168,6 +168,7 @@ void SimulatedRecorder::write_changes() {
   const bool mode_changed = !status_ || now.mode != status_->mode || now.reason != status_->reason;
   const bool mission_changed = !status_ || differ(now.mission, status_->mission);
   if (mode_changed || now_ns - status_ns_ >= kStatusPeriod_ns) write_status(now);
+  if (mission_changed) mission_end_ = now.reason;
   if (mission_changed || now_ns - mission_ns_ >= kStatusPeriod_ns) write_mission(now);
   if (mode_changed || mission_changed) status_ = now;
 }
@@ -187,8 +188,8 @@ void SimulatedRecorder::write_mission(const control::Status& status) {
   message.stamp_ns(mission_ns_);
   message.sequence_number(++mission_sequence_);
   if (is_over(status.mission.state)) {
-    message.reason_code(static_cast<std::uint8_t>(status.reason));
-    message.reason() = control::to_string(status.reason);
+    message.reason_code(static_cast<std::uint8_t>(mission_end_));
+    message.reason() = control::to_string(mission_end_);
   }
   write(topics::kMissionStatus, message, mission_ns_);
 }

@@ -66,6 +66,7 @@ class SimulatedRecorder {
   std::uint64_t mission_sequence_ = 0;
   std::uint64_t request_sequence_ = 0;
   std::optional<control::Status> status_;
+  control::Reason mission_end_ = control::Reason::kStarted;  // why the mission was over
   std::int64_t status_ns_ = 0;
   std::int64_t mission_ns_ = 0;
   std::int64_t vehicle_info_ns_ = 0;
