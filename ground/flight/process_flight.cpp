@@ -7,6 +7,7 @@
 #include "swiftlet/ground/flight/flight_outcome.hpp"
 #include "swiftlet/ground/flight/flight_settings.hpp"
 #include "swiftlet/ground/flight/network_transport.hpp"
+#include "swiftlet/plant/simulation/no_effect.hpp"
 #include "swiftlet/record/evaluation.hpp"
 
 namespace swiftlet::ground {
@@ -83,6 +84,8 @@ void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* barrier, io:
   }
   report_.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
   report_.simulated_s = static_cast<double>(client_->view().truth.message.stamp_ns()) * 1e-9;
+  if (plan_.launch_mode == LaunchMode::kStarted && !plan_.px4_instance)
+    report_.warnings = plant::settings_without_effect(plan_.simulation, plan_.vehicle, report_.simulated_s);
   take_figures(client_->view(), report_);
 }
 
