@@ -166,6 +166,24 @@ Box smaller_if_high(Box box, double height_over_width) {
   return box;
 }
 
+// The texts are below each other, so that those of intervals that follow closely do not collide.
+void add_intervals(std::string& script, const Panel& panel, const Scale& x) {
+  constexpr std::size_t kRows = 8;
+  std::size_t row = 0;
+  for (const Interval& interval : panel.intervals) {
+    const double from = interval.from / x.power;
+    script += fmt::format(
+        "set arrow from {0:.7g},graph 0 to {0:.7g},graph 1 nohead back lw 1 lc rgb '{2}'\n"
+        "set object rectangle from {0:.7g},graph 0 to {1:.7g},graph 1 back fs transparent solid 0.12 "
+        "noborder fc rgb '{2}'\n",
+        from, interval.to / x.power, colour_of(Colour::kRed));
+    if (interval.text.empty()) continue;
+    script += fmt::format("set label {} at {:.7g},graph {:g} left offset 0.4,0 front font ',9' tc rgb '{}'\n",
+                          quoted(interval.text), from, 0.93 - 0.11 * static_cast<double>(row++ % kRows),
+                          colour_of(Colour::kRed));
+  }
+}
+
 void add_panel(std::string& script, const Panel& panel, std::size_t number) {
   Scale x = scale_of(panel, panel.x, &Point::x, panel.x.least_span);
   Scale y = scale_of(panel, panel.y, &Point::y, panel.y.least_span);
@@ -212,6 +230,7 @@ void add_panel(std::string& script, const Panel& panel, std::size_t number) {
                           label.at.x / x.power, label.at.y / y.power,
                           label.ends_here ? "right offset -0.6,-0.7" : "left offset 0.6,0.6",
                           colour_of(label.colour));
+  add_intervals(script, panel, x);
   script += (panel.in_space ? "splot" : "plot") + (plots.empty() ? " NaN notitle" : plots) + "\n";
 }
 

@@ -10,6 +10,7 @@
 #include "swiftlet/ground/flight/record_folder.hpp"
 #include "swiftlet/ground/flight/simulated_recorder.hpp"
 #include "swiftlet/plant/simulation/no_effect.hpp"
+#include "swiftlet/record/file/recorded_faults.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -44,7 +45,8 @@ analysis::FlightReport fly_and_record(LaunchConfiguration plan, const FlyOptions
   analysis::FlightReport report =
       fly_in_process(loop, plan, plan.seed, flight, trace ? &*trace : nullptr, cancelled, &messages);
   report.warnings = plant::settings_without_effect(world.simulation, world.vehicle, report.simulated_s);
-  report.record_fault = messages.finish();
+  flight.faults = record::fault_rows(world.simulation);
+  report.record_fault = messages.finish(flight.faults);
   if (trace && report.record_fault.empty()) report.record_fault = close(*trace);
   const record::Window window = record::evaluate(flight).window.value_or(record::Window{});
   write_report(plan.folder, flight, report, window, progress);

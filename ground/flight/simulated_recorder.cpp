@@ -10,6 +10,7 @@
 #include "swiftlet/ground/flight/flight_description.hpp"
 #include "swiftlet/plant/model/telemetry_rate.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
+#include "swiftlet/record/file/recorded_faults.hpp"
 #include "swiftlet/services/dds/payload.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/messages/schemas.hpp"
@@ -229,10 +230,14 @@ void SimulatedRecorder::request(const control::Request& request, const control::
   write(topics::kCommandAck, ack, now_ns);
 }
 
-std::string SimulatedRecorder::finish() {
+std::string SimulatedRecorder::finish(const std::vector<record::FaultRow>& faults) {
   std::uint64_t messages = 0;
   for (const auto& [channel, count] : counts_) messages += count;
   attempt([&] {
+    for (const record::FaultRow& fault : faults) {
+      if (fault.from_ns <= loop_.plant.stamp_ns())
+        file_.write(record::log_message(record::log_line(fault)), fault.from_ns);
+    }
     file_.write(record::counts_metadata({{"received", messages}, {"dropped", 0}, {"lost", 0}}));
     file_.close();
   });

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "swiftlet/control/types/request.hpp"
 #include "swiftlet/ground/flight/launch_configuration.hpp"
@@ -33,8 +34,8 @@ class SimulatedRecorder {
   // After a request was answered.
   void request(const control::Request& request, const control::Outcome& outcome);
 
-  // Ends the file. Returns a sentence if it is not complete.
-  std::string finish();
+  // Adds the faults that began to the log, and ends the file. Returns a sentence if it is not complete.
+  std::string finish(const std::vector<record::FaultRow>& faults);
 
  private:
   template <class T>

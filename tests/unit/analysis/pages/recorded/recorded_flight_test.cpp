@@ -6,9 +6,11 @@
 
 #include "swiftlet/analysis/pages/flight_page.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/text_file.hpp"
 #include "swiftlet/record/file/cdr_writer.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
 #include "swiftlet/record/mcap/writer.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::pages::recorded_flight_test {
@@ -175,6 +177,23 @@ TEST_F(FlightPage, KnowsMotionCaptureFromTheAttachedSettingsOfTheVehicle) {
   };
   EXPECT_NEAR(bound_mm(0), 3.0 * std::hypot(1.0, 2.0), 1e-9);
   EXPECT_NEAR(bound_mm(1), 3.0 * std::hypot(1.0, 4.0), 1e-9);
+}
+
+// At their times on the axis of the page, which begins at the take-off, and only those that the flight came to.
+TEST_F(FlightPage, MarksTheFaultsOfTheAttachedSimulation) {
+  {
+    FlightFile file(path_);
+    file.add_climb("/kl1", 100);
+    file.add_mode("/kl1", kFirstNs + 200 * kMs, 2, "requested");
+    file.attach("simulation.yaml", io::read_text_file(tests::in_source("config/simulation/default.yaml")) +
+                                       "faults:\n  - {kind: mocap_stop, at_s: 1.2, for_s: 0.1}\n"
+                                       "  - {kind: imu_stop, at_s: 9, for_s: 0.1}\n");
+  }
+  const std::vector<FlightEvent> events = flights().front().events;
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[1].kind, "fault");
+  EXPECT_EQ(events[1].text, "fault: mocap_stop, at_s 1.2, for_s 0.1");
+  EXPECT_NEAR(events[1].time_s, 0.5, 1e-9);
 }
 
 TEST_F(FlightPage, NamesASignalOfAnotherType) {
