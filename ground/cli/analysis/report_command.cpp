@@ -38,9 +38,11 @@ struct ReportOptions {
 void write_page(const std::vector<analysis::RecordedFlight>& recorded, const std::string& page) {
   std::vector<pages::FlightLog> flights;
   for (const analysis::RecordedFlight& one : recorded) {
-    flights.push_back(pages::flight_log(mcap::Reader(one.file.string()), one.vehicle, one.flown, one.name));
+    const mcap::Reader file(one.file.string());
+    flights.push_back(pages::flight_log(file, one.vehicle, one.flown, one.name));
     if (one.file.filename() == record::kFlightFile)
-      pages::add_process_logs(fs::absolute(one.file).parent_path(), flights.back());
+      pages::add_process_logs(fs::absolute(one.file).parent_path(), record::recorded_vehicles(file),
+                              flights.back());
   }
   std::string title = flights.size() == 1 ? "Flight" : "Flights";
   for (std::size_t i = 0; i < flights.size(); ++i) title += (i == 0 ? " " : ", ") + flights[i].name;

@@ -68,6 +68,8 @@ class FlightFile {
     file_.write(mcap::Attachment{0, 0, name, "application/yaml", text});
   }
 
+  void describe(const mcap::Metadata& metadata) { file_.write(metadata); }
+
   void add_mode(const std::string& vehicle, std::int64_t stamp_ns, std::uint8_t mode,
                 const std::string& reason) {
     record::CdrWriter payload;
@@ -194,6 +196,21 @@ TEST_F(FlightPage, MarksTheFaultsOfTheAttachedSimulation) {
   EXPECT_EQ(events[1].kind, "fault");
   EXPECT_EQ(events[1].text, "fault: mocap_stop, at_s 1.2, for_s 0.1");
   EXPECT_NEAR(events[1].time_s, 0.5, 1e-9);
+}
+
+TEST_F(FlightPage, HasTheMissionAndSeedOfTheVehicle) {
+  {
+    FlightFile file(path_);
+    file.describe({"swiftlet/flight",
+                   {{"vehicles", "kl1,kl2"}, {"missions", "square,hop"}, {"seed", "5"}, {"seeds", "5,6"}}});
+    file.add_climb("/kl1", 10);
+    file.add_climb("/kl2", 10);
+  }
+  const std::vector<FlightLog> both = flights();
+  EXPECT_EQ(value_of(both[0], "mission"), "square");
+  EXPECT_EQ(value_of(both[0], "seed"), "5");
+  EXPECT_EQ(value_of(both[1], "mission"), "hop");
+  EXPECT_EQ(value_of(both[1], "seed"), "6");
 }
 
 TEST_F(FlightPage, NamesASignalOfAnotherType) {
