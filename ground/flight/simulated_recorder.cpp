@@ -233,11 +233,11 @@ void SimulatedRecorder::request(const control::Request& request, const control::
 std::string SimulatedRecorder::finish(const std::vector<record::FaultRow>& faults) {
   std::uint64_t messages = 0;
   for (const auto& [channel, count] : counts_) messages += count;
+  for (const record::FaultRow& fault : faults) {
+    if (fault.from_ns > loop_.plant.stamp_ns()) continue;
+    attempt([&] { file_.write(record::log_message(record::log_line(fault)), fault.from_ns); });
+  }
   attempt([&] {
-    for (const record::FaultRow& fault : faults) {
-      if (fault.from_ns <= loop_.plant.stamp_ns())
-        file_.write(record::log_message(record::log_line(fault)), fault.from_ns);
-    }
     file_.write(record::counts_metadata({{"received", messages}, {"dropped", 0}, {"lost", 0}}));
     file_.close();
   });

@@ -131,7 +131,7 @@ std::string value_of(const Metadata& metadata, const std::string& key) {
   return found == metadata.end() ? "" : found->second;
 }
 
-// That of this vehicle in a list with a value for each.
+// The value of this vehicle in a list with one for each vehicle.
 std::string own(const Metadata& metadata, const std::string& key, const std::string& vehicle) {
   const std::vector<std::string> vehicles = io::split_text(value_of(metadata, "vehicles"), ',');
   const std::vector<std::string> values = io::split_text(value_of(metadata, key), ',');

@@ -13,7 +13,7 @@ struct FleetCheckOptions {
   bool json = false;
 };
 
-// Of the vehicle, and of its mission if that has another one.
+// The name of the vehicle, and that of its mission if it is another one.
 std::string name_of(const FleetVehicle& one) {
   const std::string& vehicle = one.member.name;
   return one.mission.name == vehicle ? vehicle : vehicle + ": " + one.mission.name;

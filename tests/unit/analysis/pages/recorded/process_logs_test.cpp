@@ -48,7 +48,7 @@ TEST(ProcessLogs, AreEventsAtTheirTimes) {
   EXPECT_TRUE(log.events[3].warning);
 }
 
-// Of a process that serves several vehicles.
+// A process that serves several vehicles names the one that a line is about.
 TEST(ProcessLogs, AreThoseOfTheVehicle) {
   const tests::TemporaryFolder folder;
   folder.write("swiftlet-control.log", at(1, "control info: ready: vehicle kl1,kl2") +
