@@ -34,8 +34,13 @@ TEST(FleetProgress, KeepsTo80ColumnsInALog) {
 
 TEST(FleetProgress, ShowsEachOfAFewVehicles) {
   const std::string line = lines_of({"kl1", "kl2"}).back();
-  EXPECT_NE(line.find("kl1  12.1 s  2/6 waypoint"), std::string::npos) << line;
-  EXPECT_NE(line.find("kl2  12.1 s  2/6 waypoint"), std::string::npos) << line;
+  EXPECT_NE(line.find("kl1 12.1 s 2/6 waypoint"), std::string::npos) << line;
+  EXPECT_NE(line.find("kl2 12.1 s 2/6 waypoint"), std::string::npos) << line;
+}
+
+TEST(FleetProgress, ShowsWhatEachOfThreeFlies) {
+  const std::string line = lines_of({"kl1", "kl2", "kl3"}).back();
+  EXPECT_NE(line.find("kl3 12.1 s 2/6 waypoint"), std::string::npos) << line;
 }
 
 }  // namespace swiftlet::ground::fleet_progress_test
