@@ -99,6 +99,13 @@ struct RequestRow {
   std::string reason{};     // of an answer
 };
 
+// A fault that the simulation injected.
+struct FaultRow {
+  std::int64_t from_ns = 0;
+  std::int64_t to_ns = 0;
+  std::string text{};  // "push, at_s 8, for_s 0.05": its kind and its times in the simulation file
+};
+
 // The rows of each member are in ascending order of their stamps, each stamp once but in mission, status and vehicle. Numbers
 // of motion are finite.
 struct Flight {
@@ -111,6 +118,7 @@ struct Flight {
   std::vector<plant::PoseSample> poses;          // those without a tracked body too
   std::vector<plant::BatterySample> batteries;
   std::vector<plant::RotorSpeedSample> rotor_speeds;
+  std::vector<FaultRow> faults;
   // Only of a recorded file:
   std::vector<StatusRow> status;
   std::vector<VehicleRow> vehicle;

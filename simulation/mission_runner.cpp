@@ -38,6 +38,15 @@ void follow(MissionTransport& vehicle, double planned_duration_s) {
 
 }  // namespace
 
+bool comes_down(control::Mode mode) {
+  return mode == control::Mode::kLanding || mode == control::Mode::kDescent;
+}
+
+std::string end_of(control::Mode mode, bool has_flown) {
+  if (mode == control::Mode::kStopped) return "rotors stopped";
+  return has_flown ? "landed" : "disarmed";
+}
+
 void fly_mission(MissionTransport& vehicle, double planned_duration_s) {
   vehicle.wait_until_ready();
   arm(vehicle);

@@ -23,6 +23,11 @@ struct FlightSchedule {
   static constexpr std::int64_t kArmingRetryNs =
       200'000'000;  // between a refusal to arm and the next request
   static constexpr std::int64_t kArmingTimeoutNs = 5'000'000'000;  // from the first request
+  // After a mission was aborted: the vehicle is asked to land if by then it neither lands nor descends of itself. Looked
+  // at again as much later.
+  static constexpr std::int64_t kLandAfterNs = 5'000'000'000;
+  static constexpr double kLandingSpeed = 0.4;  // m/s
+  static constexpr double kLandingTimeoutS = 30.0;
 
   // From the start of the mission.
   static double time_limit_s(double planned_duration_s) { return 1.5 * planned_duration_s + 30.0; }
@@ -58,6 +63,11 @@ class MissionTransport {
   // Ends the flight of a vehicle that is armed or flies, and leaves it disarmed. Throws FlightFailure.
   [[noreturn]] virtual void abandon(const std::string& reason) { throw FlightFailure(reason); }
 };
+
+// Whether the vehicle comes to the ground without being asked.
+bool comes_down(control::Mode mode);
+// "landed": how an abandoned flight ended, by the mode in which the rotors are off.
+std::string end_of(control::Mode mode, bool has_flown);
 
 // Waits, arms, starts the mission and follows it until it is completed and the rotors are off. Throws
 // FlightFailure. planned_duration_s bounds the time that the mission may take.

@@ -7,6 +7,7 @@
 
 #include "swiftlet/control/attitude/attitude_error.hpp"
 #include "swiftlet/control/types/mode.hpp"
+#include "swiftlet/math/time.hpp"
 #include "swiftlet/plant/model/telemetry_rate.hpp"
 #include "swiftlet/simulation/mission_runner.hpp"
 
@@ -47,12 +48,27 @@ class LoopTransport final : public MissionTransport {
   }
   Reply start_mission() override {
     const Reply uploaded = request(control::RequestKind::kMissionUpload);
-    return uploaded.accepted ? request(control::RequestKind::kMissionStart) : uploaded;
+    const Reply reply = uploaded.accepted ? request(control::RequestKind::kMissionStart) : uploaded;
+    started_ = reply.accepted;
+    return reply;
   }
   void advance() override {
     loop_.step();
     if (observer_.stepped) observer_.stepped();
     if (!observe()) throw FlightFailure("it was cancelled");
+  }
+  [[noreturn]] void abandon(const std::string& reason) override {
+    const std::int64_t abandoned_ns = loop_.answered->stamp_ns;
+    const bool aborted = status().mission == control::MissionState::kAborted;
+    for (std::int64_t until_ns = abandoned_ns + (aborted ? FlightSchedule::kLandAfterNs : 0);;
+         until_ns += FlightSchedule::kLandAfterNs) {
+      while (!status().rotors_off && loop_.plant.stamp_ns() + imu_period_ns_ <= until_ns) advance();
+      if (status().rotors_off) throw FlightFailure(reason + "; " + end_of(status_.mode, started_));
+      if (math::seconds(until_ns - abandoned_ns) > FlightSchedule::kLandingTimeoutS)
+        throw FlightFailure(reason + "; the vehicle did not land within 30 s");
+      if (!comes_down(status_.mode))
+        request(started_ ? control::RequestKind::kLand : control::RequestKind::kDisarm);
+    }
   }
   Status status() const override {
     const bool flown = status_.mission.id == mission_.id;
@@ -65,6 +81,7 @@ class LoopTransport final : public MissionTransport {
   Reply request(control::RequestKind kind) {
     control::Request request;
     request.kind = kind;
+    if (kind == control::RequestKind::kLand) request.speed = FlightSchedule::kLandingSpeed;
     if (kind == control::RequestKind::kMissionUpload) request.mission = &mission_;
     const control::Outcome outcome = loop_.controller.request(request);
     if (observer_.requested) observer_.requested(request, outcome);
@@ -135,6 +152,7 @@ class LoopTransport final : public MissionTransport {
   const FlightObserver& observer_;
   const control::Status& status_;
   std::int64_t imu_period_ns_;
+  bool started_ = false;
   std::uint64_t answered_sequence_ = 0;
   control::MissionProgress recorded_;
 };

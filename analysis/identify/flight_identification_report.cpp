@@ -108,14 +108,17 @@ plot::Figure horizon_figure(const FlightIdentification& found, const std::string
   return figure;
 }
 
+std::string ratio_text(const FileComparison& row) {
+  return row.identified.identifiable ? fmt::format("{:.3f}", row.ratio()) : "-";
+}
+
 std::string comparison_table(const FlightIdentification& found) {
   if (found.comparisons.empty()) return "";
   std::string out = fmt::format("  {:<30} {:>12}  {:<10} {:>12} {:>8}  {}\n", "comparison with vehicle file",
                                 "identified", "+- (95 %)", "file", "ratio", "unit");
   for (const FileComparison& row : found.comparisons) {
-    out += fmt::format("  {:<30} {:12.5g}  {:<10.2g} {:12.5g} {:8.3f}  {}\n",
-                       row.identified.parameter.c_str(), row.identified.value, row.identified.half_width,
-                       row.file, row.ratio(), row.identified.unit.c_str());
+    out += fmt::format("  {:<30} {} {:12.5g} {:>8}  {}\n", row.identified.parameter,
+                       table_cells(row.identified), row.file, ratio_text(row), row.identified.unit);
   }
   return out;
 }
@@ -143,7 +146,9 @@ void add_comparison(pages::Page& page, const FlightIdentification& found) {
   std::vector<pages::Row> rows;
   for (const FileComparison& row : found.comparisons) {
     const ParameterEstimate& e = row.identified;
-    rows.push_back(row_of({e.parameter, e.symbol}, {e.value, e.half_width, row.file, row.ratio()}, e.unit));
+    const EstimateText text = text_of(e);
+    rows.push_back({e.parameter, e.symbol, text.value, text.half_width, fmt::format("{:.4g}", row.file),
+                    ratio_text(row), unit_cell(e.unit)});
   }
   page.heading("Comparison with the vehicle file");
   page.table({"parameter", "symbol", "identified", "\u00b1 (95 %)", "file", "ratio", "unit"}, rows);
@@ -189,12 +194,12 @@ Json lag_json(const ParameterEstimate& e) {
 }
 
 Json comparison_json(const FileComparison& row) {
-  return {{"parameter", row.identified.parameter},
-          {"value", row.identified.value},
-          {"interval_95", {row.identified.low(), row.identified.high()}},
-          {"file", row.file},
-          {"ratio", row.ratio()},
-          {"unit", row.identified.unit}};
+  Json json = json_of(row.identified);
+  json.erase("symbol");
+  json.erase("standard_error");
+  json["file"] = row.file;
+  json["ratio"] = row.identified.identifiable ? Json(row.ratio()) : Json();
+  return json;
 }
 
 Json horizon_json(const HorizonError& e) {
@@ -228,8 +233,7 @@ std::string flight_identification_table(const FlightIdentificationReport& report
   out +=
       fmt::format("  {:<30} {:<17} {:>12}  {:<10} {}\n", "parameter", "symbol", "value", "+- (95 %)", "unit");
   for (const ParameterEstimate& e : found.estimates) {
-    out += fmt::format("  {:<30} {:<17} {:12.5g}  {:<10.2g} {}\n", e.parameter.c_str(), e.symbol.c_str(),
-                       e.value, e.half_width, e.unit.c_str());
+    out += fmt::format("  {:<30} {:<17} {} {}\n", e.parameter, e.symbol, table_cells(e), e.unit);
   }
   out += comparison_table(found);
   if (found.step_s > 0.0) out += fmt::format("  one step of the predictions is {:.4g} s\n", found.step_s);

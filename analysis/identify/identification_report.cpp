@@ -176,8 +176,8 @@ std::string identification_table(const IdentificationReport& report) {
   for (const Part& part : parts_of(report)) {
     for (std::size_t i = 0; i < part.estimates.size(); ++i) {
       const ParameterEstimate& e = part.estimates[i];
-      out += fmt::format("  {:<24} {:<7} {:12.5g}  {:<10.2g} {:<12} {:<16}", e.parameter.c_str(),
-                         e.symbol.c_str(), e.value, e.half_width, e.unit.c_str(), part.name.c_str());
+      out += fmt::format("  {:<24} {:<7} {} {:<12} {:<16}", e.parameter, e.symbol, table_cells(e), e.unit,
+                         part.name);
       out +=
           i == 0 ? " " + r_squared_text(*part.fit) + fmt::format(" {:8}\n", part.fit->outliers.size()) : "\n";
     }

@@ -17,7 +17,18 @@ std::string written_unit(const std::string& unit);
 // The same for a cell of a table: empty for the unit 1.
 std::string unit_cell(const std::string& unit);
 
-// Keys: parameter, symbol, value, standard_error, interval_95, unit.
+// Value and half width of the interval: the half width with two digits, the value up to the last of them; dashes for one that is not
+// identifiable.
+struct EstimateText {
+  std::string value;
+  std::string half_width;
+};
+EstimateText text_of(const identification::ParameterEstimate& estimate);
+
+// As the columns "value" and "+- (95 %)" of a table in a terminal.
+std::string table_cells(const identification::ParameterEstimate& estimate);
+
+// Value and interval are null if it is not identifiable. Keys: parameter, symbol, value, standard_error, interval_95, unit.
 nlohmann::ordered_json json_of(const identification::ParameterEstimate& estimate);
 
 // Adds a table with a row for each estimate.

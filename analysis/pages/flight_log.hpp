@@ -18,7 +18,7 @@ struct SignalTable {
 
 struct FlightEvent {
   double time_s = 0.0;
-  std::string kind;  // "mode", "mission", "request", "vehicle", "estimator", "log"
+  std::string kind;  // "mode", "mission", "request", "fault", "vehicle", "estimator", "log"
   std::string text;
   bool warning = false;
 };

@@ -1,5 +1,7 @@
 #include "swiftlet/analysis/pages/html.hpp"
 
+#include <cctype>
+
 #include <boost/algorithm/string/replace.hpp>
 
 #include "swiftlet/analysis/pages/assets.hpp"
@@ -7,9 +9,26 @@
 namespace swiftlet::pages {
 namespace {
 
-std::string row_of(const Row& cells, const std::string& name) {
+constexpr std::size_t kFewColumns = 2;
+
+// With the sign of a minus in an exponent: a browser breaks the line after a hyphen.
+std::string cell_text(std::string text) {
+  const auto is_digit = [&text](std::size_t at) {
+    return std::isdigit(static_cast<unsigned char>(text[at])) != 0;
+  };
+  for (std::size_t at = text.find("e-", 1); at != std::string::npos; at = text.find("e-", at + 1)) {
+    if (at + 2 < text.size() && is_digit(at - 1) && is_digit(at + 2)) text.replace(at, 2, "e\u2212");
+  }
+  return escaped(text);
+}
+
+// Each cell names its column, for narrow screens.
+std::string row_of(const Row& cells, const Row& head) {
   std::string out = "<tr>";
-  for (const std::string& cell : cells) out += element(name, cell);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::string label = i > 0 && i < head.size() ? " data-label=\"" + escaped(head[i]) + "\"" : "";
+    out += "<td" + label + ">" + cell_text(cells[i]) + "</td>";
+  }
   return out + "</tr>\n";
 }
 
@@ -28,8 +47,11 @@ std::string element(const std::string& name, const std::string& text) {
 }
 
 std::string table(const Row& head, const std::vector<Row>& rows) {
-  std::string out = "<div class=\"wide\"><table>" + row_of(head, "th");
-  for (const Row& row : rows) out += row_of(row, "td");
+  std::string out = head.size() > kFewColumns ? "<div class=\"wide stacks\"><table><tr>"
+                                              : "<div class=\"wide\"><table><tr>";
+  for (const std::string& cell : head) out += element("th", cell);
+  out += "</tr>\n";
+  for (const Row& row : rows) out += row_of(row, head);
   return out + "</table></div>\n";
 }
 

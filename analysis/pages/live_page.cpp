@@ -7,7 +7,7 @@ namespace swiftlet::pages {
 namespace {
 
 constexpr const char* kBody = R"(<h1>Swiftlet live</h1>
-<p id="state"><span id="connection" role="status">connecting</span> <span id="slow" role="status"></span></p>
+<p id="state"><span id="connection" role="status">connecting</span> <span id="slow" role="status"></span> <span id="answers" role="status"></span></p>
 <div class="controls">
 <button type="button" id="hold-all">Hold all</button>
 <button type="button" id="land-all">Land all</button>
@@ -19,6 +19,7 @@ constexpr const char* kBody = R"(<h1>Swiftlet live</h1>
 <option value="30">30 s</option><option value="120">2 min</option><option value="600">10 min</option>
 </select></label>
 <button type="button" id="follow" aria-pressed="true">Follow</button>
+<button type="button" id="stop-all" class="danger">Stop all</button>
 </div>
 <div class="top"><div id="scene" class="live"></div><div id="vehicles"></div></div>
 <h2>Signals</h2>
@@ -32,7 +33,8 @@ Drag in the picture to turn it, Ctrl and wheel to zoom. Vehicles are drawn large
 <div id="charts" class="grid"></div>
 <h2>Events</h2>
 <div id="events" tabindex="0" role="region" aria-label="events"></div>
-<dialog id="confirm"><form method="dialog">
+<dialog id="confirm" aria-labelledby="confirm-title"><form method="dialog">
+<h2 id="confirm-title"></h2>
 <p id="confirm-text"></p>
 <button value="no" id="confirm-no">Cancel</button>
 <button value="yes" id="confirm-yes">Yes</button>

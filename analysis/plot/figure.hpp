@@ -54,6 +54,13 @@ struct Label {
   bool ends_here = false;  // ends below the point, else begins above it
 };
 
+// Marked over the whole height of the axes, also if it is too short to be seen to scale.
+struct Interval {
+  double from = 0.0;  // x
+  double to = 0.0;
+  std::string text = {};  // empty: none
+};
+
 // Limits that are not given are those of the data, with a margin. Numbers that would be long are divided by a
 // power of ten, which the label shows.
 struct Axis {
@@ -87,6 +94,7 @@ struct Panel {
   bool zero_line = false;  // at y = 0
   std::vector<Series> series = {};
   std::vector<Label> labels = {};
+  std::vector<Interval> intervals = {};  // pictures only
 };
 
 struct Figure {

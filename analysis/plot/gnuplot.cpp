@@ -24,7 +24,6 @@ namespace fs = std::filesystem;
 using boost::algorithm::ends_with;
 using boost::algorithm::replace_all_copy;
 
-constexpr std::chrono::seconds kLongest{30};
 constexpr double kMargin = 0.04;     // of the span of the data, on both sides
 constexpr double kLogMargin = 1.25;  // the same as a factor
 constexpr std::size_t kManyDots = 200;
@@ -32,6 +31,12 @@ constexpr double kOfManyDots = 0.7;       // size of each
 constexpr std::size_t kLongLabel = 50;    // characters
 constexpr std::string_view kUnit = " (";  // where it begins in a label
 constexpr const char* kNotInstalled = "no picture was drawn: gnuplot is not installed";
+
+// gnuplot did not end in time, as on a loaded computer.
+class TookTooLong : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 // In the order of Colour.
 constexpr std::array<const char*, 10> kColours = {"#3385c6", "#d9741a", "#2e8b57", "#8e44ad", "#b8860b",
@@ -166,6 +171,24 @@ Box smaller_if_high(Box box, double height_over_width) {
   return box;
 }
 
+// The texts are below each other, so that those of intervals that follow closely do not collide.
+void add_intervals(std::string& script, const Panel& panel, const Scale& x) {
+  constexpr std::size_t kRows = 8;
+  std::size_t row = 0;
+  for (const Interval& interval : panel.intervals) {
+    const double from = interval.from / x.power;
+    script += fmt::format(
+        "set arrow from {0:.7g},graph 0 to {0:.7g},graph 1 nohead back lw 1 lc rgb '{2}'\n"
+        "set object rectangle from {0:.7g},graph 0 to {1:.7g},graph 1 back fs transparent solid 0.12 "
+        "noborder fc rgb '{2}'\n",
+        from, interval.to / x.power, colour_of(Colour::kRed));
+    if (interval.text.empty()) continue;
+    script += fmt::format("set label {} at {:.7g},graph {:g} left offset 0.4,0 front font ',9' tc rgb '{}'\n",
+                          quoted(interval.text), from, 0.93 - 0.11 * static_cast<double>(row++ % kRows),
+                          colour_of(Colour::kRed));
+  }
+}
+
 void add_panel(std::string& script, const Panel& panel, std::size_t number) {
   Scale x = scale_of(panel, panel.x, &Point::x, panel.x.least_span);
   Scale y = scale_of(panel, panel.y, &Point::y, panel.y.least_span);
@@ -212,6 +235,7 @@ void add_panel(std::string& script, const Panel& panel, std::size_t number) {
                           label.at.x / x.power, label.at.y / y.power,
                           label.ends_here ? "right offset -0.6,-0.7" : "left offset 0.6,0.6",
                           colour_of(label.colour));
+  add_intervals(script, panel, x);
   script += (panel.in_space ? "splot" : "plot") + (plots.empty() ? " NaN notitle" : plots) + "\n";
 }
 
@@ -223,16 +247,16 @@ bool is_whole(const std::string& picture) {
 }
 
 // Runs the script in a temporary folder. Returns the file 0 that it writes there. Throws std::runtime_error.
-std::string run_gnuplot(const std::string& script) {
+std::string run_gnuplot(const std::string& script, std::chrono::seconds longest) {
   const fs::path gnuplot = io::find_program("gnuplot");
   if (gnuplot.empty()) throw std::runtime_error(kNotInstalled);
   const auto temporary = io::TemporaryFolder::of_the_system("swiftlet-plot");
   const fs::path& folder = temporary.path();
   io::write_atomically(folder / "script", script);
   io::ChildProcess process({"gnuplot", gnuplot, {"script"}, folder / "log", folder});
-  const auto end = process.wait(kLongest);
+  const auto end = process.wait(longest);
   const std::string no_picture = "no picture was drawn: gnuplot ";
-  if (!end) throw std::runtime_error(no_picture + fmt::format("took longer than {} s", kLongest.count()));
+  if (!end) throw TookTooLong(no_picture + fmt::format("took longer than {} s", longest.count()));
   if (end->by_signal || end->code != 0)
     throw std::runtime_error(no_picture + end->to_string() + ": " + process.last_log_line());
   std::string picture = io::read_text_file(folder / "0");
@@ -253,24 +277,38 @@ std::string gnuplot_script(const Figure& figure, const std::string& output) {
   return script + "unset multiplot\nunset output\n";
 }
 
-std::string draw_png(const Figure& figure, const fs::path& png, bool with_script) {
-  const fs::path script = fs::path(png).replace_extension(".gp");
+namespace {
+
+void draw(const Figure& figure, const fs::path& png, bool with_script, std::chrono::seconds longest) {
+  if (with_script)
+    io::write_atomically(
+        fs::path(png).replace_extension(".gp"),
+        "# Run gnuplot on this file, in its folder.\n" + gnuplot_script(figure, png.filename()));
+  io::write_atomically(png, run_gnuplot(gnuplot_script(figure, "0"), longest));
+}
+
+}  // namespace
+
+std::string draw_png(const Figure& figure, const fs::path& png) {
   try {
-    if (with_script)
-      io::write_atomically(
-          script, "# Run gnuplot on this file, in its folder.\n" + gnuplot_script(figure, png.filename()));
-    io::write_atomically(png, run_gnuplot(gnuplot_script(figure, "0")));
+    draw(figure, png, false, kLongestDrawing);
     return {};
   } catch (const std::exception& fault) {
-    const bool hint = with_script && fault.what() == std::string_view(kNotInstalled);
-    return fault.what() + (hint ? " (" + script.filename().string() + " draws it)" : "");
+    return fault.what();
   }
 }
 
-std::string draw_png_if_installed(const Figure& figure, const fs::path& png) {
-  std::string fault = draw_png(figure, png, true);
-  if (!fault.empty() && !io::find_program("gnuplot").empty()) throw std::runtime_error(fault);
-  return fault;
+std::string draw_png_if_installed(const Figure& figure, const fs::path& png, std::chrono::seconds longest) {
+  const std::string hint = " (" + fs::path(png).replace_extension(".gp").filename().string() + " draws it)";
+  try {
+    draw(figure, png, true, longest);
+    return {};
+  } catch (const TookTooLong& fault) {
+    return fault.what() + hint;
+  } catch (const std::exception& fault) {
+    if (!io::find_program("gnuplot").empty()) throw;
+    return fault.what() + (fault.what() == std::string_view(kNotInstalled) ? hint : "");
+  }
 }
 
 }  // namespace swiftlet::plot

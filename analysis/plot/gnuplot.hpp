@@ -1,6 +1,7 @@
 // Draws figures with gnuplot.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <string>
 
@@ -13,11 +14,14 @@ namespace swiftlet::plot {
 std::string gnuplot_script(const Figure& figure, const std::string& output);
 
 // Draws the figure to a PNG file. Returns an empty string, or one sentence with the reason why there is no
-// picture; the file is then as before. with_script: also writes NAME.gp beside NAME.png, to draw it again.
-std::string draw_png(const Figure& figure, const std::filesystem::path& png, bool with_script = false);
+// picture; the file is then as before.
+std::string draw_png(const Figure& figure, const std::filesystem::path& png);
 
-// As draw_png() with the script. Returns a sentence if gnuplot is not installed. Throws std::runtime_error if
-// it is, and there is no whole picture.
-std::string draw_png_if_installed(const Figure& figure, const std::filesystem::path& png);
+constexpr std::chrono::seconds kLongestDrawing{30};
+
+// Also writes NAME.gp beside NAME.png, to draw it again. Returns a sentence if gnuplot is not installed, or takes longer. Throws
+// std::runtime_error if there is no whole picture for another reason.
+std::string draw_png_if_installed(const Figure& figure, const std::filesystem::path& png,
+                                  std::chrono::seconds longest = kLongestDrawing);
 
 }  // namespace swiftlet::plot

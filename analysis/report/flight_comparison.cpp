@@ -100,20 +100,28 @@ std::string failures(const std::vector<RecordedFlight>& flights) {
 }  // namespace
 
 std::string comparison_table(const std::vector<RecordedFlight>& flights) {
-  std::string table = layout(figures(flights)) + failures(flights);
+  const std::string table = layout(figures(flights)) + failures(flights);
+  if (flights.size() == 1) return table;
+  const std::size_t count = differing_keys(flights).size();
+  if (count == 0) return table + "\nno settings differ\n";
+  return table + fmt::format("\n{} (--settings)\n",
+                             count == 1 ? "1 setting differs" : fmt::format("{} settings differ", count));
+}
+
+std::string settings_table(const std::vector<RecordedFlight>& flights) {
   std::vector<Row> rows;
   if (flights.size() == 1) {
     for (const auto& [key, value] : flights.front().settings) {
       if (key.rfind("control.", 0) == 0) rows.push_back({key, value});
     }
-    return table + (rows.empty() ? "\nthe record contains no settings\n" : "\n" + layout(rows));
+    return rows.empty() ? "the record contains no settings\n" : layout(rows);
   }
   for (const std::string& key : differing_keys(flights)) {
     Row row{key};
     for (const RecordedFlight& flight : flights) row.push_back(value_of(flight, key));
     rows.push_back(std::move(row));
   }
-  return table + (rows.empty() ? "\nno settings differ\n" : "\nsettings that differ\n" + layout(rows));
+  return rows.empty() ? "no settings differ\n" : "settings that differ\n" + layout(rows);
 }
 
 nlohmann::ordered_json comparison_json(const std::vector<RecordedFlight>& flights) {

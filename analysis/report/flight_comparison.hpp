@@ -10,9 +10,11 @@
 
 namespace swiftlet::analysis {
 
-// Returns a table for a terminal with one column per flight. For one flight: its results and all its control
-// settings. For several: their results, and the settings in which they differ; "-" marks a missing value.
+// Tables for a terminal with one column per flight; "-" marks a missing value. The results, and how many settings of several flights
+// differ.
 std::string comparison_table(const std::vector<RecordedFlight>& flights);
+// The control settings of a single flight, or the settings in which several differ.
+std::string settings_table(const std::vector<RecordedFlight>& flights);
 
 // {"flights": [{"folder", "report", "settings": {...}}], "differ": [keys]}
 nlohmann::ordered_json comparison_json(const std::vector<RecordedFlight>& flights);

@@ -40,6 +40,7 @@ plot::Figure flight_figure(const record::Flight& flight, const FlightReport& rep
   figure.panels[0].series[1].label = "reference";
   for (std::size_t i = 0; i < 3; ++i) figure.panels[i].y.least_span = kLeastSpan_m;
   figure.panels[2].y.reversed = true;
+  figure.panels[3].x.label = "time from the start of the mission (s)";
   std::vector<plot::Series>& errors_mm = figure.panels[3].series;
   errors_mm = {{Style::kLine, Colour::kOrange, "x", {}, 0.6},
                {Style::kLine, Colour::kGreen, "y", {}, 0.6},
@@ -51,6 +52,12 @@ plot::Figure flight_figure(const record::Flight& flight, const FlightReport& rep
       figure.panels[view].series[series].points.push_back({ned[1], ned[0], -ned[2]});
   };
   const auto time_s = [&](std::int64_t stamp_ns) { return math::seconds(stamp_ns - window.from_ns); };
+  for (const record::FaultRow& fault : flight.faults) {
+    if (flight.truth.empty() || fault.from_ns > flight.truth.back().stamp_ns) continue;
+    const std::string kind = fault.text.substr(0, fault.text.find(','));
+    for (std::size_t i = 0; i < 4; ++i)
+      figure.panels[i].intervals.push_back({time_s(fault.from_ns), time_s(fault.to_ns), i == 3 ? kind : ""});
+  }
   std::int64_t due_ns = 0;
   for (const TruthRow& truth : flight.truth) {
     if (truth.stamp_ns < due_ns) continue;

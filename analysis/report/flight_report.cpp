@@ -38,6 +38,7 @@ nlohmann::ordered_json to_json(const FlightReport& report) {
   json["seed"] = report.seed;
   json["record_dir"] = report.record_dir;
   if (!report.record_fault.empty()) json["record_fault"] = report.record_fault;
+  if (!report.warnings.empty()) json["warnings"] = report.warnings;
   json["duration_s"] = report.duration_s;
   json["tolerance_m"] = report.tolerance_m;
   json["errors_against"] = record::to_string(report.errors.against);
@@ -101,6 +102,7 @@ std::string to_text(const FlightReport& report) {
   if (!report.dispersion.empty())
     text += fmt::format("  dispersion        {}, seed {}\n", report.dispersion.c_str(),
                         static_cast<unsigned long long>(report.seed));
+  for (const std::string& warning : report.warnings) text += "  warning           " + warning + "\n";
   if (!report.record_dir.empty()) text += "  record            " + report.record_dir + "\n";
   return text;
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 #include <nlohmann/json_fwd.hpp>
@@ -31,7 +32,8 @@ struct FlightReport {
   std::string dispersion;  // empty: nominal vehicle and simulation
   std::uint64_t seed = 0;
   std::string record_dir;
-  std::string record_fault;  // why the record is incomplete; empty if it is complete
+  std::string record_fault;           // why the record is incomplete; empty if it is complete
+  std::vector<std::string> warnings;  // a sentence each: what the settings asked for and cannot have happened
 
   double duration_s = 0.0;        // from mission start to rotors off, or to the failure
   double tolerance_m = 0.0;       // limit of the peak 3-D error

@@ -10,6 +10,7 @@ A fence of the manual has a language and may have words after it. These are the 
 and of all others:
 
     ```yaml file: hop.yaml     the text of this file, which the commands below it use
+    ```text printed            lines that the commands above it print
 """
 
 import dataclasses

@@ -27,6 +27,10 @@ Result result_of(const msg::CommandAck& ack) {
   return {Result::Kind::kRefused, ack.reason().c_str(), key};
 }
 
+bool is_in_mission(const msg::ControlStatus& status) {
+  return static_cast<control::Mode>(status.mode()) == control::Mode::kMission;
+}
+
 }  // namespace
 
 Client::Client(const dds::NodeSettings& settings) : Client(nullptr, settings, Telemetry::kReceived) {}
@@ -95,7 +99,9 @@ void Client::subscribe_statuses() {
         {
           // Each controller counts its own statuses: a count that does not rise is another controller's.
           const std::lock_guard lock(mutex_);
-          if (status.sequence_number() <= view_.control.message.sequence_number()) ++takeovers_;
+          const msg::ControlStatus& before = view_.control.message;
+          if (status.sequence_number() <= before.sequence_number()) ++takeovers_;
+          if (is_in_mission(before) && !is_in_mission(status)) view_.left_mission_ns = status.stamp_ns();
         }
         note_requests(status);
         keep(&View::control, status);

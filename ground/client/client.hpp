@@ -42,6 +42,7 @@ struct Latest {
 // The newest message of each topic of the vehicle and its controller.
 struct View {
   Latest<msg::ControlStatus> control;
+  std::int64_t left_mission_ns = 0;  // stamp of the first control_status after those in mode mission
   Latest<msg::MissionStatus> mission;
   Latest<msg::VehicleInfo> vehicle;
   Latest<msg::Battery> battery;

@@ -40,10 +40,11 @@ mcap::WriterSettings writer_settings(const std::string& program) {
 
 mcap::Metadata flight_metadata(const Fleet& fleet) {
   const LaunchConfiguration& first = fleet.plans.front();
-  std::vector<std::string> missions, models;
+  std::vector<std::string> missions, models, seeds;
   for (const LaunchConfiguration& plan : fleet.plans) {
     missions.push_back(plan.mission.name);
     models.push_back(plan.vehicle.name);
+    seeds.push_back(std::to_string(plan.seed));
   }
   mcap::Metadata metadata{"swiftlet/flight",
                           {{"vehicles", fmt::format("{}", fmt::join(fleet.vehicles, ","))},
@@ -54,6 +55,7 @@ mcap::Metadata flight_metadata(const Fleet& fleet) {
                           {"control", first.control.name},
                           {"simulation", first.simulation_file.stem().string()},
                           {"seed", std::to_string(first.seed)},
+                          {"seeds", fmt::format("{}", fmt::join(seeds, ","))},
                           {"clock", report_of(first).clock},
                           {"imu_rate_hz", fmt::format("{:g}", first.simulation.imu.rate_hz)}});
   if (!first.dispersion.name.empty()) metadata.values["dispersion"] = first.dispersion.name;

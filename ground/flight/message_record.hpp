@@ -28,19 +28,22 @@ class MessageRecord {
   // one, which no longer runs when this returns; empty for none.
   void on_motion(const std::string& vehicle, std::function<void(std::int64_t stamp_ns)> use);
 
-  // Adds the lines of the processes' logs to a file in real time, and ends it. The processes have ended.
+  // Adds the lines of the processes' logs to a file in real time, in lockstep the simulated faults, and ends it. The processes have
+  // ended.
   // Returns a sentence if it lacks what was received. What a network has lost is counted in the file, and is no fault.
   std::string finish();
 
  private:
   record::RecorderSettings settings_of(const Fleet& fleet);
 
-  std::mutex mutex_;  // guards on_motion_; held while one runs
+  std::mutex mutex_;            // guards on_motion_ and newest_ns_; held while one runs
+  std::int64_t newest_ns_ = 0;  // stamp of a motion
   std::map<std::string, std::function<void(std::int64_t)>> on_motion_;
   dds::Participant participant_;
   record::FlightRecorder recorder_;
   const std::filesystem::path folder_;
   const bool simulated_time_;
+  const std::vector<record::FaultRow> faults_;
 };
 
 }  // namespace swiftlet::ground

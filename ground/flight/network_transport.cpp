@@ -20,6 +20,7 @@ namespace swiftlet::ground {
 namespace {
 
 using namespace std::chrono_literals;
+using simulation::FlightSchedule;
 using ControlMode = control::Mode;
 
 constexpr auto kReadyTimeout = 20s;
@@ -37,8 +38,6 @@ constexpr auto kEndTimeout = 2s;
 constexpr auto kResultTimeout = 1s;    // of control_status after mission_status
 constexpr double kLongestStepS = 0.2;  // of this process, between two polls
 constexpr double kSilenceS = 3.0;      // without control_status or motion
-constexpr double kLandingTimeoutS = 30.0;
-constexpr double kLandingSpeed = 0.4;  // m/s
 constexpr int kBeforeFlight = -1;      // progress stage; the later stages are the mission's items
 
 ControlMode mode_of(const View& view) { return static_cast<ControlMode>(view.control.message.mode()); }
@@ -271,19 +270,22 @@ simulation::MissionTransport::Reply NetworkTransport::start_mission() {
   require_alive();
   start_ = answer;
   if (watch_.interrupts() > 0) abandon("interrupted");
-  if (answer.accepted() && lockstep_) client_.simulation_clock().without_end();
+  if (answer.accepted() && lockstep_) time_.emplace(client_, paused_at_ns_);
   return {answer.accepted(), false, answer.reason};
 }
 
 void NetworkTransport::advance() {
   const std::uint64_t id = client_.mission_id();
-  // Returns early when the mission is completed, else after kStep.
-  client_.wait(kStep, [id](const View& view) {
-    return view.mission.message.mission_id() == id &&
-           view.mission.message.state() == msg::MissionStatus_Constants::COMPLETED;
+  const std::uint64_t statuses = client_.view().control.count;
+  // Returns early when the mission is completed, in lockstep with each status, else after kStep.
+  client_.wait(kStep, [&](const View& view) {
+    return (lockstep_ && view.control.count != statuses) ||
+           (view.mission.message.mission_id() == id &&
+            view.mission.message.state() == msg::MissionStatus_Constants::COMPLETED);
   });
   require_alive();
   const View view = client_.view();
+  if (time_) time_->follow(view);
   update_progress(view);
   yield_to_other_tool(view);
   if (watch_.interrupts() > 0) abandon("interrupted");
@@ -295,7 +297,7 @@ void NetworkTransport::advance() {
   // Another process may publish the truth (swiftlet-plant --truth-only): control repeats its status with the stamp of
   // the last sample.
   const auto answered_ns = static_cast<std::uint64_t>(view.control.message.stamp_ns());
-  if (sample_silence_.lasts(answered_ns)) fail_silent("the vehicle");
+  if (!lockstep_ && sample_silence_.lasts(answered_ns)) fail_silent("the vehicle");
 }
 
 // Ends the flight if another tool's request or setpoints have ended the mission. The processes of an attached
@@ -347,8 +349,7 @@ void NetworkTransport::wait_for_last_figures() {
 
 // Whether the vehicle does what the answered request asked. A request that was under way may have ended the landing.
 bool NetworkTransport::lands(const Result& landing) const {
-  const ControlMode mode = mode_of(client_.view());
-  return landing.accepted() && (mode == ControlMode::kLanding || mode == ControlMode::kDescent);
+  return landing.accepted() && simulation::comes_down(mode_of(client_.view()));
 }
 
 // Whether another tool ended the landing of a vehicle that outlives this process.
@@ -361,10 +362,40 @@ bool NetworkTransport::is_taken_over(const Result& landing) const {
   return mode_of(view) == ControlMode::kSetpoint || status.request().client() != landing.key.client;
 }
 
+// In lockstep. Returns when the rotors are off, or with the answer to the request to land.
+Result NetworkTransport::land_after_abort() {
+  const int interrupts_before = watch_.interrupts();
+  client_.wait(kResultTimeout, [this](const View& view) { return time_->has_left_mission(view); });
+  time_->follow(client_.view());
+  const auto is_decided = [this](const View& view) {
+    return rotors_off(mode_of(view)) || time_->stands(view);
+  };
+  Result landing;
+  Silence silence;
+  while (!watch_.exited_process() && watch_.interrupts() == interrupts_before &&
+         !silence.lasts(motion_of(client_.view()).count)) {
+    update_progress(client_.view());
+    if (!client_.wait(kStep, is_decided)) continue;
+    const ControlMode mode = mode_of(client_.view());
+    if (rotors_off(mode)) break;
+    if (!simulation::comes_down(mode)) {
+      landing = vehicle_.land(FlightSchedule::kLandingSpeed, kResultTimeout).answer();
+      break;
+    }
+    time_->go_on();
+  }
+  client_.simulation_clock().without_end();
+  client_.wait(kResultTimeout, [](const View& view) {
+    return rotors_off(mode_of(view)) || simulation::comes_down(mode_of(view));
+  });
+  return landing;
+}
+
 void NetworkTransport::abandon(const std::string& reason) {
   vehicle_.cancel_when({});
   const int interrupts_before = watch_.interrupts();
-  if (lockstep_) client_.simulation_clock().without_end();  // disarming needs time to advance
+  const bool waits = time_ && status().mission == control::MissionState::kAborted;
+  if (lockstep_ && !waits) client_.simulation_clock().without_end();  // disarming needs time to advance
   // A status from before the arming still says disarmed.
   client_.wait(kResultTimeout, [&](const View& view) {
     return view.control.message.stamp_ns() > armed_.stamp_ns || !rotors_off(mode_of(view));
@@ -376,6 +407,7 @@ void NetworkTransport::abandon(const std::string& reason) {
   const std::int64_t start_ns = motion_of(client_.view()).stamp_ns;
   Silence silence;
   Result landing;
+  if (waits) landing = land_after_abort();
   while (!rotors_off(mode_of(client_.view()))) {
     if (const auto exited_process = watch_.exited_process())
       throw simulation::FlightFailure(reason + "; while landing, " + *exited_process);
@@ -383,7 +415,7 @@ void NetworkTransport::abandon(const std::string& reason) {
       throw simulation::FlightFailure(reason + "; quit in flight");
     if (silence.lasts(motion_of(client_.view()).count))
       throw simulation::FlightFailure(reason + "; while landing, the vehicle has sent nothing for 3 s");
-    if (simulated_s(client_.view(), start_ns) > kLandingTimeoutS)
+    if (simulated_s(client_.view(), start_ns) > FlightSchedule::kLandingTimeoutS)
       throw simulation::FlightFailure(reason + "; the vehicle did not land within 30 s");
     if (mode_of(client_.view()) == ControlMode::kArmed) {
       vehicle_.disarm(kRetryPeriod);
@@ -392,16 +424,13 @@ void NetworkTransport::abandon(const std::string& reason) {
           reason + "; while landing, another ground tool took over; the vehicle is left to it");
     } else if (!lands(landing)) {
       in_flight = true;
-      landing = vehicle_.land(kLandingSpeed, kRetryPeriod).answer();
+      landing = vehicle_.land(FlightSchedule::kLandingSpeed, kRetryPeriod).answer();
     }
     update_progress(client_.view());
     client_.wait(kRetryPeriod, [](const View& view) { return rotors_off(mode_of(view)); });
   }
   wait_for_last_figures();
-  throw simulation::FlightFailure(reason + (mode_of(client_.view()) == ControlMode::kStopped
-                                                ? "; rotors stopped"
-                                            : in_flight ? "; landed"
-                                                        : "; disarmed"));
+  throw simulation::FlightFailure(reason + "; " + simulation::end_of(mode_of(client_.view()), in_flight));
 }
 
 namespace {

@@ -8,6 +8,7 @@
 
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/client/vehicle.hpp"
+#include "swiftlet/ground/flight/lockstep_time.hpp"
 #include "swiftlet/ground/flight/start_barrier.hpp"
 #include "swiftlet/io/command_line/progress.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
@@ -77,6 +78,7 @@ class NetworkTransport final : public simulation::MissionTransport {
   bool publishes_truth() const;
   void require_alive() const;
   void require_no_interrupt() const;
+  Result land_after_abort();
   void update_progress(const View& view);
   void yield_to_other_tool(const View& view);
   bool lands(const Result& landing) const;
@@ -86,7 +88,8 @@ class NetworkTransport final : public simulation::MissionTransport {
   Vehicle vehicle_;  // on the client; stops waiting for answers when the flight ends
   const io::MissionFile& mission_;
   bool lockstep_;
-  std::int64_t paused_at_ns_ = 0;  // in lockstep, before the mission
+  std::int64_t paused_at_ns_ = 0;     // in lockstep, before the mission
+  std::optional<LockstepTime> time_;  // in lockstep, from its start on
   // In real time: the vehicle's clock minus the monotonic one of this host at its speed.
   std::optional<std::int64_t> clock_offset_ns_;
   std::optional<std::int64_t> ready_ns_;          // stamps of the vehicle

@@ -8,6 +8,8 @@
 #include "swiftlet/ground/flight/flight_outcome.hpp"
 #include "swiftlet/ground/flight/flight_settings.hpp"
 #include "swiftlet/ground/flight/network_transport.hpp"
+#include "swiftlet/math/time.hpp"
+#include "swiftlet/plant/simulation/no_effect.hpp"
 #include "swiftlet/record/evaluation.hpp"
 
 namespace swiftlet::ground {
@@ -86,6 +88,9 @@ void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* barrier, io:
   report_.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
   if (vehicle) report_.simulated_s = vehicle->vehicle_s();
   vehicle.reset();
+  if (plan_.launch_mode == LaunchMode::kStarted && !plan_.px4_instance)
+    report_.warnings = plant::settings_without_effect(
+        plan_.simulation, plan_.vehicle, math::seconds(client_->view().truth.message.stamp_ns()));
   take_figures(client_->view(), report_);
 }
 

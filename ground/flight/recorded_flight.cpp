@@ -9,6 +9,8 @@
 #include "swiftlet/ground/flight/in_process_flight.hpp"
 #include "swiftlet/ground/flight/record_folder.hpp"
 #include "swiftlet/ground/flight/simulated_recorder.hpp"
+#include "swiftlet/plant/simulation/no_effect.hpp"
+#include "swiftlet/record/file/recorded_faults.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -28,7 +30,8 @@ std::string close(record::FlightTrace& trace) {
 analysis::FlightReport fly_and_record(LaunchConfiguration plan, const FlyOptions& options,
                                       record::Flight& flight, const std::function<bool()>& cancelled,
                                       io::Progress& progress) {
-  simulation::ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
+  const simulation::World world = draw(plan, plan.seed).world;
+  simulation::ClosedLoop loop = closed_loop(plan, world, plan.seed);
   require_space(plan.folder, plan.record_bytes());
   const RecordFolder folder(plan.folder, existing_record(options), "--record", plan.input_files());
   plan.folder = folder.path();
@@ -41,7 +44,9 @@ analysis::FlightReport fly_and_record(LaunchConfiguration plan, const FlyOptions
 
   analysis::FlightReport report =
       fly_in_process(loop, plan, plan.seed, flight, trace ? &*trace : nullptr, cancelled, &messages);
-  report.record_fault = messages.finish();
+  report.warnings = plant::settings_without_effect(world.simulation, world.vehicle, report.simulated_s);
+  flight.faults = record::fault_rows(world.simulation);
+  report.record_fault = messages.finish(flight.faults);
   if (trace && report.record_fault.empty()) report.record_fault = close(*trace);
   const record::Window window = record::evaluate(flight).window.value_or(record::Window{});
   write_report(plan.folder, flight, report, window, progress);

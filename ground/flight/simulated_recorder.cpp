@@ -10,6 +10,7 @@
 #include "swiftlet/ground/flight/flight_description.hpp"
 #include "swiftlet/plant/model/telemetry_rate.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
+#include "swiftlet/record/file/recorded_faults.hpp"
 #include "swiftlet/services/dds/payload.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/messages/schemas.hpp"
@@ -168,6 +169,7 @@ void SimulatedRecorder::write_changes() {
   const bool mode_changed = !status_ || now.mode != status_->mode || now.reason != status_->reason;
   const bool mission_changed = !status_ || differ(now.mission, status_->mission);
   if (mode_changed || now_ns - status_ns_ >= kStatusPeriod_ns) write_status(now);
+  if (mission_changed) mission_end_ = now.reason;
   if (mission_changed || now_ns - mission_ns_ >= kStatusPeriod_ns) write_mission(now);
   if (mode_changed || mission_changed) status_ = now;
 }
@@ -187,8 +189,8 @@ void SimulatedRecorder::write_mission(const control::Status& status) {
   message.stamp_ns(mission_ns_);
   message.sequence_number(++mission_sequence_);
   if (is_over(status.mission.state)) {
-    message.reason_code(static_cast<std::uint8_t>(status.reason));
-    message.reason() = control::to_string(status.reason);
+    message.reason_code(static_cast<std::uint8_t>(mission_end_));
+    message.reason() = control::to_string(mission_end_);
   }
   write(topics::kMissionStatus, message, mission_ns_);
 }
@@ -228,9 +230,13 @@ void SimulatedRecorder::request(const control::Request& request, const control::
   write(topics::kCommandAck, ack, now_ns);
 }
 
-std::string SimulatedRecorder::finish() {
+std::string SimulatedRecorder::finish(const std::vector<record::FaultRow>& faults) {
   std::uint64_t messages = 0;
   for (const auto& [channel, count] : counts_) messages += count;
+  for (const record::FaultRow& fault : faults) {
+    if (fault.from_ns > loop_.plant.stamp_ns()) continue;
+    attempt([&] { file_.write(record::log_message(record::log_line(fault)), fault.from_ns); });
+  }
   attempt([&] {
     file_.write(record::counts_metadata({{"received", messages}, {"dropped", 0}, {"lost", 0}}));
     file_.close();

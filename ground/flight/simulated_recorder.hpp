@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "swiftlet/control/types/request.hpp"
 #include "swiftlet/ground/flight/launch_configuration.hpp"
@@ -33,8 +34,8 @@ class SimulatedRecorder {
   // After a request was answered.
   void request(const control::Request& request, const control::Outcome& outcome);
 
-  // Ends the file. Returns a sentence if it is not complete.
-  std::string finish();
+  // Adds the faults that began to the log, and ends the file. Returns a sentence if it is not complete.
+  std::string finish(const std::vector<record::FaultRow>& faults);
 
  private:
   template <class T>
@@ -66,6 +67,7 @@ class SimulatedRecorder {
   std::uint64_t mission_sequence_ = 0;
   std::uint64_t request_sequence_ = 0;
   std::optional<control::Status> status_;
+  control::Reason mission_end_ = control::Reason::kStarted;  // why the mission was over
   std::int64_t status_ns_ = 0;
   std::int64_t mission_ns_ = 0;
   std::int64_t vehicle_info_ns_ = 0;

@@ -1,4 +1,4 @@
-// The progress of several vehicles that fly at the same time, on one line of a terminal.
+// The progress of several vehicles that fly at the same time, on one line of a terminal, or of 80 columns.
 #pragma once
 
 #include <deque>
@@ -35,7 +35,7 @@ class FleetProgress {
     int stage_ = 0;
   };
 
-  void show_last();  // requires mutex_
+  void show_last(std::size_t width);  // requires mutex_
 
   io::ProgressLine& line_;
   std::mutex mutex_;  // guards line_ and shares_

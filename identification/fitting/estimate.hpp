@@ -21,6 +21,7 @@ struct ParameterEstimate {
   double value = 0.0;
   double standard_error = 0.0;
   double half_width = 0.0;
+  bool identifiable = true;  // false: the data do not determine it, and its numbers say nothing
 
   double low() const { return value - half_width; }
   double high() const { return value + half_width; }

@@ -62,6 +62,18 @@ void enforce_inertia_triangle_inequality(FlightIdentification& out) {
     out.warnings.push_back(*moved);
 }
 
+// The gains from thrust to a rate of an axis, of which the moment of inertia is not identifiable.
+void mark_gains(FlightIdentification& out, const std::map<std::string, std::string>& not_identifiable) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (not_identifiable.count(plant::kInertiaKeys[axis]) == 0) continue;
+    for (ParameterEstimate& estimate : out.estimates) {
+      if (estimate.parameter == std::string("rotor_to_rate.") + kAxisNames[axis] ||
+          estimate.parameter == std::string("thrust_to_rate.") + kAxisNames[axis])
+        estimate.identifiable = false;
+    }
+  }
+}
+
 bool is_in_vehicle_file(const std::string& parameter) {
   return parameter == "motor.time_constant" || parameter == "rotor.thrust_factor" || parameter == "mass" ||
          parameter == "linear_drag" || parameter.rfind("inertia.", 0) == 0;
@@ -159,10 +171,12 @@ void conclude_vehicle(FlightIdentification& out, const DerivedValues& values, co
     return;
   }
   std::vector<Index> written;
+  mark_gains(out, not_identifiable);
   for (std::size_t i = 0; i < out.estimates.size(); ++i) {
-    const ParameterEstimate& estimate = out.estimates[i];
+    ParameterEstimate& estimate = out.estimates[i];
     if (!is_in_vehicle_file(estimate.parameter)) continue;
     if (const auto reason = not_identifiable.find(estimate.parameter); reason != not_identifiable.end()) {
+      estimate.identifiable = false;
       out.unexcited.push_back(estimate.parameter + ": " + reason->second);
       continue;
     }
@@ -173,6 +187,7 @@ void conclude_vehicle(FlightIdentification& out, const DerivedValues& values, co
                                " N*s/m: it is not written; are the frames of poses and IMU right?");
         continue;
       }
+      estimate.identifiable = false;
       out.unexcited.push_back(estimate.parameter + ": its interval is +- " + share_text(estimate) +
                               " of the value: " + advice(estimate.parameter));
       continue;
@@ -185,6 +200,10 @@ void conclude_vehicle(FlightIdentification& out, const DerivedValues& values, co
                                       (out.windows.size() == 1 ? " flight" : " flights") + ", +- " +
                                       share_text(estimate);
     written.push_back(static_cast<Index>(i));
+  }
+  for (FileComparison& comparison : out.comparisons) {
+    const ParameterEstimate* const found = out.find(comparison.identified.parameter);
+    if (found != nullptr) comparison.identified.identifiable = found->identifiable;
   }
   enforce_inertia_triangle_inequality(out);
   for (std::size_t a = 0; a < written.size(); ++a) {

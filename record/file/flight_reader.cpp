@@ -12,6 +12,7 @@
 
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/natural_order.hpp"
+#include "swiftlet/record/file/recorded_faults.hpp"
 #include "swiftlet/record/mcap/series.hpp"
 #include "swiftlet/record/mcap/topic_decoder.hpp"
 
@@ -306,7 +307,7 @@ std::map<std::string, Flight> read(const mcap::Reader& file, const std::set<std:
       selection.topics.insert(channel.topic);
   }
   std::map<std::string, Flight> flights;
-  for (const std::string& vehicle : vehicles) flights[vehicle];
+  for (const std::string& vehicle : vehicles) flights[vehicle].faults = recorded_faults(file, vehicle);
   if (selection.topics.empty()) return flights;
   const auto is_of_message = [](const mcap::Column& column) {
     return column.name.find('.') == std::string::npos;  // not of one inside it

@@ -1,6 +1,8 @@
 #include "swiftlet/services/plant/hosted_plant.hpp"
 
+#include "swiftlet/plant/simulation/no_effect.hpp"
 #include "swiftlet/services/dds/reach.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 
 namespace swiftlet::services {
 namespace {
@@ -26,6 +28,8 @@ HostedPlant::HostedPlant(const dds::Participant& participant, const std::string&
                  settings.autopilot && settings.autopilot->truth_only),
       realtime_loop_(loop) {
   dds::log_peers(node_);
+  for (const std::string& warning : plant::settings_without_effect(settings.simulation, settings.vehicle))
+    runtime::log_warning("{}", warning);
   if (!settings.autopilot || !settings.autopilot->truth_only)
     reporter_.emplace(node_, settings.vehicle, settings.simulation,
                       settings.autopilot ? settings.autopilot->description() : "");

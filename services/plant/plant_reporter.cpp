@@ -46,9 +46,11 @@ PlantReporter::PlantReporter(dds::Node& node, const plant::Vehicle& vehicle,
     : publisher_(node.publish(messages::topics::kVehicleInfo)),
       info_(describe(vehicle, settings, autopilot)),
       timeout_fault_(fmt::format("no actuator command for {:g} s", settings.command_timeout_s)),
-      command_hold_s_(settings.command_hold_s) {}
+      command_hold_s_(settings.command_hold_s),
+      faults_(settings.faults) {}
 
 void PlantReporter::publish_due(const PlantReport& report) {
+  log_faults(report.stamp_ns);
   const bool changed = report.rotors_running != last_report_.rotors_running ||
                        report.timed_out != last_report_.timed_out || report.paused != last_report_.paused ||
                        (report.paused && report.stamp_ns != last_report_.stamp_ns);
@@ -61,6 +63,20 @@ void PlantReporter::publish_due(const PlantReport& report) {
   log_rotors(report, fault);
   if (now_ns >= trouble_due_ns_ && log_trouble(report)) trouble_due_ns_ = now_ns + kTroublePeriodNs;
   last_report_ = report;
+}
+
+void PlantReporter::log_faults(std::int64_t stamp_ns) {
+  const auto begins = [stamp_ns](const plant::Fault& fault) {
+    return static_cast<double>(stamp_ns) * 1e-9 >= fault.at_s;
+  };
+  for (auto fault = faults_.begin(); fault != faults_.end();) {
+    if (!begins(*fault)) {
+      ++fault;
+      continue;
+    }
+    runtime::log_info("fault: {}, at_s {:g}, for_s {:g}", to_string(fault->kind), fault->at_s, fault->for_s);
+    fault = faults_.erase(fault);
+  }
 }
 
 void PlantReporter::log_rotors(const PlantReport& report, const std::string& fault) {

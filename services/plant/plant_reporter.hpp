@@ -23,6 +23,7 @@ class PlantReporter {
   static void log_end(const PlantReport& last);
 
  private:
+  void log_faults(std::int64_t stamp_ns);
   void log_rotors(const PlantReport& report, const std::string& fault);
   bool log_trouble(const PlantReport& report);
 
@@ -30,6 +31,7 @@ class PlantReporter {
   messages::msg::VehicleInfo info_;
   std::string timeout_fault_;
   double command_hold_s_;
+  std::vector<plant::Fault> faults_;  // that have not begun
   PlantReport last_report_;
   PlantReport logged_report_;
   std::int64_t due_ns_ = 0;

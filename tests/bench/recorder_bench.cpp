@@ -81,7 +81,7 @@ fs::path fly(const std::string& mission, int imu_rate_hz, const fs::path& folder
   record::Flight flight;
   const analysis::FlightReport report =
       ground::fly_in_process(loop, plan, plan.seed, flight, nullptr, {}, &messages);
-  const std::string fault = messages.finish();
+  const std::string fault = messages.finish(flight.faults);
   if (!fault.empty()) throw std::runtime_error(fault);
   if (!report.completed) throw std::runtime_error("the flight failed: " + report.reason);
   return folder / record::kFlightFile;

@@ -87,6 +87,7 @@ class Commands(unittest.TestCase):
         self.assertTrue(self.block("realtime").realtime)
         self.assertEqual(self.block("file: hop.yaml", "yaml").file, "hop.yaml")
         self.assertFalse(self.block("file: run.sh").is_commands)
+        self.assertTrue(self.block("printed", "text").prints)
 
     def test_other_words_are_refused(self):
         for words in ("skip:", "skip", "exit 1", "exit 3: no", "file: ../x", "fast"):

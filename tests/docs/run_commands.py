@@ -47,10 +47,12 @@ class Block:
 
     def __init__(self, fence, page):
         self.text, self.line, self.page = fence.text, fence.line, page
-        self.file, self.skip, self.exit_code, self.realtime = None, None, 0, False
+        self.file, self.skip, self.exit_code, self.realtime, self.prints = None, None, 0, False, False
         words = fence.words
         if named := re.fullmatch(r"file: ([\w.-]+)", words):
             self.file = named[1]
+        elif fence.language == "text" and words == "printed":
+            self.prints = True
         elif fence.language != "sh":
             if words:
                 self.refuse(words)
@@ -66,10 +68,10 @@ class Block:
 
     def refuse(self, words):
         raise ManualError(f"{self.page}:{self.line}: '{words}' says nothing, must be 'file: NAME', 'skip: REASON', "
-                          "'exit 1: REASON', 'exit 2: REASON' or 'realtime'")
+                          "'exit 1: REASON', 'exit 2: REASON', 'realtime', or of a text 'printed'")
 
     def __str__(self):
-        what = (f"file {self.file}" if self.file else f"skipped: {self.skip}" if self.skip
+        what = ("printed" if self.prints else f"file {self.file}" if self.file else f"skipped: {self.skip}" if self.skip
                 else f"exit {self.exit_code}" + (", real time" if self.realtime else ""))
         return f"{self.page}:{self.line}: {what}"
 
@@ -77,7 +79,7 @@ class Block:
 def blocks_of(page):
     text = pathlib.Path(page).read_text()
     blocks = [Block(fence, page) for fence in fences(text, page)]
-    return [block for block in blocks if block.is_commands or block.file]
+    return [block for block in blocks if block.is_commands or block.file or block.prints]
 
 
 # ---- the options of all commands, by --help
@@ -255,6 +257,8 @@ class Page:
         for number, block in enumerate(blocks, 1):
             if block.file:
                 (self.work / block.file).write_text(block.text)
+            elif block.prints:
+                self.compare(block)
             elif not block.skip:
                 self.run_block(number, block)
 
@@ -281,6 +285,14 @@ class Page:
                     named = words.index("--vehicle-name") + 1 if "--vehicle-name" in words else 0
                     for vehicle in (words[named] if named else "kl1").split(","):
                         self.await_pose(vehicle, block, log)
+
+    def compare(self, block):
+        """Every line of the text was printed by the block before it."""
+        logs = sorted(self.logs.glob("*.log"), key=lambda file: int(file.stem))
+        printed = {line.strip() for line in logs[-1].read_text(errors="replace").splitlines()} if logs else set()
+        for line in block.text.splitlines():
+            if line.strip() and line.strip() not in printed:
+                self.fail(block, f"the commands before it do not print '{line.strip()}'", logs[-1] if logs else None)
 
     def await_pose(self, vehicle, block, log):
         """A reader of the manual types the next command seconds later; the test waits until the vehicle is ready for it."""

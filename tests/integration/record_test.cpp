@@ -174,8 +174,8 @@ TEST_F(Record, HasTheSameFiguresWhereverTheyArePrinted) {
   ASSERT_EQ(run_program("swiftlet", {"report", record()}, folder_.path()).exit_code, 0);
   std::ostringstream page;
   page << std::ifstream(record() / "flight.html").rdbuf();
-  EXPECT_NE(page.str().find(std::string("<td>") + rms + " mm</td>"), std::string::npos) << rms;
-  EXPECT_NE(page.str().find(std::string("<td>") + peak + " mm</td>"), std::string::npos) << peak;
+  EXPECT_NE(page.str().find(std::string(">") + rms + " mm</td>"), std::string::npos) << rms;
+  EXPECT_NE(page.str().find(std::string(">") + peak + " mm</td>"), std::string::npos) << peak;
 }
 
 // One table, with its frame in the header or by the option, means the same to every command.

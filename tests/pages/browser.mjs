@@ -46,6 +46,9 @@ export async function checkLook(browser, file, pictures) {
         const [wide, paper] = await page.evaluate(() =>
           [document.documentElement.scrollWidth, getComputedStyle(document.body).backgroundColor]);
         require(wide <= width, `${file}: ${wide} px wide on a screen of ${width} px`);
+        const cut = await page.$$eval('.wide', (boxes) => boxes.filter((box) => box.scrollWidth > box.clientWidth)
+          .map((box) => box.querySelector('tr').textContent));
+        require(width > 390 || cut.length === 0, `${file}: columns are cut off on a screen of ${width} px: ${cut}`);
         papers.add(paper);
       });
     }

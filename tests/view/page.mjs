@@ -51,6 +51,8 @@ async function checkLook(browser) {
 }
 
 async function addSignal(page) {
+  const chosen = await page.$$eval('#topic, #signal', (lists) => lists.map((list) => list.value));
+  require(chosen[0] === 'estimate' && !/stamp|sequence/.test(chosen[1]), `the signal at first: ${chosen}`);
   await page.select('#topic', 'imu');
   await page.select('#signal', 'specific_force_frd[2]');
   await page.click('#add-signal button');
@@ -94,11 +96,21 @@ try {
     // A stop that is not confirmed sends nothing: the vehicle flies on.
     await press(page, 'kl1', 'stop', 'no');
     require(await answer(page, 'kl1', 'hold: accepted'), 'stop was sent');
+    await page.click('#stop-all');
+    await page.waitForSelector('#confirm[open]');
+    const title = await page.$eval('#confirm', (dialog) => document.getElementById(dialog.getAttribute('aria-labelledby')).textContent);
+    require(title === 'Stop the rotors of kl1, kl2?', `the dialog is named '${title}'`);
+    await confirm(page, 'no');
+    const apart = await page.$$eval('[data-vehicle="kl1"] .buttons button', ([, land, stop]) =>
+      stop.getBoundingClientRect().left - land.getBoundingClientRect().right);
+    require(apart > 20, `Stop is ${apart} px beside Land`);
     await page.click('#land-all');
     await confirm(page, 'yes');
     for (const name of ['kl1', 'kl2']) require(await answer(page, name, 'land: ') === 'land: accepted', `${name}: land was not accepted`);
     for (const name of ['kl1', 'kl2']) await mode(page, name, 'disarmed');
     found.landed = true;
+    const answers = await page.$eval('#answers', (element) => element.textContent);
+    require(answers === 'land accepted by kl1, kl2', `the answers: ${answers}`);
     await press(page, 'kl2', 'hold');
     found.refusal = (await answer(page, 'kl2', 'hold: refused: ')).replace('hold: ', '');
     const events = await page.$$eval('#events p', (rows) => rows.map((row) => row.textContent));

@@ -12,12 +12,13 @@ swiftlet.table = (head, rows) => {
   const table = swiftlet.element('table');
   const add = (cells, kind) => {
     const row = swiftlet.element('tr');
-    cells.forEach((cell) => row.append(swiftlet.element(kind, {}, cell)));
+    const label = (i) => (kind === 'td' && i > 0 ? {'data-label': head[i]} : {});
+    cells.forEach((cell, i) => row.append(swiftlet.element(kind, label(i), cell)));
     table.append(row);
   };
   add(head, 'th');
   rows.forEach((row) => add(row, 'td'));
-  const box = swiftlet.element('div', {class: 'wide'});
+  const box = swiftlet.element('div', {class: head.length > 2 ? 'wide stacks' : 'wide'});
   box.append(table);
   return box;
 };

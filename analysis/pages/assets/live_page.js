@@ -20,6 +20,7 @@ swiftlet.livePage = (() => {
   let axis, client, scene;
   let following = true;
   let refreshing = false;
+  let chosenTopic = 'estimate';
 
   // s since the first message, by the clock of the server.
   function time(server) {
@@ -62,16 +63,16 @@ swiftlet.livePage = (() => {
   }
 
   function listTopics() {
-    const chosen = get('topic').value;
     const known = [...topics].filter(([, type]) => swiftlet.cdr.signals(type).length).map(([name]) => name).sort();
     get('topic').replaceChildren(...known.map((name) => swiftlet.element('option', {}, name)));
-    get('topic').value = known.includes(chosen) ? chosen : known[0];
+    get('topic').value = [chosenTopic, known[0]].find((name) => known.includes(name));
     listSignals();
   }
 
   function listSignals() {
     const names = swiftlet.cdr.signals(topics.get(get('topic').value));
     get('signal').replaceChildren(...names.map((name) => swiftlet.element('option', {}, name)));
+    get('signal').value = names.find((name) => !/(stamp_ns|sequence_number)$/.test(name)) ?? names[0];
   }
 
   function addEvent(vehicle, at, text, warning) {
@@ -111,10 +112,14 @@ swiftlet.livePage = (() => {
   function addControls() {
     get('hold-all').addEventListener('click', () => swiftlet.requestOf([...vehicles], 'hold'));
     get('land-all').addEventListener('click', () => swiftlet.requestOf([...vehicles], 'land'));
+    get('stop-all').addEventListener('click', () => swiftlet.requestOf([...vehicles], 'stop'));
     get('home').addEventListener('click', () => scene.home());
     get('map').addEventListener('click', () => scene.map());
     get('follow').addEventListener('click', () => follow(!following));
-    get('topic').addEventListener('change', listSignals);
+    get('topic').addEventListener('change', () => {
+      chosenTopic = get('topic').value;
+      listSignals();
+    });
     get('add-signal').addEventListener('submit', (event) => {
       event.preventDefault();
       const [topic, signal] = [get('topic').value, get('signal').value];

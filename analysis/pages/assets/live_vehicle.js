@@ -83,9 +83,11 @@ swiftlet.LiveVehicle = class {
       const {success, message} = await this.client.call(`/${this.name}/${kind}`, new Uint8Array([0, 1, 0, 0, 1]));
       this.answer.textContent = `${kind}: ${success ? 'accepted' : 'refused'}${message ? `: ${message}` : ''}`;
       this.answer.classList.toggle('refused', !success);
+      return success;
     } catch (error) {
       this.answer.textContent = `${kind}: ${error.message}`;
       this.answer.classList.add('refused');
+      return false;
     }
   }
 
@@ -133,13 +135,14 @@ swiftlet.LiveVehicle = class {
 // Sends a request to vehicles, once it is confirmed.
 swiftlet.requestOf = async (vehicles, kind) => {
   const names = vehicles.map(({name}) => name).join(', ');
-  const [text, label] = {
-    hold: [`Brake and hold: ${names}`, 'Hold'],
-    land: [`Descend vertically and land: ${names}`, 'Land'],
-    stop: [`Turn the rotors off at once. A vehicle in the air falls: ${names}`, 'Stop the rotors'],
+  const [title, text, label] = {
+    hold: [`Hold ${names}?`, 'Brake and hold.', 'Hold'],
+    land: [`Land ${names}?`, 'Descend vertically and land.', 'Land'],
+    stop: [`Stop the rotors of ${names}?`, 'The rotors are turned off at once: a vehicle in the air falls.', 'Stop the rotors'],
   }[kind];
   const dialog = document.getElementById('confirm');
   const button = document.getElementById('confirm-yes');
+  document.getElementById('confirm-title').textContent = title;
   document.getElementById('confirm-text').textContent = text;
   button.textContent = label;
   button.classList.toggle('danger', kind === 'stop');
@@ -147,5 +150,10 @@ swiftlet.requestOf = async (vehicles, kind) => {
   dialog.showModal();
   document.getElementById(kind === 'stop' ? 'confirm-no' : 'confirm-yes').focus();
   await new Promise((resolve) => dialog.addEventListener('close', resolve, {once: true}));
-  if (dialog.returnValue === 'yes') vehicles.forEach((vehicle) => vehicle.request(kind));
+  if (dialog.returnValue !== 'yes') return;
+  const accepted = await Promise.all(vehicles.map((vehicle) => vehicle.request(kind)));
+  const named = (success) => vehicles.filter((_, i) => accepted[i] === success).map(({name}) => name).join(', ');
+  document.getElementById('answers').textContent =
+    [['accepted by', named(true)], ['not accepted by', named(false)]]
+      .filter(([, who]) => who).map(([what, who]) => `${kind} ${what} ${who}`).join('; ');
 };

@@ -70,6 +70,14 @@ class Events {
     }
   }
 
+  void add_faults() {
+    std::int64_t end_ns = recorded_.truth.empty() ? 0 : recorded_.truth.back().stamp_ns;
+    if (!recorded_.estimate.empty()) end_ns = std::max(end_ns, recorded_.estimate.back().stamp_ns);
+    for (const record::FaultRow& fault : recorded_.faults) {
+      if (fault.from_ns <= end_ns) add(fault.from_ns, "fault", "fault: " + fault.text, true);
+    }
+  }
+
   void add_estimator() {
     int fault = 0;
     double resets = recorded_.estimate.empty() ? 0.0 : recorded_.estimate.front().resets;
@@ -115,6 +123,7 @@ void add_events(const record::Flight& recorded, const RecordedClock& clock, Flig
   events.add_modes();
   events.add_mission();
   events.add_requests();
+  events.add_faults();
   events.add_estimator();
   std::stable_sort(flight.events.begin(), flight.events.end(),
                    [](const FlightEvent& a, const FlightEvent& b) { return a.time_s < b.time_s; });

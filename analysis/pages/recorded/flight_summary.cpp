@@ -2,12 +2,15 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 
 #include "swiftlet/analysis/pages/recorded/flight_pieces.hpp"
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/record/evaluation.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
 #include "swiftlet/record/file/message_file.hpp"
@@ -38,13 +41,6 @@ double largest(const std::vector<double>& values) {
 std::string number(const std::vector<double>& values, double (*figure)(const std::vector<double>&),
                    const char* unit, int decimals) {
   return values.empty() ? kMissing : fmt::format("{:.{}f} {}", figure(values), decimals, unit);
-}
-
-double quantile99(const std::vector<double>& values) {
-  std::vector<double> sorted = values;
-  const auto at = static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sorted.size() - 1));
-  std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());
-  return sorted[static_cast<std::size_t>(at)];
 }
 
 double flying_time_s(const FlightLog& flight) {
@@ -121,19 +117,47 @@ std::string millimetres(const record::TrackingErrors& errors, double metres) {
   return errors.matched == 0 ? kMissing : fmt::format("{:.2f} mm", 1e3 * metres);
 }
 
+using Metadata = std::map<std::string, std::string>;
+
+std::string value_of(const Metadata& metadata, const std::string& key) {
+  const auto found = metadata.find(key);
+  return found == metadata.end() ? "" : found->second;
+}
+
+// The value of this vehicle in a list with one for each vehicle.
+std::string own(const Metadata& metadata, const std::string& key, const std::string& vehicle) {
+  const std::vector<std::string> vehicles = io::split_text(value_of(metadata, "vehicles"), ',');
+  const std::vector<std::string> values = io::split_text(value_of(metadata, key), ',');
+  const auto at =
+      static_cast<std::size_t>(std::find(vehicles.begin(), vehicles.end(), vehicle) - vehicles.begin());
+  return at < values.size() && vehicles.size() == values.size() ? values[at] : value_of(metadata, key);
+}
+
+void add_setting(std::vector<std::pair<std::string, std::string>>& rows, const char* label,
+                 const std::string& value) {
+  if (!value.empty()) rows.emplace_back(label, value);
+}
+
+// As the vehicle measured it, which the summary of a flight shows too.
+std::string sense_to_actuate(const record::Flight& recorded) {
+  if (recorded.vehicle.empty() || !(recorded.vehicle.back().sense_to_actuate_p99_us > 0.0)) return kMissing;
+  const record::VehicleRow& last = recorded.vehicle.back();
+  return fmt::format("{:.0f} / {:.0f} µs", last.sense_to_actuate_p50_us, last.sense_to_actuate_p99_us);
+}
+
 }  // namespace
 
 void add_summary(const mcap::Reader& file, const record::Flight& recorded, FlightLog& flight) {
   auto& rows = flight.summary;
   const record::TrackingErrors errors = record::evaluate(recorded).errors;
-  const std::vector<double> latency = values_of(flight, "latency", "imu_to_command");
   rows.emplace_back("vehicle",
                     flight.vehicle + (recorded.vehicle.empty() ? "" : ", " + recorded.vehicle.back().name));
   const auto metadata = record::metadata_of(file, "swiftlet/flight");
-  for (const char* const key : {"missions", "control", "simulation", "clock", "seed"}) {
-    const auto found = metadata.find(key);
-    if (found != metadata.end()) rows.emplace_back(key, found->second);
-  }
+  add_setting(rows, "mission", own(metadata, "missions", flight.vehicle));
+  for (const char* const key : {"control", "simulation", "clock"})
+    add_setting(rows, key, value_of(metadata, key));
+  const std::string seed = own(metadata, "seeds", flight.vehicle);
+  add_setting(rows, "seed", seed.empty() ? value_of(metadata, "seed") : seed);
   rows.emplace_back("recorded", fmt::format("{:.1f} s", flight.end_s - flight.start_s));
   rows.emplace_back("in flight", fmt::format("{:.1f} s", flying_time_s(flight)));
   rows.emplace_back("position from", flight.has_truth ? "ground truth" : "estimate");
@@ -148,7 +172,8 @@ void add_summary(const mcap::Reader& file, const record::Flight& recorded, Fligh
                     within_bounds(flight, "estimate", "deviation_", {"north", "east", "down"}));
   rows.emplace_back("position innovation within 3 σ",
                     within_bounds(flight, "innovation", "", {"north", "east", "down"}));
-  rows.emplace_back("IMU to command, p99", number(latency, quantile99, "µs", 0));
+  rows.emplace_back("sense to actuate, p50 / p99",
+                    flight.wall_start_s > 0.0 ? sense_to_actuate(recorded) : kMissing);
   rows.emplace_back("messages", counts(file));
 }
 

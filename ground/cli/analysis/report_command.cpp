@@ -33,14 +33,17 @@ struct ReportOptions {
   std::string page;
   bool replace = false;
   bool json = false;
+  bool settings = false;
 };
 
 void write_page(const std::vector<analysis::RecordedFlight>& recorded, const std::string& page) {
   std::vector<pages::FlightLog> flights;
   for (const analysis::RecordedFlight& one : recorded) {
-    flights.push_back(pages::flight_log(mcap::Reader(one.file.string()), one.vehicle, one.flown, one.name));
+    const mcap::Reader file(one.file.string());
+    flights.push_back(pages::flight_log(file, one.vehicle, one.flown, one.name));
     if (one.file.filename() == record::kFlightFile)
-      pages::add_process_logs(fs::absolute(one.file).parent_path(), flights.back());
+      pages::add_process_logs(fs::absolute(one.file).parent_path(), record::recorded_vehicles(file),
+                              flights.back());
   }
   std::string title = flights.size() == 1 ? "Flight" : "Flights";
   for (std::size_t i = 0; i < flights.size(); ++i) title += (i == 0 ? " " : ", ") + flights[i].name;
@@ -76,8 +79,9 @@ int report(const ReportOptions& options) {
     write_page(flights, options.page);
     return io::kDone;
   }
-  const std::string text =
+  std::string text =
       options.json ? analysis::comparison_json(flights).dump(2) + "\n" : analysis::comparison_table(flights);
+  if (options.settings) text += "\n" + analysis::settings_table(flights);
   std::fputs(text.c_str(), stdout);
   if (options.json || records.size() > 1 || !fs::is_directory(records.front())) return io::kDone;
   const std::string page = fs::path(files.front()).parent_path() / kPage;
@@ -99,7 +103,11 @@ io::Command add_report_command(runtime::CommandLine root) {
                                    "write an HTML page with the paths in space and charts of all signals")
                         .type_name("FILE.html");
   app.add_flag("--replace", options->replace, "overwrite the page").needs(page);
-  app.add_flag("--json", options->json, "print JSON").excludes(page);
+  const auto json = app.add_flag("--json", options->json, "print JSON").excludes(page);
+  app.add_flag("--settings", options->settings,
+               "also print the control settings; of several records all settings that differ")
+      .excludes(page)
+      .excludes(json);
   app.footer(
       "Of one record it writes the page into its folder, as flight.html, and opens it where there is a "
       "screen.\n\n"

@@ -19,6 +19,7 @@
 #include "swiftlet/io/command_line/programs.hpp"
 #include "swiftlet/io/command_line/progress_line.hpp"
 #include "swiftlet/io/format.hpp"
+#include "swiftlet/plant/simulation/no_effect.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -81,6 +82,9 @@ int sim_batch(const BatchOptions& options) {
   io::ProgressLine progress;
   for (const std::string& assumption : plan.mission.assumptions)
     progress.say(plan.mission.name + ": " + assumption);
+  const simulation::World world = draw(plan, plan.seed).world;
+  for (const std::string& warning : plant::settings_without_effect(world.simulation, world.vehicle))
+    progress.say("warning: " + warning);
   const Interrupts interrupts;
 
   BatchReport report =

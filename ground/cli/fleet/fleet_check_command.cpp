@@ -13,13 +13,18 @@ struct FleetCheckOptions {
   bool json = false;
 };
 
+// The name of the vehicle, and that of its mission if it is another one.
+std::string name_of(const FleetVehicle& one) {
+  const std::string& vehicle = one.member.name;
+  return one.mission.name == vehicle ? vehicle : vehicle + ": " + one.mission.name;
+}
+
 int check_fleet_file(const FleetCheckOptions& options) {
   const FleetCheck check =
       check_fleet(load_fleet_file(io::configuration_file(io::kinds::kFleet, options.file)));
   for (const FleetVehicle& one : check.vehicles) {
     for (const std::string& assumption : one.mission.assumptions)
-      std::fprintf(stderr, "%s: %s: %s\n", one.member.name.c_str(), one.mission.name.c_str(),
-                   assumption.c_str());
+      std::fprintf(stderr, "%s: %s\n", name_of(one).c_str(), assumption.c_str());
   }
   std::printf("%s", options.json ? (check_json(check) + "\n").c_str() : check_table(check).c_str());
   return check.feasible() ? io::kDone : io::kFailed;

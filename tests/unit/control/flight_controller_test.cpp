@@ -387,7 +387,7 @@ TEST(FlightController, LandsWhenTheBatteryIsLow) {
   ClosedLoop loop(kaylion(), plant::SimulationSettings(), careful, 2);
   const Flown result = fly(loop, square(0.3));
   EXPECT_FALSE(result.completed);
-  EXPECT_EQ(result.reason, "the mission was aborted: battery is low");
+  EXPECT_EQ(result.reason, "the mission was aborted: battery is low; landed");
   ASSERT_TRUE(loop.step_until([&] { return loop.controller.status().mode == Mode::kDisarmed; }, 10.0));
   EXPECT_TRUE(loop.plant.on_ground());
 }

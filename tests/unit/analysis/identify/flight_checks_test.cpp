@@ -184,6 +184,8 @@ TEST(CalmFlight, DoesNotIdentifyInertiaOrLagWithoutPoses) {
   EXPECT_EQ(found.vehicle.inertia, plan.vehicle.inertia);
   EXPECT_EQ(found.vehicle.motor.time_constant_s, plan.vehicle.motor.time_constant_s);
   EXPECT_TRUE(contains(found.unexcited, "thrust_to_rate.yaw: r changes by"));
+  for (const identification::FileComparison& row : found.comparisons)
+    EXPECT_FALSE(row.identified.identifiable) << row.identified.parameter;
 }
 
 }  // namespace swiftlet::analysis::flight_checks_test

@@ -165,6 +165,10 @@ items:
   for (const char* const inertia :
        {"inertia.xx: p changes by", "inertia.yy: q changes by", "inertia.zz: r changes by"})
     EXPECT_TRUE(tests::contains(found.unexcited, inertia));
+  for (const char* const parameter :
+       {"inertia.xx", "inertia.yy", "inertia.zz", "rotor_to_rate.roll", "rotor_to_rate.yaw"})
+    EXPECT_FALSE(found.find(parameter)->identifiable) << parameter;
+  EXPECT_TRUE(found.find("rotor.thrust_factor")->identifiable);
   EXPECT_EQ(found.vehicle.inertia(2, 2), plan.vehicle.inertia(2, 2));
 }
 

@@ -21,9 +21,21 @@ TEST(Page, EscapesTexts) {
   for (const char* const part :
        {"<title>a &lt;title&gt;</title>", "<h1>a &lt;title&gt;</h1>", "<h2>b &amp; c</h2>",
         "<p class=\"quiet\">d &quot;e&quot;</p>", "<th>&lt;name&gt;</th><th>value</th>",
-        "<td>mass</td><td>1 &lt; 2</td>", "<figcaption>&lt;caption&gt; 'of' &quot;it&quot;</figcaption>",
+        "<td>mass</td><td data-label=\"value\">1 &lt; 2</td>",
+        "<figcaption>&lt;caption&gt; 'of' &quot;it&quot;</figcaption>",
         "{&quot;caption&quot;:&quot;&lt;caption&gt; 'of' \\&quot;it\\&quot;&quot;,"})
     EXPECT_NE(html.find(part), std::string::npos) << part;
+}
+
+// On a telephone each cell is a line of its own, behind the name of its column.
+TEST(Page, NamesTheColumnsInTheCellsOfAWideTable) {
+  Page page("table");
+  page.table({"parameter", "value", "unit"}, {{"inertia.zz", "3.7853e-08", "kg"}});
+  EXPECT_NE(page.html().find("<div class=\"wide stacks\">"), std::string::npos);
+  EXPECT_NE(page.html().find("<td>inertia.zz</td><td data-label=\"value\">3.7853e\u221208</td>"
+                             "<td data-label=\"unit\">kg</td>"),
+            std::string::npos)
+      << "a browser breaks the line after a hyphen";
 }
 
 TEST(Page, HasItsFiguresInTheirPlaces) {

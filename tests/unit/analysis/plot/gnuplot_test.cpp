@@ -244,7 +244,7 @@ TEST_F(GnuplotTest, WritesAPngAndTheScriptThatDrawsIt) {
   Figure figure = parabola(1.0, 1.0);
   figure.width = 801;
   figure.height = 402;
-  ASSERT_EQ(draw_png(figure, folder_ / "some.png", true), "");
+  ASSERT_EQ(draw_png_if_installed(figure, folder_ / "some.png"), "");
   const std::string picture = text_of(folder_ / "some.png");
   EXPECT_EQ(picture.substr(0, 8), "\x89PNG\r\n\x1a\n");
   EXPECT_EQ(picture.substr(12, 12), std::string("IHDR\0\0\x03\x21\0\0\x01\x92", 12));  // 801 x 402
@@ -284,6 +284,16 @@ TEST_F(GnuplotTest, ReportsThatGnuplotIsNotInstalled) {
   EXPECT_TRUE(fs::is_empty(folder_));
   EXPECT_EQ(draw_png_if_installed(parabola(1.0, 1.0), folder_ / "some.png"),
             "no picture was drawn: gnuplot is not installed (some.gp draws it)");
+}
+
+// A flight on a loaded computer has not failed for that.
+TEST_F(GnuplotTest, ReportsThatGnuplotIsSlow) {
+  fs::create_directory(folder_ / "bin");
+  tests::write_program(folder_ / "bin" / "gnuplot", "exec /bin/sleep 600");
+  const tests::ProgramPath path(folder_ / "bin");
+  EXPECT_EQ(draw_png_if_installed(parabola(1.0, 1.0), folder_ / "some.png", std::chrono::seconds(1)),
+            "no picture was drawn: gnuplot took longer than 1 s (some.gp draws it)");
+  EXPECT_TRUE(fs::exists(folder_ / "some.gp"));
 }
 
 TEST_F(GnuplotTest, ReportsAFileThatCannotBeWritten) {

@@ -55,14 +55,28 @@ TEST_F(FlightFilesTest, DrawsPositionsPathAndErrors) {
   const std::string script = text_of(folder_ / "flight.gp");
   for (const char* const part :
        {"'square - kaylion, motor_lag: 3-D error RMS 1.0 mm, peak 4.7 mm over 0 s - NOT completed'",
-        "'north x (m)'", "'east y (m)'", "'down z (m)'", "'error, flown - reference (mm)'", "'time (s)'",
-        "'plan view'", "'height -z (m)'", "title 'flown'", "title 'reference'", "title '3-D'",
+        "'north x (m)'", "'east y (m)'", "'down z (m)'", "'error, flown - reference (mm)'",
+        "'time from the start of the mission (s)'", "'plan view'", "'height -z (m)'", "title 'flown'",
+        "title 'reference'", "title '3-D'",
         "\n0.01 0.51 0\n",               // north over time, of the truth
         "\n0.01 0.511 0\n",              // and of the reference
         "\n0.04 0.525 0\n",              // also without a reference
         "\n0.25 0.51 1\n",               // east, north, height
         "EOD\n0 -1 0\n0.01 -1 0\nEOD"})  // north errors, mm, in the window alone
     EXPECT_NE(script.find(part), std::string::npos) << part << "\n" << script;
+}
+
+// On the axis of the picture, and not those that the flight did not come to.
+TEST_F(FlightFilesTest, MarksFaults) {
+  record::Flight flight = flown(30, 10);
+  flight.faults = {{1'050'000'000, 1'070'000'000, "push, at_s 1.05, for_s 0.02"},
+                   {9'000'000'000, 9'500'000'000, "mocap_stop, at_s 9, for_s 0.5"}};
+  draw_flight(folder_, flight, {}, {1'010'000'000, 1'100'000'000});
+  const std::string script = text_of(folder_ / "flight.gp");
+  EXPECT_NE(script.find("set arrow from 0.04,graph 0"), std::string::npos) << script;
+  EXPECT_NE(script.find("set object rectangle from 0.04,graph 0 to 0.06,graph 1"), std::string::npos);
+  EXPECT_NE(script.find("set label 'push' at 0.04,"), std::string::npos);
+  EXPECT_EQ(script.find("mocap_stop"), std::string::npos);
 }
 
 TEST_F(FlightFilesTest, ReportsWhyNoPictureIsDrawn) {

@@ -72,6 +72,15 @@ TEST(FlightReportText, ShowsErrorsInMillimetres) {
   EXPECT_NE(text.find("p50 90 us, p99 200 us, max 900 us"), std::string::npos) << text;
 }
 
+TEST(FlightReportText, Warns) {
+  FlightReport report = flown_report();
+  EXPECT_FALSE(to_json(report).contains("warnings"));
+  report.warnings = {"air.wind_ned_m_s has no effect: drag is 0"};
+  EXPECT_EQ(to_json(report).at("warnings").at(0), report.warnings.front());
+  EXPECT_NE(to_text(report).find("  warning           air.wind_ned_m_s has no effect: drag is 0\n"),
+            std::string::npos);
+}
+
 TEST(FlightReportText, OmitsFiguresThatWereNotMeasured) {
   FlightReport report;
   report.mission = "square";

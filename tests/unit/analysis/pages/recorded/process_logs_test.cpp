@@ -37,7 +37,7 @@ TEST(ProcessLogs, AreEventsAtTheirTimes) {
   folder.write("swiftlet-plant.log", at(3, "plant info: started"));
   folder.write("other.log", at(3, "other info: not of the flight"));
   FlightLog log = flight(kStart_s);
-  add_process_logs(folder.path(), log);
+  add_process_logs(folder.path(), {"kl1"}, log);
   ASSERT_EQ(log.events.size(), 4U);
   EXPECT_EQ(log.events[0].text, "control info: plant joined");
   EXPECT_NEAR(log.events[0].time_s, 1.25, 1e-6);
@@ -48,11 +48,26 @@ TEST(ProcessLogs, AreEventsAtTheirTimes) {
   EXPECT_TRUE(log.events[3].warning);
 }
 
+// A process that serves several vehicles names the one that a line is about.
+TEST(ProcessLogs, AreThoseOfTheVehicle) {
+  const tests::TemporaryFolder folder;
+  folder.write("swiftlet-control.log", at(1, "control info: ready: vehicle kl1,kl2") +
+                                           at(2, "control warning: kl1: mocap lost") +
+                                           at(3, "control warning: kl2: mocap lost"));
+  FlightLog log = flight(kStart_s);
+  log.vehicle = "kl2";
+  log.events.clear();
+  add_process_logs(folder.path(), {"kl1", "kl2"}, log);
+  ASSERT_EQ(log.events.size(), 2U);
+  EXPECT_EQ(log.events[0].text, "control info: ready: vehicle kl1,kl2");
+  EXPECT_EQ(log.events[1].text, "control warning: kl2: mocap lost");
+}
+
 TEST(ProcessLogs, HaveNoPlaceInSimulatedTime) {
   const tests::TemporaryFolder folder;
   folder.write("swiftlet-control.log", at(1, "control info: plant joined"));
   FlightLog log = flight(0.0);
-  add_process_logs(folder.path(), log);
+  add_process_logs(folder.path(), {"kl1"}, log);
   EXPECT_EQ(log.events.size(), 1U);
 }
 

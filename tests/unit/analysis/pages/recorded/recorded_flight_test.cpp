@@ -6,9 +6,11 @@
 
 #include "swiftlet/analysis/pages/flight_page.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/text_file.hpp"
 #include "swiftlet/record/file/cdr_writer.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
 #include "swiftlet/record/mcap/writer.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::pages::recorded_flight_test {
@@ -65,6 +67,8 @@ class FlightFile {
   void attach(const std::string& name, const std::string& text) {
     file_.write(mcap::Attachment{0, 0, name, "application/yaml", text});
   }
+
+  void describe(const mcap::Metadata& metadata) { file_.write(metadata); }
 
   void add_mode(const std::string& vehicle, std::int64_t stamp_ns, std::uint8_t mode,
                 const std::string& reason) {
@@ -175,6 +179,38 @@ TEST_F(FlightPage, KnowsMotionCaptureFromTheAttachedSettingsOfTheVehicle) {
   };
   EXPECT_NEAR(bound_mm(0), 3.0 * std::hypot(1.0, 2.0), 1e-9);
   EXPECT_NEAR(bound_mm(1), 3.0 * std::hypot(1.0, 4.0), 1e-9);
+}
+
+// At their times on the axis of the page, which begins at the take-off, and only those that the flight came to.
+TEST_F(FlightPage, MarksTheFaultsOfTheAttachedSimulation) {
+  {
+    FlightFile file(path_);
+    file.add_climb("/kl1", 100);
+    file.add_mode("/kl1", kFirstNs + 200 * kMs, 2, "requested");
+    file.attach("simulation.yaml", io::read_text_file(tests::in_source("config/simulation/default.yaml")) +
+                                       "faults:\n  - {kind: mocap_stop, at_s: 1.2, for_s: 0.1}\n"
+                                       "  - {kind: imu_stop, at_s: 9, for_s: 0.1}\n");
+  }
+  const std::vector<FlightEvent> events = flights().front().events;
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[1].kind, "fault");
+  EXPECT_EQ(events[1].text, "fault: mocap_stop, at_s 1.2, for_s 0.1");
+  EXPECT_NEAR(events[1].time_s, 0.5, 1e-9);
+}
+
+TEST_F(FlightPage, HasTheMissionAndSeedOfTheVehicle) {
+  {
+    FlightFile file(path_);
+    file.describe({"swiftlet/flight",
+                   {{"vehicles", "kl1,kl2"}, {"missions", "square,hop"}, {"seed", "5"}, {"seeds", "5,6"}}});
+    file.add_climb("/kl1", 10);
+    file.add_climb("/kl2", 10);
+  }
+  const std::vector<FlightLog> both = flights();
+  EXPECT_EQ(value_of(both[0], "mission"), "square");
+  EXPECT_EQ(value_of(both[0], "seed"), "5");
+  EXPECT_EQ(value_of(both[1], "mission"), "hop");
+  EXPECT_EQ(value_of(both[1], "seed"), "6");
 }
 
 TEST_F(FlightPage, NamesASignalOfAnotherType) {
