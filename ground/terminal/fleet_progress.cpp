@@ -17,9 +17,12 @@ FleetProgress::FleetProgress(io::ProgressLine& line, const std::vector<std::stri
 void FleetProgress::Share::update(int stage, const std::string& text) {
   const std::lock_guard<std::mutex> lock(all_.mutex_);
   text_ = text;
-  const auto end =
-      std::unique(text_.begin(), text_.end(), [](char a, char b) { return a == ' ' && b == ' '; });
-  text_.erase(end, text_.end());
+  const bool is_alone = all_.shares_.size() == 1;
+  if (!is_alone) {
+    const auto end =
+        std::unique(text_.begin(), text_.end(), [](char a, char b) { return a == ' ' && b == ' '; });
+    text_.erase(end, text_.end());
+  }
   stage_ = stage;
   const std::size_t width = all_.line_.width() > 0 ? all_.line_.width() : kLogWidth;
   std::string line;
@@ -27,7 +30,7 @@ void FleetProgress::Share::update(int stage, const std::string& text) {
   if (all_.shares_.size() > width / kLeastWidth) return all_.show_last(width);
   for (const Share& share : all_.shares_) {
     std::string part = share.vehicle_ + (share.text_.find(' ') == 0 ? "" : " ") + share.text_;
-    part.resize(width / all_.shares_.size() - 2, ' ');
+    if (!is_alone || all_.line_.width() > 0) part.resize(width / all_.shares_.size() - 2, ' ');
     line += (line.empty() ? "" : "  ") + part;
     stages += share.stage_;
   }

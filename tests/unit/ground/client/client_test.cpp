@@ -196,7 +196,7 @@ TEST(Connection, ToAControllerOfAnotherWireVersionIsRefused) {
   Vehicle vehicle(settings_of("ground", lock));
   const Result refused = vehicle.connect(60s);
   EXPECT_EQ(refused.kind, Result::Kind::kNoControl);
-  EXPECT_NE(refused.reason.find("control speaks version 3 of the messages, this program 2"),
+  EXPECT_NE(refused.reason.find("control speaks version 4 of the messages, this program 3"),
             std::string::npos)
       << refused.reason;
   EXPECT_FALSE(vehicle.connected());

@@ -98,6 +98,7 @@ TEST(ControlSettingsFile, ReadsEveryKeyIntoItsMember) {
       "  max_body_rate_rad_s: 43\n"
       "  max_specific_force_error_m_s2: 44\n"
       "  max_rotor_speed_rad_s: 45\n"
+      "  max_vehicle_difference: 0.62\n"
       "failsafe:\n"
       "  imu_timeout_s: 46\n"
       "  imu_gap_s: 47\n"
@@ -210,6 +211,7 @@ TEST(ControlSettingsFile, ReadsEveryKeyIntoItsMember) {
   EXPECT_EQ(s.arming.max_body_rate, 43);
   EXPECT_EQ(s.arming.max_specific_force_error, 44);
   EXPECT_EQ(s.arming.max_rotor_speed, 45);
+  EXPECT_EQ(s.arming.max_vehicle_difference, 0.62);
   EXPECT_EQ(s.failsafe.imu_timeout_s, 46);
   EXPECT_EQ(s.failsafe.imu_gap_s, 47);
   EXPECT_EQ(s.failsafe.impact_acceleration, 61);

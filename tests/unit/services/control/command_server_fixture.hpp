@@ -1,4 +1,5 @@
-// A controller without DDS: its command server, its inner loop, and the samples of a vehicle at rest.
+// A controller without DDS: its command server, its inner loop, and the samples of a vehicle at rest, or of one whose poses follow
+// the reference.
 #pragma once
 
 #include <cstdint>
@@ -27,11 +28,15 @@ class CommandServerTest : public testing::Test {
         loop_(vehicle_, settings_),
         command_server_(loop_, vehicle_, settings_, GainDesigner(vehicle_, settings_), wake_) {}
 
-  // The vehicle at rest on the ground: one IMU, battery and rotor speed sample, and a pose with every fifth.
+  // One IMU, battery and rotor speed sample, and a pose with every fifth.
   plant::ActuatorCommand step() {
     ++sequence_;
     const auto stamp = static_cast<std::int64_t>(sequence_) * 2'000'000;
     if (sequence_ % 5 == 1) {
+      if (follows_reference_) {
+        take_snapshots();
+        last_pose_.position_ned = last_.reference.position_ned;
+      }
       last_pose_.stamp_ns = stamp;
       last_pose_.sequence = sequence_;
       last_pose_.tracked = true;
@@ -52,13 +57,15 @@ class CommandServerTest : public testing::Test {
   }
   void settle() {
     for (int i = 0; i < 500; ++i) step();
+    take_snapshots();
+  }
+  void take_snapshots() {
     Snapshot snapshot;
     while (loop_.snapshots.pop(snapshot)) last_ = snapshot;
   }
   control::Mode mode() {
     step();
-    Snapshot snapshot;
-    while (loop_.snapshots.pop(snapshot)) last_ = snapshot;
+    take_snapshots();
     return last_.status.mode;
   }
 
@@ -100,6 +107,7 @@ class CommandServerTest : public testing::Test {
   InnerLoop loop_;
   CommandServer command_server_;
   std::uint64_t sequence_ = 0;
+  bool follows_reference_ = false;
   plant::PoseSample last_pose_;
   plant::BatterySample last_battery_;
   plant::RotorSpeedSample last_rotor_speeds_;

@@ -43,6 +43,7 @@ class StandbyCommandServerTest : public CommandServerTest {
   }
   void fly_mission() {
     settle();
+    follows_reference_ = true;
     command_server_.on_command(command(Command_Constants::ARM, 1));
     step();
     command_server_.on_mission(mission(2, 1.0));
