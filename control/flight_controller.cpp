@@ -90,6 +90,8 @@ const plant::VehicleCommand& FlightController::step(const plant::ImuSample& samp
   }
   const double dt_s = usable ? observers_.store_sample(sample, laws_.command(), level_) : 0.0;
 
+  if (obeyed_) obeyed_ns_ = sample.stamp_ns;
+
   // Supervision decides the mode, guidance generates the reference.
   const SupervisorInputs now = inputs();
   vehicle_restarted_ = false;
@@ -127,6 +129,7 @@ SupervisorInputs FlightController::inputs() const {
   inputs.accepted_levels = accepted_levels_;
   inputs.vehicle_restarted = vehicle_restarted_;
   inputs.obeyed = obeyed_;
+  if (!obeyed_) inputs.not_obeyed_s = math::seconds(now_ns - obeyed_ns_);
   inputs.rotors_running = rotors_running_ || level_ == plant::ControlLevel::kActuators;
   if (vehicle_refusal_[0] != '\0') inputs.vehicle_refusal = vehicle_refusal_.data();
   if (level_ != plant::ControlLevel::kActuators && vehicle_fault_[0] != '\0') {

@@ -72,7 +72,8 @@ class FlightController {
 
   // The command that the vehicle obeyed when it took the next sample, as it reports with it. Without a call, or without that report, it
   // is taken to obey the newest one: over a link with delay the lift that is learnt is then wrong.
-  // of_this: it is one of this controller, or not reported. Arming is done when it is; if it is not within 1 s, it ends.
+  // of_this: it is one of this controller, or not reported, or this is a standby. Arming is done when it is; if it is not within
+  // 1 s, it ends.
   void set_obeyed(const plant::ObeyedCommand& obeyed, bool of_this = true) {
     observers_.set_obeyed(obeyed);
     obeyed_ = of_this;
@@ -137,6 +138,7 @@ class FlightController {
   std::int64_t vehicle_fault_since_ns_ = 0;  // of the first step with it
   bool rotors_running_ = true;               // as the vehicle reports
   bool obeyed_ = true;                       // this controller, or not reported
+  std::int64_t obeyed_ns_ = 0;               // stamp of the last step with it
   bool vehicle_restarted_ = false;           // with the next sample
   std::uint32_t resets_seen_ = 0;            // resets of the estimate that the supervisor has processed
   std::int64_t saturated_ns_ = -1;           // of the last saturated command; -1: none

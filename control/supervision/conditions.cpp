@@ -16,7 +16,7 @@ constexpr double kContactTime_s = 0.2;
 constexpr double kContactLift = 1.0;  // m/s^2, vertical specific-force residual for kBlindContactTime_s
 constexpr double kBlindContactTime_s = 0.3;
 constexpr double kVehicleFaultTime_s = 0.5;
-constexpr double kObeyTime_s = 1.0;  // from arming until the vehicle reports that it obeys
+constexpr double kObeyTime_s = 1.0;  // from arming, or a takeover, until the vehicle reports that it obeys
 constexpr double kStandsBelow_m = 0.3;
 constexpr double kMostOfClimb = 0.9;
 constexpr double kRotorsStartTime_s =
@@ -124,7 +124,8 @@ EventSet observe(SupervisorContext& context, double tip_over_cosine) {
   events.add(Event::kVehicleFault, inputs.vehicle_fault_s >= kVehicleFaultTime_s);
   events.add(Event::kRotorsNotRunning,
              !inputs.rotors_running && elapsed_s(state.mode_since_ns, state.now_ns) > kRotorsStartTime_s);
-  events.add(Event::kNotObeyed, !inputs.obeyed && elapsed_s(state.mode_since_ns, state.now_ns) > kObeyTime_s);
+  events.add(Event::kNotObeyed,
+             inputs.not_obeyed_s > kObeyTime_s && elapsed_s(state.mode_since_ns, state.now_ns) > kObeyTime_s);
   events.add(Event::kNoLiftOff, no_lift_off(context));
   events.add(Event::kImpact, state.guidance.phase != Phase::kGround &&
                                  inputs.specific_force_frd.norm() > failsafe.impact_acceleration);

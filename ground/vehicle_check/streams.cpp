@@ -217,10 +217,9 @@ CheckResults check_imu_stream(const VehicleRecording& recording) {
   stream.add(kGap, 1e3 * gap_s);
   const double most_jitter = closes_inner_loops(recording) ? kOuterJitter : kJitter.most;
   const double jitter = 1e2 * stamp_jitter_p99(samples);
-  results.push_back(!stamps_count ? skipped(kJitter.name, "the stamps do not follow the clock")
-                    : !std::isfinite(jitter)
-                        ? skipped(kJitter.name, "no two samples follow each other")
-                        : judge(with_limits(kJitter, 0.0, most_jitter), jitter));
+  results.push_back(!stamps_count            ? skipped(kJitter.name, "the stamps do not follow the clock")
+                    : !std::isfinite(jitter) ? skipped(kJitter.name, "no two samples follow each other")
+                                             : judge(with_limits(kJitter, 0.0, most_jitter), jitter));
   if (keeps_clock) {
     stream.add(kDelivery, 1e3 * delivery_delay_p99_s(samples));
     results.push_back(check_imu_age(recording, samples));

@@ -11,7 +11,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kStatusPeriod{500};
-constexpr std::chrono::milliseconds kSourceSilence{1500};  // of replies, before those of another process count
+constexpr std::chrono::milliseconds kSourceSilence{
+    1500};  // of replies, before those of another process count
 
 }  // namespace
 

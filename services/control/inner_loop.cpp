@@ -85,9 +85,10 @@ void InnerLoop::take_setpoint(Clients& clients) {
   if (setpoint.take(clients.setpoint) && role_ == Role::kActive) clients.inputs.setpoint = &clients.setpoint;
 }
 
-void InnerLoop::set_obeyed(const plant::ObeyedCommand& obeyed, std::uint32_t term) {
+void InnerLoop::set_obeyed(const plant::ObeyedCommand& obeyed, Role role, std::uint32_t term) {
   has_obeyed_ = has_obeyed_ || (obeyed.reported && obeyed.any);
-  controller_.set_obeyed(obeyed, !obeyed.reported || (obeyed.any && obeyed.term == term));
+  const bool of_this = obeyed.any && obeyed.term == term;
+  controller_.set_obeyed(obeyed, role == Role::kStandby || !obeyed.reported || of_this);
 }
 
 void InnerLoop::restart_vehicle(std::int64_t now_ns) {

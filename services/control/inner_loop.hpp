@@ -87,8 +87,8 @@ class InnerLoop {
   boost::lockfree::spsc_queue<Snapshot, boost::lockfree::capacity<256>> snapshots;
 
   // What the vehicle reports with the sample of the next step; from the IMU thread.
-  // term: of this controller's commands.
-  void set_obeyed(const plant::ObeyedCommand& obeyed, std::uint32_t term);
+  // term: of this controller's commands. A standby sends none.
+  void set_obeyed(const plant::ObeyedCommand& obeyed, Role role, std::uint32_t term);
   // The vehicle was restarted before the sample of the next step, which arrived at now_ns; from the IMU thread. A standby adopts
   // no flight from before.
   void restart_vehicle(std::int64_t now_ns);

@@ -20,7 +20,7 @@ SampleAnswers::SampleAnswers(InnerLoop& loop, CommandPublisher& commands, Semaph
 void SampleAnswers::answer(const VehicleSample& sample, const Authority& authority) {
   const std::int64_t arrived_ns = runtime::monotonic_ns();
   authority_ = authority;
-  loop_.set_obeyed(sample.obeyed, authority.term);
+  loop_.set_obeyed(sample.obeyed, authority.role, authority.term);
   if (restarts_.sample(sample)) loop_.restart_vehicle(arrived_ns);
   last_answer_ = std::visit(
       [&](const auto& motion) {

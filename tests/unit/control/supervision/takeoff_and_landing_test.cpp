@@ -143,6 +143,7 @@ TEST_F(TakeoffAndLanding, TakeOffEndsIfTheRotorsAreNotReportedToRun) {
 // that obeys after 0.9 s takes off, and not before.
 TEST_F(TakeoffAndLanding, ArmingIsDoneWhenTheVehicleObeys) {
   inputs_.obeyed = false;
+  inputs_.not_obeyed_s = 2.0;
   ASSERT_TRUE(ask(RequestKind::kArm).accepted);
   EXPECT_FALSE(step_until(Mode::kDisarmed, 0.9));
   EXPECT_EQ(supervisor_.requests().back().state, RequestState::kExecuting);
@@ -155,6 +156,7 @@ TEST_F(TakeoffAndLanding, ArmingIsDoneWhenTheVehicleObeys) {
   EXPECT_FALSE(step_until(Mode::kDisarmed, 0.9));
   EXPECT_EQ(control_setpoint_.control_mode, ControlMode::kIdle);
   inputs_.obeyed = true;
+  inputs_.not_obeyed_s = 0.0;
   step();
   const RequestStatuses& requests = supervisor_.requests();
   EXPECT_EQ(requests[requests.size() - 2].kind, RequestKind::kArm);

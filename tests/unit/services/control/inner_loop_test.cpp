@@ -29,17 +29,18 @@ class StandbyLoop : public testing::Test {
     state.term = kTerm;
     loop_.failover_state.put(state);
   }
+  void put_pose() {
+    pose_.stamp_ns = imu_.stamp_ns;
+    ++pose_.sequence;
+    pose_.position_ned.x() = pose_.sequence % 2 == 0 ? 1e-5 : -1e-5;  // noise: equal poses count as stuck
+    loop_.pose.put(pose_);
+  }
   // Returns whether it is ready afterwards.
   bool run(std::int64_t duration_ns, bool with_poses) {
     for (const std::int64_t end_ns = imu_.stamp_ns + duration_ns; imu_.stamp_ns < end_ns;) {
       imu_.stamp_ns += kPeriod;
       ++imu_.sequence;
-      if (with_poses && imu_.sequence % kSamplesPerPose == 0) {
-        pose_.stamp_ns = imu_.stamp_ns;
-        ++pose_.sequence;
-        pose_.position_ned.x() = pose_.sequence % 2 == 0 ? 1e-5 : -1e-5;  // noise: equal poses count as stuck
-        loop_.pose.put(pose_);
-      }
+      if (with_poses && imu_.sequence % kSamplesPerPose == 0) put_pose();
       loop_.step(imu_, imu_.stamp_ns, Role::kStandby, kTerm);
       loop_.finish(imu_.stamp_ns);
     }
@@ -70,6 +71,35 @@ TEST_F(StandbyLoop, IsNotReadyAsLongAsItFollowsNobody) {
   EXPECT_TRUE(run(kPeriod, true));
 }
 
+// GIVEN a vehicle that obeys another controller, and is armed, WHEN this one takes over and is obeyed within 1 s THEN it stays armed; one
+// that is not obeyed disarms.
+TEST_F(StandbyLoop, TakesOverAnArmedVehicleThatObeysItSoon) {
+  for (const bool obeys : {true, false}) {
+    run(2'000'000'000, true);
+    FailoverState armed;
+    armed.number = 3;
+    armed.term = kTerm;
+    armed.flight.supervisor.mode = control::Mode::kArmed;
+    armed.flight.supervisor.mode_since_ns = 1;
+    loop_.failover_state.put(armed);
+    run(kPeriod, true);
+    constexpr std::uint32_t kOwnTerm = 2 * kTerm;
+    bool runs = true;
+    for (int i = 0; i < 1000; ++i) {
+      imu_.stamp_ns += kPeriod;
+      ++imu_.sequence;
+      loop_.set_obeyed({true, true, obeys && i > 400 ? kOwnTerm : kTerm, imu_.stamp_ns}, Role::kActive,
+                       kOwnTerm);
+      if (imu_.sequence % kSamplesPerPose == 0) put_pose();
+      runs = plant::header_of(loop_.step(imu_, imu_.stamp_ns)).rotor_state == plant::RotorState::kRunning;
+      if (i < 400) {
+        ASSERT_TRUE(runs) << i;
+      }
+    }
+    EXPECT_EQ(runs, obeys);
+  }
+}
+
 // GIVEN a standby of a flight WHEN the vehicle is restarted THEN a report of the flight that was still on its way is not adopted,
 // and one from after the vehicle has obeyed again is.
 TEST_F(StandbyLoop, AdoptsNoFlightFromBeforeTheVehicleWasRestarted) {
@@ -90,7 +120,7 @@ TEST_F(StandbyLoop, AdoptsNoFlightFromBeforeTheVehicleWasRestarted) {
   ASSERT_TRUE(rotors_run_after_a_report());
   loop_.restart_vehicle(imu_.stamp_ns);
   EXPECT_FALSE(rotors_run_after_a_report());
-  loop_.set_obeyed({true, true, kTerm, imu_.stamp_ns}, kTerm);
+  loop_.set_obeyed({true, true, kTerm, imu_.stamp_ns}, Role::kActive, kTerm);
   EXPECT_TRUE(rotors_run_after_a_report());
 }
 
