@@ -227,7 +227,7 @@ TEST_F(LivingVehicleInRealTime, IsReportedSilentWhenItDiesAndMayBeStartedAgainAt
 
   clear_history();
   plant_ = start("swiftlet-plant");
-  ASSERT_TRUE(reported(control::Mode::kStopped, "IMU samples are not usable")) << mode_log();
+  ASSERT_TRUE(reported(control::Mode::kStopped, "the vehicle was restarted")) << mode_log();
   wait_vehicle_time(1.0);
   for (const record::TruthRow& row : truth()) ASSERT_LT(fastest_rotor(row), 20.0);
   EXPECT_FALSE(ask(control::RequestKind::kArm).accepted());
