@@ -48,8 +48,8 @@ std::optional<Row> motion_at(const std::vector<Row>& rows, typename std::vector<
 template <class Row>
 TrackingErrors tracking_errors(const std::vector<Row>& flown, const std::vector<ReferenceRow>& reference,
                                Window window);
-// Of the flight in this window: against the ground truth, of a real vehicle against the poses of motion capture, without these against
-// the estimate.
+// The errors of a flight in this window are against the ground truth, for a real vehicle against the poses of motion capture, without
+// these against the estimate.
 TrackingErrors tracking_errors(const Flight& flight, Window window);
 
 // True if there are enough samples to evaluate the flight: at least a quarter of the number expected at rate_hz in

@@ -208,7 +208,7 @@ struct ArmingSettings {
   double max_body_rate = 0.2;             // rad/s, bias removed
   double max_specific_force_error = 1.0;  // m/s^2, from gravity in the attitude of the pose
   double max_rotor_speed = 100.0;         // rad/s, of any rotor
-  // Of mass and battery voltages that the vehicle reports from those of its vehicle file, as a fraction of these.
+  // Largest difference of mass and battery voltages that the vehicle reports from those of its vehicle file, as a fraction.
   double max_vehicle_difference = 0.1;
 };
 

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +12,7 @@
 
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/client/action.hpp"
+#include "swiftlet/ground/flight/vehicle_motion.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::ground {
@@ -41,21 +40,6 @@ constexpr double kSilenceS = 3.0;      // without control_status or motion
 constexpr int kBeforeFlight = -1;      // progress stage; the later stages are the mission's items
 
 ControlMode mode_of(const View& view) { return static_cast<ControlMode>(view.control.message.mode()); }
-
-// Where the vehicle is: by the ground truth, or of a vehicle without one, by the estimate of control.
-struct Motion {
-  std::int64_t stamp_ns = 0;
-  std::uint64_t count = 0;  // of messages
-  std::array<double, 3> position_ned{};
-  std::array<double, 3> velocity_ned{};
-};
-Motion motion_of(const View& view) {
-  const auto motion = [](const auto& latest) {
-    const auto& message = latest.message;
-    return Motion{message.stamp_ns(), latest.count, message.position_ned(), message.velocity_ned()};
-  };
-  return view.truth.seen() ? motion(view.truth) : motion(view.estimate);
-}
 
 // The topics that are still missing; empty if all have arrived.
 std::string missing(const View& view, bool has_truth) {
@@ -432,23 +416,6 @@ void NetworkTransport::abandon(const std::string& reason) {
   wait_for_last_figures();
   throw simulation::FlightFailure(reason + "; " + simulation::end_of(mode_of(client_.view()), in_flight));
 }
-
-namespace {
-
-// Distance of the vehicle from its reference. The newest of both may be of different stamps, a few milliseconds apart: the motion is
-// carried on at its velocity.
-double newest_error_m(const View& view) {
-  const Motion motion = motion_of(view);
-  if (motion.count == 0 || !view.reference.seen()) return std::numeric_limits<double>::quiet_NaN();
-  const msg::Reference& reference = view.reference.message;
-  const double ahead_s = 1e-9 * static_cast<double>(reference.stamp_ns() - motion.stamp_ns);
-  const auto along = [&](std::size_t axis) {
-    return motion.position_ned[axis] + ahead_s * motion.velocity_ned[axis] - reference.position_ned()[axis];
-  };
-  return std::hypot(along(0), along(1), along(2));
-}
-
-}  // namespace
 
 void NetworkTransport::update_progress(const View& view) {
   const auto& mission = view.mission.message;

@@ -8,7 +8,6 @@
 #include "swiftlet/ground/flight/flight_outcome.hpp"
 #include "swiftlet/ground/flight/flight_settings.hpp"
 #include "swiftlet/ground/flight/network_transport.hpp"
-#include "swiftlet/math/time.hpp"
 #include "swiftlet/plant/simulation/no_effect.hpp"
 #include "swiftlet/record/evaluation.hpp"
 
@@ -89,8 +88,9 @@ void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* barrier, io:
   if (vehicle) report_.simulated_s = vehicle->vehicle_s();
   vehicle.reset();
   if (plan_.launch_mode == LaunchMode::kStarted && !plan_.px4_instance)
-    report_.warnings = plant::settings_without_effect(
-        plan_.simulation, plan_.vehicle, math::seconds(client_->view().truth.message.stamp_ns()));
+    report_.warnings =
+        plant::settings_without_effect(plan_.simulation, plan_.vehicle,
+                                       1e-9 * static_cast<double>(client_->view().truth.message.stamp_ns()));
   take_figures(client_->view(), report_);
 }
 

@@ -212,7 +212,7 @@ class Participant {
   std::shared_ptr<Impl> impl_;
 };
 
-// Of the processes that publish a topic one is heard: that which was first, until it has been silent for this time.
+// One of the processes that publish a topic is heard: that which was first, until it has been silent for this time.
 struct OneSource {
   std::chrono::milliseconds silence;
   std::function<void()> on_next =
@@ -250,7 +250,7 @@ class Node {
                              Delivery delivery = Delivery::kShared);
 
   std::vector<std::string> topics_seen() const { return participant_.topics_seen(); }
-  // Those of the vehicle.
+  // The same sentences, as far as they are of the vehicle.
   std::vector<std::string> mismatches_seen() const;
 
   // As Participant::become_source(), for settings.source_of alone. Throws std::logic_error if that is empty.

@@ -19,7 +19,7 @@ class Restarts : public testing::Test {
     sample_.motion = imu_;
     return restarts_.sample(sample_);
   }
-  // It is told once, when it happens.
+  // A restart is told once, when it happens.
   void expect_told_once(const char* what) {
     EXPECT_TRUE(next()) << what;
     sample_.of_another_process = false;
