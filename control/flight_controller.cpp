@@ -75,6 +75,7 @@ void FlightController::restart_if_vehicle_did(std::int64_t stamp_ns) {
   const bool went_back = stamp_ns < observers_.stamp_ns() && laws_.rotor_state() == plant::RotorState::kOff;
   if (!vehicle_restarted_ && !went_back) return;
   observers_.restart();
+  obeyed_ns_ = stamp_ns;
   resets_seen_ = 0;
   vehicle_fault_since_ns_ = 0;
   saturated_ns_ = -1;

@@ -6,6 +6,7 @@
 #include "swiftlet/control/attitude/attitude_error.hpp"
 #include "swiftlet/control/guidance/manoeuvres.hpp"
 #include "swiftlet/control/guidance/setpoint_stream.hpp"
+#include "swiftlet/math/time.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -18,6 +19,7 @@ constexpr double kBlindContactTime_s = 0.3;
 constexpr double kVehicleFaultTime_s = 0.5;
 constexpr double kObeyTime_s = 1.0;  // from arming, or a takeover, until the vehicle reports that it obeys
 constexpr double kStandsBelow_m = 0.3;
+constexpr double kStandsTime_s = 3.0;
 constexpr double kMostOfClimb = 0.9;
 constexpr double kRotorsStartTime_s =
     10.0;  // PX4 disarms after this time without a take-off (COM_DISARM_PRFLT)
@@ -50,13 +52,15 @@ bool touchdown_detected(SupervisorContext& context) {
               kContactTime_s);
 }
 
-// The reference has climbed, and the vehicle stands.
+// The reference climbed long ago, and the vehicle stands. An autopilot may take seconds to let its rotors lift.
 bool no_lift_off(const SupervisorContext& context) {
   const SupervisorState& state = context.state;
   const GuidanceState& guidance = state.guidance;
   if (guidance.airborne || guidance.phase != Phase::kPath) return false;
   const double climb_m = guidance.ground_z_ned - guidance.climb_to_z_ned;
-  const double risen_m = guidance.ground_z_ned - guidance.path.at(state.now_ns).position_ned.z();
+  const std::int64_t then_ns = state.now_ns - math::nanoseconds(kStandsTime_s);
+  if (elapsed_s(state.mode_since_ns, then_ns) < 0.0) return false;
+  const double risen_m = guidance.ground_z_ned - guidance.path.at(then_ns).position_ned.z();
   return risen_m > std::min(kStandsBelow_m, kMostOfClimb * climb_m) &&
          context.estimate().velocity_ned.norm() < kContactSpeed;
 }

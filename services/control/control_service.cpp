@@ -28,7 +28,6 @@ constexpr double kVehicleClockStands_s = 0.5;
 
 // The battery is sampled at 10 Hz only. Well below battery_timeout_s, so that a restarted vehicle is heard in time.
 constexpr auto kBatterySourceSilence = 1000ms;
-constexpr auto kInfoSourceSilence = 1500ms;  // vehicle_info comes at 1 Hz
 
 }  // namespace
 
@@ -95,8 +94,7 @@ void ControlService::subscribe_sensors(dds::Node& node) {
 void ControlService::subscribe(dds::Node& node) {
   subscribe_sensors(node);
   subscriptions_.push_back(node.subscribe<msg::VehicleInfo>(
-      topics::kVehicleInfo, [this](const auto& message) { on_vehicle_info(message); }, Delivery::kShared,
-      dds::OneSource{kInfoSourceSilence}));
+      topics::kVehicleInfo, [this](const auto& message) { on_vehicle_info(message); }));
   subscriptions_.push_back(node.subscribe<msg::Setpoint>(
       topics::kSetpoint, [this](const auto& message) { put(message, loop_.setpoint, setpoint_faults_); }));
   subscriptions_.push_back(node.subscribe<msg::GroundLink>(
@@ -125,10 +123,11 @@ template <class Message>
 void ControlService::subscribe_motion(dds::Node& node, const messages::Topic<Message>& topic,
                                       const char* samples, AnsweredSamples::Kind kind) {
   const auto take = [this, kind](const Message& message) {
+    const bool of_another_process = std::exchange(of_another_process_, false);
     if (!answered_samples_.admit(kind, runtime::monotonic_ns())) return;
     note(imu_arrivals_, message);
     VehicleSample sample = vehicle_sample(message);
-    sample.of_another_process = std::exchange(of_another_process_, false);
+    sample.of_another_process = of_another_process;
     driver_->on_sample(sample);
   };
   const Delivery delivery = clock_ == runtime::Clock::kLockstep ? Delivery::kShared : Delivery::kSamples;

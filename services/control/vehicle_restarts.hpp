@@ -20,16 +20,25 @@ class VehicleRestarts {
         sample.obeyed.boot != 0 ? sample.obeyed.boot : reported_boot_.load(std::memory_order_relaxed);
     const bool other_boot = boot != 0 && boot_ != 0 && boot != boot_;
     const bool forgot_commands = obeyed_any_ && sample.obeyed.reported && !sample.obeyed.any;
-    // A sample that arrives late has an older stamp too.
-    const bool counts_again = sample.sequence() < sequence_ && sample.stamp_ns() > stamp_ns_;
+    // Of a vehicle without that number: a sample that arrives late has an older stamp too, and a vehicle that counts in 16 or 32
+    // bits is not stopped in the air.
+    const bool counts_again = sample.sequence() < sequence_ && sample.stamp_ns() > stamp_ns_ &&
+                              !wraps(1ULL << 16U, sample.sequence()) &&
+                              !wraps(1ULL << 32U, sample.sequence());
+    const bool looks_new = boot == 0 && (counts_again || sample.of_another_process);
     if (boot != 0) boot_ = boot;
     obeyed_any_ = sample.obeyed.reported && sample.obeyed.any;
     sequence_ = sample.sequence();
     stamp_ns_ = sample.stamp_ns();
-    return other_boot || forgot_commands || counts_again || sample.of_another_process;
+    return other_boot || forgot_commands || looks_new;
   }
 
  private:
+  bool wraps(std::uint64_t count, std::uint64_t sequence) const {
+    constexpr std::uint64_t kNear = 100;  // samples may be lost there
+    return sequence_ < count && sequence_ + kNear >= count && sequence < kNear;
+  }
+
   std::atomic<std::uint32_t> reported_boot_{0};
   std::uint32_t boot_ = 0;
   bool obeyed_any_ = false;

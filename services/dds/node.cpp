@@ -81,10 +81,12 @@ void Node::on_peer(std::function<void(const PeerEvent&)> callback) {
 
 std::vector<std::string> Node::mismatches_seen() const {
   std::vector<std::string> all = participant_.mismatches_seen();
-  all.erase(
-      std::remove_if(all.begin(), all.end(),
-                     [&](const std::string& one) { return one.find(vehicle_ + "/") == std::string::npos; }),
-      all.end());
+  all.erase(std::remove_if(all.begin(), all.end(),
+                           [&](const std::string& one) {
+                             return one.rfind("rt/" + vehicle_ + "/", 0) != 0 &&
+                                    one.rfind(vehicle_ + "/", 0) != 0;
+                           }),
+            all.end());
   return all;
 }
 

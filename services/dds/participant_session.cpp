@@ -23,13 +23,14 @@ namespace fastdds = eprosima::fastdds::dds;
 
 // The numbers of this process's participants, each below that of the domain's ports. Left to itself, Fast DDS 2.9 counts them up
 // for as long as the process runs and rejoins, computes a port from each, also if it is given another, and ends the process
-// when that is above 65535. A number is part of the GUID: it is taken again only after all others were.
+// when that is above 65535. A number is part of the GUID: it is taken again only after all others were. One with which Fast DDS
+// could not create a participant stays taken there; -1, when all are: it counts then.
 class ParticipantNumbers {
  public:
   std::int32_t take(int domain) {
     const std::lock_guard<std::mutex> lock(mutex_);
     const std::uint32_t count = discovery_ports(domain).count;
-    if (taken_.size() >= count) throw domain_is_full(domain);
+    if (taken_.size() >= count) return -1;
     do {
       last_ = (last_ + 1) % static_cast<std::int32_t>(count);
     } while (!taken_.insert(last_).second);
@@ -73,7 +74,6 @@ fastdds::DomainParticipant* create_participant(const NodeSettings& settings,
       static_cast<std::uint32_t>(settings.domain), qos, listener,
       fastdds::StatusMask::requested_incompatible_qos() << fastdds::StatusMask::offered_incompatible_qos());
   guard->listen(true);
-  if (participant == nullptr) numbers().give_back(number);
   return participant;
 }
 

@@ -47,8 +47,27 @@ TEST_F(Restarts, AreToldByAnotherBootInVehicleInfoIfTheSamplesHaveNone) {
 }
 
 TEST_F(Restarts, AreToldBySequenceNumbersThatBeginAgain) {
+  sample_.obeyed.boot = 0;
   imu_.sequence = 0;
   expect_told_once("while the clock goes on");
+}
+
+TEST_F(Restarts, AreNotACounterThatWraps) {
+  sample_.obeyed.boot = 0;
+  for (const std::uint64_t count : {1ULL << 16U, 1ULL << 32U}) {
+    imu_.sequence = count - 4;
+    EXPECT_FALSE(next());
+    imu_.sequence = 5;  // some were lost
+    EXPECT_FALSE(next());
+    imu_.sequence = count - 4;
+    EXPECT_FALSE(next());
+    imu_.sequence = 100;
+    EXPECT_TRUE(next()) << "too far on";
+    imu_.sequence = count / 2;
+    EXPECT_FALSE(next());
+    imu_.sequence = 0;
+    EXPECT_TRUE(next()) << "too early";
+  }
 }
 
 TEST_F(Restarts, AreToldByCommandsThatWereForgotten) {
@@ -56,7 +75,11 @@ TEST_F(Restarts, AreToldByCommandsThatWereForgotten) {
   expect_told_once("none was obeyed since the start");
 }
 
+// A relay of a vehicle that states its boot may be another process.
 TEST_F(Restarts, AreToldByAnotherProcess) {
+  sample_.of_another_process = true;
+  EXPECT_FALSE(next());
+  sample_.obeyed.boot = 0;
   sample_.of_another_process = true;
   expect_told_once("of the same stamps");
 }
