@@ -20,8 +20,7 @@ class VehicleRestarts {
         sample.obeyed.boot != 0 ? sample.obeyed.boot : reported_boot_.load(std::memory_order_relaxed);
     const bool other_boot = boot != 0 && boot_ != 0 && boot != boot_;
     const bool forgot_commands = obeyed_any_ && sample.obeyed.reported && !sample.obeyed.any;
-    // Of a vehicle without that number: a sample that arrives late has an older stamp too, and a vehicle that counts in 16 or 32
-    // bits is not stopped in the air.
+    // A sample that arrives late has an older stamp too. A vehicle that counts in 16 or 32 bits is not stopped in the air.
     const bool counts_again = sample.sequence() < sequence_ && sample.stamp_ns() > stamp_ns_ &&
                               !wraps(1ULL << 16U, sample.sequence()) &&
                               !wraps(1ULL << 32U, sample.sequence());
