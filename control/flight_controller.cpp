@@ -51,7 +51,7 @@ const plant::VehicleCommand& FlightController::on_imu(const plant::ImuSample& sa
 }
 
 const plant::VehicleCommand& FlightController::on_imu(const plant::ImuSample& sample, ClientInputs& clients) {
-  restart_if_vehicle_did(sample.stamp_ns);
+  begin_anew_if_restarted(sample.stamp_ns);
   return step(sample, observers_.predict(sample, laws_.rotor_state()), clients);
 }
 
@@ -61,7 +61,7 @@ const plant::VehicleCommand& FlightController::on_odometry(const plant::Odometry
 
 const plant::VehicleCommand& FlightController::on_odometry(const plant::OdometrySample& sample,
                                                            ClientInputs& clients) {
-  restart_if_vehicle_did(sample.stamp_ns);
+  begin_anew_if_restarted(sample.stamp_ns);
   const std::optional<plant::ImuSample> motion = observers_.predict(sample, laws_.rotor_state(), situation());
   if (motion) return step(*motion, true, clients);
   plant::ImuSample unusable;
@@ -71,7 +71,7 @@ const plant::VehicleCommand& FlightController::on_odometry(const plant::Odometry
 }
 
 // A clock that goes back is that of a restarted vehicle too, while the rotors are off.
-void FlightController::restart_if_vehicle_did(std::int64_t stamp_ns) {
+void FlightController::begin_anew_if_restarted(std::int64_t stamp_ns) {
   const bool went_back = stamp_ns < observers_.stamp_ns() && laws_.rotor_state() == plant::RotorState::kOff;
   if (!vehicle_restarted_ && !went_back) return;
   observers_.restart();
@@ -129,7 +129,6 @@ SupervisorInputs FlightController::inputs() const {
   inputs.level = level_;
   inputs.accepted_levels = accepted_levels_;
   inputs.vehicle_restarted = vehicle_restarted_;
-  inputs.obeyed = obeyed_;
   if (!obeyed_) inputs.not_obeyed_s = math::seconds(now_ns - obeyed_ns_);
   inputs.rotors_running = rotors_running_ || level_ == plant::ControlLevel::kActuators;
   if (vehicle_refusal_[0] != '\0') inputs.vehicle_refusal = vehicle_refusal_.data();

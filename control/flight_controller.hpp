@@ -116,7 +116,7 @@ class FlightController {
   FlightController(const plant::Vehicle& vehicle, const ControlSettings& settings,
                    const ControlDesign& design);
 
-  void restart_if_vehicle_did(std::int64_t stamp_ns);
+  void begin_anew_if_restarted(std::int64_t stamp_ns);
   const plant::VehicleCommand& step(const plant::ImuSample& sample, bool usable, ClientInputs& clients);
   const plant::VehicleCommand& answer_sample(const plant::ImuSample& sample);
   Situation situation() const;

@@ -197,7 +197,7 @@ void note_accepted(SupervisorContext& context) {
   added.key = request.key;
   added.kind = request.kind;
   added.state = RequestState::kAccepted;
-  const bool obeyed = request.kind == RequestKind::kArm && context.inputs.obeyed;
+  const bool obeyed = request.kind == RequestKind::kArm && context.inputs.not_obeyed_s == 0.0;
   const bool stands = request.kind == RequestKind::kLand && context.state.mode == Mode::kDisarmed;
   const bool at_once = request.kind == RequestKind::kSettings && rotors_off(context.state.mode);
   if (is_done_when_accepted(request.kind) || obeyed || stands || at_once) succeed(added);
@@ -221,7 +221,7 @@ void follow_requests(SupervisorContext& context, const Reference& reference, boo
     const bool begins = request.state == RequestState::kAccepted;
     request.state = RequestState::kExecuting;
     if (request.kind == RequestKind::kArm) {
-      if (context.inputs.obeyed) succeed(request);
+      if (context.inputs.not_obeyed_s == 0.0) succeed(request);
       continue;
     }
     if (request.kind == RequestKind::kSettings) {

@@ -41,7 +41,7 @@ struct SupervisorContext {
             state.guidance,
             inputs.lift_off_ns,
             inputs.command_delay_s,
-            inputs.rotors_running && inputs.obeyed};
+            inputs.rotors_running && inputs.not_obeyed_s == 0.0};
   }
 };
 

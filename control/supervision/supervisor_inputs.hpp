@@ -42,8 +42,8 @@ struct SupervisorInputs {
   double gains_progress = 1.0;                                   // of their change
   double gains_changing_s = 0.0;                                 // time until they stop changing
   bool vehicle_restarted = false;                                // since the last step
-  bool obeyed = true;         // false: the vehicle reports that it obeys no command, or another controller's
-  double not_obeyed_s = 0.0;  // for how long
+  // For how long the vehicle has reported that it obeys no command, or another controller's; 0: it obeys, or does not report.
+  double not_obeyed_s = 0.0;
   // At which the vehicle is commanded, and which it accepts.
   plant::ControlLevel level = plant::ControlLevel::kActuators;
   plant::ControlLevels accepted_levels = plant::ControlLevel::kActuators;

@@ -14,7 +14,7 @@
 #include "swiftlet/services/dds/payload.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/messages/schemas.hpp"
-#include "swiftlet/services/messages/wire_version.hpp"
+#include "swiftlet/services/messages/vehicle_info.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -43,10 +43,8 @@ SimulatedRecorder::SimulatedRecorder(simulation::ClosedLoop& loop, const LaunchC
       truth_due_(plan.simulation),
       failsafe_(plan.control.failsafe),
       file_(plan.folder / record::kFlightFile, writer_settings(program), true) {
-  vehicle_info_.name() = plan.vehicle.name;
+  messages::describe(plan.vehicle, vehicle_info_);
   vehicle_info_.simulated(true);
-  vehicle_info_.rotor_count(static_cast<std::uint8_t>(plan.vehicle.rotor_count()));
-  vehicle_info_.mass_kg(plan.vehicle.mass_kg);
   vehicle_info_.imu_rate_hz(loop.imu_rate_hz);
   vehicle_info_.control_levels(plan.simulation.control_levels.bits());
   const Fleet fleet{{kVehicle}, {plan}, plan.folder, program};
@@ -196,7 +194,6 @@ void SimulatedRecorder::write_mission(const control::Status& status) {
 }
 
 void SimulatedRecorder::write_vehicle_info() {
-  vehicle_info_.wire_version(messages::kWireVersion);
   vehicle_info_ns_ = loop_.plant.stamp_ns();
   vehicle_info_.stamp_ns(vehicle_info_ns_);
   vehicle_info_.sequence_number(vehicle_info_.sequence_number() + 1);

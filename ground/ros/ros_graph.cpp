@@ -126,11 +126,11 @@ class RosGraph::Impl final : public dds::DiscoveryListener {
     if (gone->second.announcer != nullptr) ended_.push_back(gone->second.announcer);
     processes_.erase(gone);
   }
-  void on_writer(const GUID_t& guid, const std::string& topic, const dds::EndpointQos&) override {
-    add(&Process::writers, guid, topic);
+  void on_writer(const GUID_t& guid, const dds::RemoteEndpoint& writer) override {
+    add(&Process::writers, guid, writer.topic);
   }
-  void on_reader(const GUID_t& guid, const std::string& topic, const dds::EndpointQos&) override {
-    add(&Process::readers, guid, topic);
+  void on_reader(const GUID_t& guid, const dds::RemoteEndpoint& reader) override {
+    add(&Process::readers, guid, reader.topic);
   }
   void on_writer_gone(const GUID_t& guid) override { remove(&Process::writers, guid); }
   void on_reader_gone(const GUID_t& guid) override { remove(&Process::readers, guid); }

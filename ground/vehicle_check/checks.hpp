@@ -212,6 +212,13 @@ constexpr Check kRotorsRunning("vehicle_info.rotors_running", "", 0.0, 0.0, "{ru
 // The limits are parts of the expected mass.
 constexpr Check kMass("vehicle_info.mass", "kg", 0.9, 1.1, "{value:.4f} kg", "{expected:g} kg +- 10 %",
                       "another mass than that of the vehicle file {file}: wrong file, or mass in grams");
+constexpr Check kName("vehicle_info.name", "", 0.0, 0.0, "another", "that of the vehicle file");
+constexpr Check kFullBattery("vehicle_info.full_battery", "V", 0.9, 1.1, "{value:.2f} V",
+                             "{full:.2f} V +- 10 %",
+                             "another battery than that of the vehicle file {file}: control does not arm it");
+constexpr Check kEmptyBattery(
+    "vehicle_info.empty_battery", "V", 0.9, 1.1, "{value:.2f} V", "{empty:.2f} V +- 10 %",
+    "another battery than that of the vehicle file {file}: control does not arm it");
 
 // Commands.
 constexpr Check kCommandOff("commands.off", "", 0.0, 0.0, "{turning}", "rotors stand",

@@ -219,8 +219,10 @@ CheckResults check_supply(const VehicleRecording& recording, const plant::Vehicl
 CheckResults check_description(const VehicleRecording& recording, const plant::Vehicle& vehicle) {
   if (!recording.description) return {skipped("vehicle_info.received", "optional, and none arrived")};
   const VehicleDescription& info = *recording.description;
-  const Words words = {
-      {"foreign", info.foreign}, {"name", info.name}, {"file", vehicle.name}, {"expected", vehicle.mass_kg}};
+  const std::vector<double>& open_circuit_v = vehicle.battery.open_circuit_voltage_v;
+  const Words words = {{"foreign", info.foreign},       {"name", info.name},
+                       {"file", vehicle.name},          {"expected", vehicle.mass_kg},
+                       {"full", open_circuit_v.back()}, {"empty", open_circuit_v.front()}};
   if (!info.foreign.empty())
     return {judge_by(kWireVersion, 0.0,
                      "{foreign}: vehicle_info.wire_version must be WIRE_VERSION of VehicleInfo", words)};
@@ -230,9 +232,17 @@ CheckResults check_description(const VehicleRecording& recording, const plant::V
     const bool running = recording.rotors_running.back().sample;
     results.push_back(judge(kRotorsRunning, running ? 1.0 : 0.0, {{"running", running ? "true" : "false"}}));
   }
-  if (info.mass_kg > 0.0)
-    results.push_back(judge(with_limits(kMass, kMass.least * vehicle.mass_kg, kMass.most * vehicle.mass_kg),
-                            info.mass_kg, words));
+  if (!info.name.empty() && info.name != vehicle.name)
+    results.push_back(judge_by(
+        kName, 0.0, "the vehicle is {name}, not {file} of the vehicle file: control does not arm it", words));
+  const auto compare = [&](const Check& check, double reported, double expected) {
+    if (reported > 0.0)
+      results.push_back(
+          judge(with_limits(check, check.least * expected, check.most * expected), reported, words));
+  };
+  compare(kMass, info.mass_kg, vehicle.mass_kg);
+  compare(kFullBattery, info.full_battery_v, open_circuit_v.back());
+  compare(kEmptyBattery, info.empty_battery_v, open_circuit_v.front());
   return results;
 }
 

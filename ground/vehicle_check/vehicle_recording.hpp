@@ -52,7 +52,9 @@ struct VehicleDescription {
   double mass_kg = 0.0;
   double imu_rate_hz = 0.0;
   plant::ControlLevels levels = plant::ControlLevel::kActuators;
-  std::string foreign{};  // it has another wire version, a sentence; empty: not so
+  double full_battery_v = 0.0;   // 0: not reported
+  double empty_battery_v = 0.0;  // likewise
+  std::string foreign{};         // it has another wire version, a sentence; empty: not so
 };
 
 // The vehicle accepts a level at which it closes its inner loops itself.

@@ -11,8 +11,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kStatusPeriod{500};
-constexpr std::chrono::milliseconds kSourceSilence{
-    1500};  // of replies, before those of another process count
+// Replies of another process count once those of the first have ceased for this long.
+constexpr std::chrono::milliseconds kSourceSilence{1500};
 
 }  // namespace
 

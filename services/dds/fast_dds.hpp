@@ -242,6 +242,13 @@ inline EndpointQos endpoint_qos(const eprosima::fastdds::dds::DataReaderQos& qos
 #endif
 }
 
+// A writer or reader of another participant.
+struct RemoteEndpoint {
+  std::string topic;
+  std::string type;  // its name
+  EndpointQos qos;
+};
+
 // Called for the other participants of the domain, and for their writers and readers.
 class DiscoveryListener : public eprosima::fastdds::dds::DomainParticipantListener {
  protected:
@@ -251,9 +258,9 @@ class DiscoveryListener : public eprosima::fastdds::dds::DomainParticipantListen
   virtual void on_participant_gone(const fastrtps::GUID_t& guid, bool said_goodbye) = 0;
   // With security, before or after on_participant(): whether it is who it says.
   virtual void on_authentication(const fastrtps::GUID_t&, bool /*authenticated*/) {}
-  virtual void on_writer(const fastrtps::GUID_t&, const std::string& /*topic*/, const EndpointQos&) {}
+  virtual void on_writer(const fastrtps::GUID_t&, const RemoteEndpoint&) {}
   virtual void on_writer_gone(const fastrtps::GUID_t&) {}
-  virtual void on_reader(const fastrtps::GUID_t&, const std::string& /*topic*/, const EndpointQos&) {}
+  virtual void on_reader(const fastrtps::GUID_t&, const RemoteEndpoint&) {}
   virtual void on_reader_gone(const fastrtps::GUID_t&) {}
 
  private:
@@ -276,8 +283,7 @@ class DiscoveryListener : public eprosima::fastdds::dds::DomainParticipantListen
             info.deadline.period,
             info.liveliness.kind,
             info.liveliness.lease_duration,
-            info.disable_positive_acks.enabled,
-            info.type_name.c_str()};
+            info.disable_positive_acks.enabled};
   }
 
   void on_participant_discovery(Participant*, fastrtps::ParticipantDiscoveryStatus status,
@@ -292,14 +298,16 @@ class DiscoveryListener : public eprosima::fastdds::dds::DomainParticipantListen
                                 const fastrtps::PublicationBuiltinTopicData& info, bool&) final {
     if (is_own(own, info.guid)) return;
     using Status = fastrtps::WriterDiscoveryStatus;
-    if (status == Status::DISCOVERED_WRITER) on_writer(info.guid, info.topic_name.c_str(), qos_of(info));
+    if (status == Status::DISCOVERED_WRITER)
+      on_writer(info.guid, {info.topic_name.c_str(), info.type_name.c_str(), qos_of(info)});
     if (status == Status::REMOVED_WRITER) on_writer_gone(info.guid);
   }
   void on_data_reader_discovery(Participant* own, fastrtps::ReaderDiscoveryStatus status,
                                 const fastrtps::SubscriptionBuiltinTopicData& info, bool&) final {
     if (is_own(own, info.guid)) return;
     using Status = fastrtps::ReaderDiscoveryStatus;
-    if (status == Status::DISCOVERED_READER) on_reader(info.guid, info.topic_name.c_str(), qos_of(info));
+    if (status == Status::DISCOVERED_READER)
+      on_reader(info.guid, {info.topic_name.c_str(), info.type_name.c_str(), qos_of(info)});
     if (status == Status::REMOVED_READER) on_reader_gone(info.guid);
   }
 #else
@@ -307,17 +315,15 @@ class DiscoveryListener : public eprosima::fastdds::dds::DomainParticipantListen
   using DomainParticipantListener::on_publisher_discovery;
   using DomainParticipantListener::on_subscriber_discovery;
 
-  template <class Proxy>
-  static EndpointQos qos_of(const Proxy& info) {
-    const auto& qos = info.m_qos;
+  template <class Qos>
+  static EndpointQos qos_of(const Qos& qos) {
     return {qos.m_reliability.kind,
             qos.m_durability.kind,
             qos.m_ownership.kind,
             qos.m_deadline.period,
             qos.m_liveliness.kind,
             qos.m_liveliness.lease_duration,
-            qos.m_disablePositiveACKs.enabled,
-            info.typeName().c_str()};
+            qos.m_disablePositiveACKs.enabled};
   }
 
   void on_participant_discovery(Participant*, fastrtps::ParticipantDiscoveryInfo&& found) final {
@@ -333,7 +339,7 @@ class DiscoveryListener : public eprosima::fastdds::dds::DomainParticipantListen
     if (is_own(own, info.guid())) return;
     using Info = fastrtps::WriterDiscoveryInfo;
     if (found.status == Info::DISCOVERED_WRITER)
-      on_writer(info.guid(), info.topicName().c_str(), qos_of(info));
+      on_writer(info.guid(), {info.topicName().c_str(), info.typeName().c_str(), qos_of(info.m_qos)});
     if (found.status == Info::REMOVED_WRITER) on_writer_gone(info.guid());
   }
   void on_subscriber_discovery(Participant* own, fastrtps::ReaderDiscoveryInfo&& found) final {
@@ -341,7 +347,7 @@ class DiscoveryListener : public eprosima::fastdds::dds::DomainParticipantListen
     if (is_own(own, info.guid())) return;
     using Info = fastrtps::ReaderDiscoveryInfo;
     if (found.status == Info::DISCOVERED_READER)
-      on_reader(info.guid(), info.topicName().c_str(), qos_of(info));
+      on_reader(info.guid(), {info.topicName().c_str(), info.typeName().c_str(), qos_of(info.m_qos)});
     if (found.status == Info::REMOVED_READER) on_reader_gone(info.guid());
   }
 #endif

@@ -215,8 +215,8 @@ class Participant {
 // One of the processes that publish a topic is heard: that which was first, until it has been silent for this time.
 struct OneSource {
   std::chrono::milliseconds silence;
-  std::function<void()> on_next =
-      {};  // called before the first sample of the next one, in the thread of the callback
+  // Called before the first sample of the next one, in the thread of the callback.
+  std::function<void()> on_next = {};
 };
 
 class Node {
@@ -250,7 +250,7 @@ class Node {
                              Delivery delivery = Delivery::kShared);
 
   std::vector<std::string> topics_seen() const { return participant_.topics_seen(); }
-  // The same sentences, as far as they are of the vehicle.
+  // As Participant::mismatches_seen(), of the topics of the vehicle.
   std::vector<std::string> mismatches_seen() const;
 
   // As Participant::become_source(), for settings.source_of alone. Throws std::logic_error if that is empty.

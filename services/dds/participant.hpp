@@ -70,10 +70,6 @@ struct Participant::Impl final : public DiscoveryListener {
 
     ProcessIdentity identity() const { return {name, announced.host, announced.pid}; }
   };
-  struct RemoteEndpoint {
-    std::string topic;
-    EndpointQos qos;
-  };
   using RemoteEndpoints = std::map<Guid, RemoteEndpoint>;
   struct PeerListener {
     std::string vehicle;
@@ -92,9 +88,9 @@ struct Participant::Impl final : public DiscoveryListener {
                       const std::vector<std::uint8_t>& user_data) override;
   void on_participant_gone(const Guid& guid, bool said_goodbye) override;
   void on_authentication(const Guid& guid, bool authenticated) override;
-  void on_writer(const Guid& guid, const std::string& topic, const EndpointQos& qos) override;
+  void on_writer(const Guid& guid, const RemoteEndpoint& writer) override;
   void on_writer_gone(const Guid& guid) override;
-  void on_reader(const Guid& guid, const std::string& topic, const EndpointQos& qos) override;
+  void on_reader(const Guid& guid, const RemoteEndpoint& reader) override;
   void on_reader_gone(const Guid& guid) override;
   // Fast DDS reports which own reader or writer has a conflict, but not the peer. Logs every known peer
   // endpoint of the topic that does not match.
@@ -107,7 +103,7 @@ struct Participant::Impl final : public DiscoveryListener {
   static void tell(const PeerListener& listener, const PeerEvent& event) noexcept;
   void update_peer(const Guid& guid, Peer peer);  // a known peer may serve more vehicles now
   void drop_peer(const Guid& guid, bool said_goodbye);
-  void add_endpoint(RemoteEndpoints& endpoints, const Guid& guid, RemoteEndpoint endpoint,
+  void add_endpoint(RemoteEndpoints& endpoints, const Guid& guid, const RemoteEndpoint& endpoint,
                     PeerEndpoints::Kind kind);
   const Peer* peer_of(const GuidPrefix& participant) const;
   std::string shared_vehicle(const Peer& peer) const;  // the first vehicle that both serve; empty if none

@@ -41,7 +41,8 @@ std::map<std::string, std::string> types_of_topics() {
 }
 
 // What is wrong with an endpoint of a topic of Swiftlet, "has the type X, expected Y"; empty: nothing, or it is another topic.
-std::string fault_of_endpoint(const std::string& topic, const std::string& type) {
+std::string fault_of(const RemoteEndpoint& endpoint) {
+  const std::string& topic = endpoint.topic;
   static const std::map<std::string, std::string> kTypes = types_of_topics();
   const bool is_of_ros = topic.rfind("rt/", 0) == 0;
   const std::string name = is_of_ros ? topic.substr(3) : topic;
@@ -51,7 +52,7 @@ std::string fault_of_endpoint(const std::string& topic, const std::string& type)
   const auto known = kTypes.find(name.substr(slash + 1));
   if (known == kTypes.end()) return {};
   if (!is_of_ros) return "has it without rt/, expected rt/" + topic;
-  return type.empty() || type == known->second ? "" : "has it as " + type + ", expected " + known->second;
+  return endpoint.type == known->second ? "" : "has it as " + endpoint.type + ", expected " + known->second;
 }
 
 // Anybody may announce itself under any name: logs and terminals get no control characters of it.
@@ -97,7 +98,7 @@ std::vector<std::string> Participant::Impl::mismatches_seen() const {
   }
   for (const RemoteEndpoints* const endpoints : {&writers_, &readers_}) {
     for (const auto& [guid, endpoint] : *endpoints) {
-      const std::string fault = fault_of_endpoint(endpoint.topic, endpoint.qos.type);
+      const std::string fault = fault_of(endpoint);
       if (!fault.empty()) sentences.push_back(endpoint.topic + ": " + process(guid) + " " + fault);
     }
   }
@@ -195,9 +196,9 @@ void Participant::Impl::drop_peer(const Guid& guid, bool said_goodbye) {
   }
 }
 
-void Participant::Impl::on_writer(const Guid& guid, const std::string& topic, const EndpointQos& qos) {
+void Participant::Impl::on_writer(const Guid& guid, const RemoteEndpoint& writer) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
-  add_endpoint(writers_, guid, {topic, qos}, PeerEndpoints::kWriter);
+  add_endpoint(writers_, guid, writer, PeerEndpoints::kWriter);
 }
 
 void Participant::Impl::on_writer_gone(const Guid& guid) {
@@ -205,9 +206,9 @@ void Participant::Impl::on_writer_gone(const Guid& guid) {
   writers_.erase(guid);
 }
 
-void Participant::Impl::on_reader(const Guid& guid, const std::string& topic, const EndpointQos& qos) {
+void Participant::Impl::on_reader(const Guid& guid, const RemoteEndpoint& reader) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
-  add_endpoint(readers_, guid, {topic, qos}, PeerEndpoints::kReader);
+  add_endpoint(readers_, guid, reader, PeerEndpoints::kReader);
 }
 
 void Participant::Impl::on_reader_gone(const Guid& guid) {
@@ -215,11 +216,11 @@ void Participant::Impl::on_reader_gone(const Guid& guid) {
   readers_.erase(guid);
 }
 
-void Participant::Impl::add_endpoint(RemoteEndpoints& endpoints, const Guid& guid, RemoteEndpoint endpoint,
-                                     PeerEndpoints::Kind kind) {
+void Participant::Impl::add_endpoint(RemoteEndpoints& endpoints, const Guid& guid,
+                                     const RemoteEndpoint& endpoint, PeerEndpoints::Kind kind) {
   const auto peer = peers_.find(participant_guid(guid.guidPrefix));
   if (peer != peers_.end()) peer->second.endpoints.known |= kind;
-  endpoints[guid] = std::move(endpoint);
+  endpoints[guid] = endpoint;
 }
 
 const Participant::Impl::Peer* Participant::Impl::peer_of(const GuidPrefix& participant) const {

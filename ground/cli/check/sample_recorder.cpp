@@ -80,6 +80,8 @@ SampleRecorder::SampleRecorder(const dds::NodeSettings& settings)
                               info.mass_kg(),
                               info.imu_rate_hz(),
                               plant::ControlLevels::from_bits(info.control_levels()),
+                              info.full_battery_v(),
+                              info.empty_battery_v(),
                               messages::fault_of_wire_version(info.wire_version(), "the vehicle")};
     recording_.rotors_running.push_back({info.rotors_running(), now_ns()});
   });

@@ -9,7 +9,7 @@
 
 namespace swiftlet::dds {
 
-// The QoS policies of an endpoint that must be compatible with those of its peer, and its type, which must be the same.
+// The QoS policies of an endpoint that must be compatible with those of its peer.
 struct EndpointQos {
   eprosima::fastdds::dds::ReliabilityQosPolicyKind reliability;
   eprosima::fastdds::dds::DurabilityQosPolicyKind durability;
@@ -18,7 +18,6 @@ struct EndpointQos {
   eprosima::fastdds::dds::LivelinessQosPolicyKind liveliness;
   Duration lease;
   bool without_positive_acks = false;
-  std::string type{};  // name; empty: not known; conflicts() does not look at it
 };
 
 // Returns each incompatible policy with both values: "reliability (offered best effort, requested reliable)";

@@ -142,7 +142,6 @@ TEST_F(TakeoffAndLanding, TakeOffEndsIfTheRotorsAreNotReportedToRun) {
 // GIVEN a vehicle that obeys another controller, or none, WHEN it is armed THEN that is not done, and ends after 1 s with that reason; one
 // that obeys after 0.9 s takes off, and not before.
 TEST_F(TakeoffAndLanding, ArmingIsDoneWhenTheVehicleObeys) {
-  inputs_.obeyed = false;
   inputs_.not_obeyed_s = 2.0;
   ASSERT_TRUE(ask(RequestKind::kArm).accepted);
   EXPECT_FALSE(step_until(Mode::kDisarmed, 0.9));
@@ -155,7 +154,6 @@ TEST_F(TakeoffAndLanding, ArmingIsDoneWhenTheVehicleObeys) {
   ASSERT_TRUE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
   EXPECT_FALSE(step_until(Mode::kDisarmed, 0.9));
   EXPECT_EQ(control_setpoint_.control_mode, ControlMode::kIdle);
-  inputs_.obeyed = true;
   inputs_.not_obeyed_s = 0.0;
   step();
   const RequestStatuses& requests = supervisor_.requests();

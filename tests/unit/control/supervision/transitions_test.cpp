@@ -136,7 +136,7 @@ const Row kGrid[] = {
     {Event::kTippedOver, kLand,    ".OOOOOOOOOOO.O", Reason::kTippedOver, condition([](Placed& f) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(1.5, Vector3d::UnitX()); })},
     {Event::kVehicleFault, kLand,  ".OOOOOOOOOOO.O", Reason::kVehicleFault, condition([](Placed& f) { f.inputs_.vehicle_fault_s = 0.5; })},
     {Event::kRotorsNotRunning, kLand, "  D  D        ", Reason::kRotorsNotRunning, lasting(10.1, [](Placed& f) { f.inputs_.rotors_running = false; })},
-    {Event::kNotObeyed, kLand,     " DD  D        ", Reason::kNotObeyed, lasting(1.1, [](Placed& f) { f.inputs_.obeyed = false; f.inputs_.not_obeyed_s = 2.0; })},
+    {Event::kNotObeyed, kLand,     " DD  D        ", Reason::kNotObeyed, lasting(1.1, [](Placed& f) { f.inputs_.not_obeyed_s = 2.0; })},
     {Event::kNoLiftOff, kLand,     "  D  D        ", Reason::kNoLiftOff, lasting(6.0, [](Placed& f) { f.follows_ = false; })},
     {Event::kImpact, kLand,        "..OOOOO OO  .O", Reason::kImpact, condition([](Placed& f) { f.inputs_.specific_force_frd.z() = -120.0; })},
     {Event::kImpact, kLand,        "       D  D   ", Reason::kLanded, condition([](Placed& f) { f.inputs_.specific_force_frd.z() = -120.0; })},

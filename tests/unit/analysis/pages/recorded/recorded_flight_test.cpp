@@ -181,7 +181,7 @@ TEST_F(FlightPage, KnowsMotionCaptureFromTheAttachedSettingsOfTheVehicle) {
   EXPECT_NEAR(bound_mm(1), 3.0 * std::hypot(1.0, 4.0), 1e-9);
 }
 
-// At their times on the axis of the page, which begins at the take-off, and only those that the flight came to.
+// At their times on the axis of the page, which begins at the take-off, and only those that began before its end.
 TEST_F(FlightPage, MarksTheFaultsOfTheAttachedSimulation) {
   {
     FlightFile file(path_);
