@@ -36,8 +36,9 @@ constexpr auto kLastFiguresTimeout = 1500ms;
 constexpr auto kEndTimeout = 2s;
 constexpr auto kResultTimeout = 1s;    // of control_status after mission_status
 constexpr double kLongestStepS = 0.2;  // of this process, between two polls
-constexpr double kSilenceS = 3.0;      // without control_status or motion
-constexpr int kBeforeFlight = -1;      // progress stage; the later stages are the mission's items
+constexpr auto kControlSilence = 1s;
+constexpr double kSilenceAfterExitS = 1.0;  // of a vehicle that is to land after a process has ended
+constexpr int kBeforeFlight = -1;           // progress stage; the later stages are the mission's items
 
 ControlMode mode_of(const View& view) { return static_cast<ControlMode>(view.control.message.mode()); }
 
@@ -66,6 +67,14 @@ std::string missing_peer(const View& view) {
   return {};
 }
 
+// By what control says, or while control is silent, by what the vehicle says.
+bool is_down(const View& view) {
+  const bool is_silent = Clock::now() - view.control.received > kControlSilence;
+  const bool has_stopped =
+      view.vehicle.received > view.control.received && !view.vehicle.message.rotors_running();
+  return rotors_off(mode_of(view)) || (is_silent && has_stopped);
+}
+
 // Simulated time since `since_ns`. The time limits of a flight are in the vehicle's time.
 double simulated_s(const View& view, std::int64_t since_ns) {
   return static_cast<double>(motion_of(view).stamp_ns - since_ns) * 1e-9;
@@ -87,17 +96,23 @@ NetworkTransport::NetworkTransport(const std::shared_ptr<Client>& client, const 
 NetworkTransport::~NetworkTransport() { vehicle_.disable_link_loss_failsafe(); }
 
 // Only time in which this process was running counts: a stalled computer is not the peer's fault.
-bool NetworkTransport::Silence::lasts(std::uint64_t sample_count) {
+bool NetworkTransport::Silence::lasts(std::uint64_t sample_count, double limit_s) {
   const auto now = Clock::now();
   const double step_s = std::min(std::chrono::duration<double>(now - polled_).count(), kLongestStepS);
   polled_ = now;
   lasted_s_ = sample_count == count_ ? lasted_s_ + step_s : 0.0;
   count_ = sample_count;
-  return lasted_s_ > kSilenceS;
+  return lasted_s_ > limit_s;
 }
 
 void NetworkTransport::require_alive() const {
   if (const auto exited_process = watch_.exited_process()) throw simulation::FlightFailure(*exited_process);
+}
+
+// What has ended, and what the others do then: in real time the vehicle lands first, by control or by its own failsafe.
+void NetworkTransport::require_alive_in_flight() {
+  if (lockstep_) return require_alive();
+  if (const auto exited_process = watch_.exited_process()) abandon(*exited_process);
 }
 
 void NetworkTransport::require_no_interrupt() const {
@@ -225,12 +240,12 @@ void NetworkTransport::wait_for_other_vehicles() {
   }
   if (const Result answer = vehicle_.upload(mission_.mission, kTransferTimeout).answer();
       !answer.accepted()) {
-    require_alive();
+    require_alive_in_flight();
     abandon(watch_.interrupts() > 0 ? "interrupted" : "mission refused: " + answer.reason);
   }
   watch_.barrier->ready(lockstep_ ? paused_at_ns_ : runtime::monotonic_ns());
   while (!watch_.barrier->wait_for_all(kStep)) {
-    require_alive();
+    require_alive_in_flight();
     const auto failure = watch_.barrier->failure();
     if (failure || watch_.interrupts() > 0) abandon(failure.value_or("interrupted"));
     progress_.update(kBeforeFlight, "armed, waiting for the other vehicles");
@@ -251,7 +266,7 @@ simulation::MissionTransport::Reply NetworkTransport::start_mission() {
     start.start_ns = start_ns_;
     answer = vehicle_.request(start, kTransferTimeout).answer();
   }
-  require_alive();
+  require_alive_in_flight();
   start_ = answer;
   if (watch_.interrupts() > 0) abandon("interrupted");
   if (answer.accepted() && lockstep_) time_.emplace(client_, paused_at_ns_);
@@ -267,7 +282,7 @@ void NetworkTransport::advance() {
            (view.mission.message.mission_id() == id &&
             view.mission.message.state() == msg::MissionStatus_Constants::COMPLETED);
   });
-  require_alive();
+  require_alive_in_flight();
   const View view = client_.view();
   if (time_) time_->follow(view);
   update_progress(view);
@@ -389,17 +404,24 @@ void NetworkTransport::abandon(const std::string& reason) {
   progress_.say(reason + (in_flight ? "; landing" : "; disarming") +
                 (interrupts_before > 0 ? " (interrupt again to quit at once)" : ""));
   const std::int64_t start_ns = motion_of(client_.view()).stamp_ns;
+  const Clock::time_point began = Clock::now();
   Silence silence;
   Result landing;
   if (waits) landing = land_after_abort();
-  while (!rotors_off(mode_of(client_.view()))) {
-    if (const auto exited_process = watch_.exited_process())
+  while (!is_down(client_.view())) {
+    const auto exited_process = watch_.exited_process();
+    if (exited_process && lockstep_)
       throw simulation::FlightFailure(reason + "; while landing, " + *exited_process);
     if (watch_.interrupts() > std::max(1, interrupts_before))
       throw simulation::FlightFailure(reason + "; quit in flight");
-    if (silence.lasts(motion_of(client_.view()).count))
-      throw simulation::FlightFailure(reason + "; while landing, the vehicle has sent nothing for 3 s");
-    if (simulated_s(client_.view(), start_ns) > FlightSchedule::kLandingTimeoutS)
+    const double silence_s = exited_process ? kSilenceAfterExitS : kSilenceS;
+    if (silence.lasts(client_.view().vehicle.count + motion_of(client_.view()).count, silence_s))
+      throw simulation::FlightFailure(
+          fmt::format("{}; while landing, the vehicle has sent nothing for {:g} s", reason, silence_s));
+    // The stamps of a vehicle without ground truth are those of control.
+    const double lasted_s = exited_process ? std::chrono::duration<double>(Clock::now() - began).count()
+                                           : simulated_s(client_.view(), start_ns);
+    if (lasted_s > FlightSchedule::kLandingTimeoutS)
       throw simulation::FlightFailure(reason + "; the vehicle did not land within 30 s");
     if (mode_of(client_.view()) == ControlMode::kArmed) {
       vehicle_.disarm(kRetryPeriod);
@@ -411,10 +433,13 @@ void NetworkTransport::abandon(const std::string& reason) {
       landing = vehicle_.land(FlightSchedule::kLandingSpeed, kRetryPeriod).answer();
     }
     update_progress(client_.view());
-    client_.wait(kRetryPeriod, [](const View& view) { return rotors_off(mode_of(view)); });
+    client_.wait(kRetryPeriod, is_down);
   }
   wait_for_last_figures();
-  throw simulation::FlightFailure(reason + "; " + simulation::end_of(mode_of(client_.view()), in_flight));
+  const ControlMode last = mode_of(client_.view());
+  throw simulation::FlightFailure(
+      reason + "; " +
+      (rotors_off(last) ? simulation::end_of(last, in_flight) : "the vehicle has stopped its rotors"));
 }
 
 void NetworkTransport::update_progress(const View& view) {

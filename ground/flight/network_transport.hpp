@@ -56,10 +56,12 @@ class NetworkTransport final : public simulation::MissionTransport {
   double vehicle_s() const;
 
  private:
+  static constexpr double kSilenceS = 3.0;  // without control_status or motion
+
   // When samples stop to come.
   class Silence {
    public:
-    bool lasts(std::uint64_t sample_count);
+    bool lasts(std::uint64_t sample_count, double limit_s = kSilenceS);
 
    private:
     Clock::time_point polled_ = Clock::now();
@@ -77,6 +79,7 @@ class NetworkTransport final : public simulation::MissionTransport {
   [[noreturn]] void fail_silent(const std::string& who);
   bool publishes_truth() const;
   void require_alive() const;
+  void require_alive_in_flight();
   void require_no_interrupt() const;
   Result land_after_abort();
   void update_progress(const View& view);

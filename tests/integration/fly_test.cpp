@@ -1,8 +1,10 @@
 // `swiftlet fly` from end to end: real processes, real network.
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -154,8 +156,8 @@ TEST_F(Fly, ADiskThatFillsEndsTheRecordAndNotTheFlight) {
 // A flight in lockstep that is interrupted once it is airborne.
 class FlyInterrupted : public Fly {
  protected:
-  void start(std::vector<std::string> more = {}) {
-    more.insert(more.end(), {"--clock", "lockstep"});
+  void start(std::vector<std::string> more = {}, const std::string& clock = "lockstep") {
+    more.insert(more.end(), {"--clock", clock});
     fly_.emplace("swiftlet", arguments(folder_.write("hover.yaml", kLongMission), more), folder_.path());
     ASSERT_TRUE(eventually([&] { return fly_->errors().find("2/3 waypoint") != std::string::npos; }))
         << all_output(*fly_);
@@ -187,6 +189,23 @@ TEST_P(FlyWithADeadProcess, NamesTheProcessThatDied) {
       << report;
   EXPECT_NE(fly_->errors().find(name), std::string::npos);
   EXPECT_GT(fs::file_size(record() / "flight.mcap"), 10'000U) << "the record so far must be kept";
+  expect_end_without_leftovers();
+}
+
+// The vehicle lands before the processes end: PX4, say, is told to by its bridge.
+TEST_P(FlyWithADeadProcess, LandsFirstInRealTime) {
+  const std::string name = "swiftlet-" + GetParam();
+  start({"--speed", "0.5"}, "realtime");  // beside other tests
+  ASSERT_EQ(kill(child_of(fly_->pid(), name), SIGKILL), 0);
+  ASSERT_EQ(fly_->wait(kStuck), 1) << all_output(*fly_);
+  const std::map<std::string, std::string> ends = {
+      {"plant", "; while landing, the vehicle has sent nothing for 1 s"},
+      {"mocap", "; landed"},
+      {"control", "; the vehicle has stopped its rotors"}};
+  const auto reason = json::parse(fly_->output()).at("reason").get<std::string>();
+  EXPECT_EQ(reason.find(name + " was killed by signal 9 (Killed)"), 0U) << reason;
+  const std::string& end = ends.at(GetParam());
+  EXPECT_EQ(reason.substr(reason.size() - std::min(end.size(), reason.size())), end) << reason;
   expect_end_without_leftovers();
 }
 
