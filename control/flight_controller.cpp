@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "swiftlet/control/design/battery_limits.hpp"
 #include "swiftlet/math/time.hpp"
 
 namespace swiftlet::control {
@@ -17,13 +18,14 @@ void check_battery_limits(const plant::Vehicle& vehicle, const ControlSettings& 
     if (voltage_v > open_circuit_v.front() && voltage_v < open_circuit_v.back()) return;
     char text[192];
     std::snprintf(text, sizeof text,
-                  "%s: failsafe.%s is %.2f, must be above %.2f and below %.2f, the battery of %s",
+                  "%s: failsafe.%s is %.2f, must be above %.2f and below %.2f, the battery of %s, or 0",
                   settings.name.c_str(), name, voltage_v, open_circuit_v.front(), open_circuit_v.back(),
                   vehicle.name.c_str());
     throw std::invalid_argument(text);
   };
-  check("low_battery_voltage_v", settings.failsafe.low_battery_voltage);
-  check("critical_battery_voltage_v", settings.failsafe.critical_battery_voltage);
+  const FailsafeSettings failsafe = with_battery_limits(settings.failsafe, vehicle);
+  check("low_battery_voltage_v", failsafe.low_battery_voltage);
+  check("critical_battery_voltage_v", failsafe.critical_battery_voltage);
 }
 
 ControlDesign flyable_design(const plant::Vehicle& vehicle, const ControlSettings& settings) {
@@ -41,9 +43,9 @@ FlightController::FlightController(const plant::Vehicle& vehicle, const ControlS
 
 FlightController::FlightController(const plant::Vehicle& vehicle, const ControlSettings& settings,
                                    const ControlDesign& design)
-    : failsafe_(settings.failsafe),
+    : failsafe_(with_battery_limits(settings.failsafe, vehicle)),
       observers_(vehicle, settings),
-      supervisor_({settings.limits, settings.arming, settings.failsafe}),
+      supervisor_({settings.limits, settings.arming, failsafe_}),
       laws_(vehicle, settings, design) {}
 
 const plant::VehicleCommand& FlightController::on_imu(const plant::ImuSample& sample) {

@@ -18,35 +18,42 @@
 #include "swiftlet/io/format.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/io/settings/vehicle_writer.hpp"
+#include "swiftlet/io/text_file.hpp"
+#include "swiftlet/record/file/flight_reader.hpp"
+#include "swiftlet/record/mcap/attached_file.hpp"
 
 namespace swiftlet::analysis {
 namespace {
 
 namespace fs = std::filesystem;
 
+// A vehicle file.
 struct Base {
-  fs::path file;
-  bool assumed;  // neither given nor found in a record
+  std::string name;  // as it is said
+  std::string text;
+  fs::path file;  // empty: of a recording
 };
 
-// The base vehicle: --base, else that of the record around the log, else kaylion.
+// --base, else what the recording holds, else vehicle.yaml beside the log. Throws InputError without any.
 Base base_of(const IdentifyFlightOptions& options) {
-  if (!options.base.empty()) return {io::configuration_file(io::kinds::kVehicle, options.base), false};
+  const auto read = [&](const fs::path& file, const std::string& name) {
+    return Base{name, io::read_text_file(file.string()), file};
+  };
+  if (!options.base.empty())
+    return read(io::configuration_file(io::kinds::kVehicle, options.base), options.base);
   const fs::path log = options.logs.front();
-  const fs::path record_vehicle = (fs::is_directory(log) ? log : log.parent_path()) / "vehicle.yaml";
-  if (fs::is_regular_file(record_vehicle)) return {record_vehicle, false};
-  return {io::configuration_file(io::kinds::kVehicle, "kaylion"), true};
-}
-
-FlightIdentificationReport report_begun(const IdentifyFlightOptions& options, const fs::path& base_path,
-                                        bool is_assumed, const plant::Vehicle& base) {
-  FlightIdentificationReport report;
-  report.logs = options.logs;
-  report.base_vehicle = options.base.empty() ? base_path.string() : options.base;
-  if (is_assumed)
-    report.assumptions.push_back("the base vehicle is " + base.name +
-                                 ": --base is not given, and the log is not part of a record");
-  return report;
+  if (fs::is_directory(log) || record::is_mcap(log)) {
+    const record::FlightFile from = record::flight_file(log);
+    const mcap::Reader file(from.file.string());
+    const std::string vehicle =
+        record::recorded_vehicle(file, from.vehicle.empty() ? options.vehicle : from.vehicle);
+    if (const auto text = mcap::attached_file(file, vehicle, "vehicle.yaml"))
+      return {log.string() + "/vehicle.yaml", *text, {}};
+  }
+  const fs::path beside = (fs::is_directory(log) ? log : log.parent_path()) / "vehicle.yaml";
+  if (fs::is_regular_file(beside)) return read(beside, beside.string());
+  throw io::InputError("--base: is needed: " + log.string() +
+                       " does not hold the vehicle file that was flown with");
 }
 
 // Reads the logs and fits the vehicle to them.
@@ -75,7 +82,7 @@ void fit(IdentifyFlightOptions& options, const plant::Vehicle& base, FlightIdent
 }
 
 // Throws if the vehicle is not good enough for a file.
-void write_vehicle(const std::string& out, const fs::path& base_path, const std::string& base_name,
+void write_vehicle(const std::string& out, const Base& base, const std::string& base_name,
                    const FlightIdentificationReport& report) {
   const identification::FlightIdentification& found = report.found;
   if (found.uncertainty.parameters.empty())
@@ -84,7 +91,7 @@ void write_vehicle(const std::string& out, const fs::path& base_path, const std:
     throw io::InputError("the identified vehicle cannot fly: " + broken.key + ": " + broken.message +
                          "; parameters that are not identified are those of " + report.base_vehicle);
   }
-  io::VehicleSources sources = io::load_vehicle_sources(base_path.string());
+  io::VehicleSources sources = io::parse_vehicle_sources(base.text, base.name);
   for (const auto& [key, source] : found.sources) sources[key] = source;
   const std::string text = io::vehicle_text(
       found.vehicle, sources, found.uncertainty,
@@ -111,13 +118,14 @@ int identify_flight(IdentifyFlightOptions options) {
   for (const std::string& log : options.logs) {
     for (const fs::path& file : io::files_of(log)) inputs.push_back(file);
   }
-  const auto [base_path, is_assumed] = base_of(options);
-  if (is_ulog(options.logs.front()))
-    return identify_ulog(options, io::load_vehicle(base_path.string()), base_path.stem().string());
-  inputs.push_back(base_path);
+  const Base from = base_of(options);
+  const plant::Vehicle base = io::parse_vehicle(from.text, from.name);
+  if (is_ulog(options.logs.front())) return identify_ulog(options, base, from.file.stem().string());
+  if (!from.file.empty()) inputs.push_back(from.file);
   io::refuse_overwriting({{"--out", options.out}, {"--report", options.report}}, inputs);
-  const plant::Vehicle base = io::load_vehicle(base_path.string());
-  FlightIdentificationReport report = report_begun(options, base_path, is_assumed, base);
+  FlightIdentificationReport report;
+  report.logs = options.logs;
+  report.base_vehicle = from.name;
   fit(options, base, report);
   if (!options.out.empty())
     report.found.vehicle.name = options.name.empty() ? fs::path(options.out).stem().string() : options.name;
@@ -133,7 +141,7 @@ int identify_flight(IdentifyFlightOptions options) {
     throw std::runtime_error(options.out.empty() ? "the fit did not converge within its bounds"
                                                  : "the fit did not converge within its bounds: " +
                                                        options.out + " is not written");
-  if (!options.out.empty()) write_vehicle(options.out, base_path, base.name, report);
+  if (!options.out.empty()) write_vehicle(options.out, from, base.name, report);
   say_what_was_done(options, report);
   return io::kDone;
 }

@@ -21,7 +21,7 @@ io::Command add_flight_command(runtime::CommandLine identify) {
   app.add_option("--vehicle-name", options->vehicle, "which vehicle of an MCAP file that has several");
   app.add_option("--base", options->base,
                  "base vehicle for parameters that are not identified: a vehicle file, or the name of one in "
-                 "the configuration; default: the record's vehicle, else kaylion")
+                 "the configuration; default: the one in the record")
       .type_name(io::kinds::kVehicle.value);
   app.add_choice("--known", options->fit.known,
                  {{"mass", identification::Known::kMass}, {"thrust", identification::Known::kThrust}},

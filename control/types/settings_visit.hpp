@@ -215,11 +215,15 @@ void visit(FailsafeSettings& s, Visitor& v) {
   v({{"descent_speed", "descent_speed_m_s"}, "m/s", above(0.0), "upper limit of landings"}, s.descent_speed);
   v({"descent_timeout_s", "s", above(0.0), "without position: rotors off"}, s.descent_timeout_s);
   v({"tip_over_tilt_rad", "rad", above(0.0), "rotors off"}, s.tip_over_tilt_rad);
-  v({{"low_battery_voltage", "low_battery_voltage_v"}, "V", at_least(0.0), "land"}, s.low_battery_voltage);
+  v({{"low_battery_voltage", "low_battery_voltage_v"},
+     "V",
+     at_least(0.0),
+     "land; 0: what the battery gives in hover at 5 % of its charge"},
+    s.low_battery_voltage);
   v({{"critical_battery_voltage", "critical_battery_voltage_v"},
      "V",
      between(0.0, s.low_battery_voltage),
-     "land faster"},
+     "land faster; 0: likewise at 3 %"},
     s.critical_battery_voltage);
   v({"battery_delay_s", "s", at_least(0.0), "that the voltage must stay below"}, s.battery_delay_s);
   v({"battery_timeout_s", "s", above(0.0), "without a battery sample: land"}, s.battery_timeout_s);

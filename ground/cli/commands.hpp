@@ -19,7 +19,6 @@ io::Command add_land_command(runtime::CommandLine root);
 io::Command add_hold_command(runtime::CommandLine root);
 io::Command add_stop_command(runtime::CommandLine root);
 io::Command add_mission_command(runtime::CommandLine root);
-io::Command add_mission_fly_command(runtime::CommandLine mission);
 io::Command add_mission_upload_command(runtime::CommandLine mission);
 io::Command add_mission_start_command(runtime::CommandLine mission);
 io::Command add_mission_pause_command(runtime::CommandLine mission);

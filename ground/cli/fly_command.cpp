@@ -9,6 +9,7 @@
 #include "swiftlet/ground/cli/fly_vehicles.hpp"
 #include "swiftlet/ground/client/network_options.hpp"
 #include "swiftlet/ground/flight/launch_configuration.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/text.hpp"
 #include "swiftlet/plant/model/airframe.hpp"
 #include "swiftlet/services/messages/vehicle_names.hpp"
@@ -53,14 +54,18 @@ void require_room(double spacing_m, const plant::Vehicle& vehicle) {
 // Returns one launch configuration per vehicle. A single mission is flown by all vehicles; otherwise the i-th
 // mission belongs to the i-th vehicle.
 std::vector<LaunchConfiguration> plan_flights(const FlyOptions& options,
-                                              const std::vector<std::string>& vehicles) {
+                                              const std::vector<std::string>& vehicles,
+                                              const std::vector<StandingVehicle>& running) {
   const std::vector<std::string> missions = io::split_text(options.mission, ',');
-  require_one_for_each(missions.size(), vehicles);
   std::vector<LaunchConfiguration> plans;
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     FlyOptions one = options;
     one.mission = missions[missions.size() == 1 ? 0 : i];
     one.seed = options.seed + i;
+    if (!running.empty()) {
+      one.vehicle = running[i].files->vehicle();
+      one.control = running[i].files->control();
+    }
     if (vehicles.size() > 1) one.start_ned = start_of(i, vehicles.size(), options.spacing_m, options.per_row);
     plans.push_back(plan_flight(one));
   }
@@ -97,7 +102,11 @@ int fly(const FlyOptions& given) {
   const FlyOptions options = with_px4(given);
   const std::vector<std::string> vehicles = vehicles_of(options);
   check(options, vehicles.size());
-  return fly_vehicles(options, vehicles, plan_flights(options, vehicles));
+  const std::vector<std::string> missions = io::split_text(options.mission, ',');
+  require_one_for_each(missions.size(), vehicles);
+  for (const std::string& mission : missions) (void)io::configuration_file(io::kinds::kMission, mission);
+  const std::vector<StandingVehicle> running = running_vehicles(options, vehicles);
+  return fly_vehicles(options, vehicles, plan_flights(options, vehicles, running), running);
 }
 
 }  // namespace
@@ -130,8 +139,8 @@ io::Command add_fly_command(runtime::CommandLine root, const std::string& versio
                             .range(0, 254)
                             .excludes(attach);
   for (const char* launch_option :
-       {"--vehicle", "--simulation", "--seed", "--imu-rate", "--level", "--odometry", "--radio-delay",
-        "--radio-jitter", "--radio-loss", "--clock", "--speed", "--as-fast-as-possible"}) {
+       {"--vehicle", "--control", "--simulation", "--seed", "--imu-rate", "--level", "--odometry",
+        "--radio-delay", "--radio-jitter", "--radio-loss", "--clock", "--speed", "--as-fast-as-possible"}) {
     attach.excludes(app.option(launch_option));
   }
   for (const char* of_simulation : {"--imu-rate", "--odometry", "--clock", "--speed", "--spacing"})

@@ -12,7 +12,6 @@
 
 #include "swiftlet/ground/cli/live_view.hpp"
 #include "swiftlet/ground/cli/preflight.hpp"
-#include "swiftlet/ground/flight/attached_vehicle.hpp"
 #include "swiftlet/ground/flight/flight_outcome.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/flight/message_record.hpp"
@@ -20,6 +19,8 @@
 #include "swiftlet/ground/flight/process_group.hpp"
 #include "swiftlet/ground/terminal/fleet_progress.hpp"
 #include "swiftlet/io/command_line/command.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/discovery/sole_source.hpp"
 
@@ -92,39 +93,48 @@ void fly_together(std::deque<ProcessFlight>& flights, ProcessGroup& processes, M
   if (fault) std::rethrow_exception(fault);
 }
 
-// Completes the plans with what the running vehicles report. Throws unless they are on the ground and can fly their missions
-// from where they stand. What is not known of one is said.
-void plan_for_running(const dds::NodeSettings& network, const std::vector<std::string>& vehicles,
-                      std::vector<LaunchConfiguration>& plans, const io::FileOptions& reading) {
-  const std::vector<StandingVehicle> standing = require_on_ground(network, vehicles);
-  for (std::size_t i = 0; i < vehicles.size(); ++i) {
-    plans[i].start_ned = standing[i].start_ned.value_or(plans[i].start_ned);
-    const KnownVehicle vehicle = known_vehicle(standing[i].model);
-    if (vehicle.model) {
-      plans[i].planned_duration_s = require_flyable(plans[i], *vehicle.model, reading);
-    } else {
-      plans[i].planned_duration_s = require_flyable(plans[i]);
-      std::fprintf(stderr, "%s: its rotors are not checked: %s\n", vehicles[i].c_str(),
-                   vehicle.unknown.c_str());
-    }
+dds::NodeSettings network_of(const FlyOptions& options) {
+  dds::NodeSettings network = options.network;
+  network.domain = std::max(options.domain, 0);
+  return network;
+}
+
+// Takes what the running vehicles fly with into the plans. Throws unless they can fly their missions from where they stand.
+void take_running(const std::vector<StandingVehicle>& running, const io::FileOptions& reading,
+                  std::vector<LaunchConfiguration>& plans) {
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    LaunchConfiguration& plan = plans[i];
+    plan.start_ned = running[i].start_ned.value_or(plan.start_ned);
+    plan.vehicle_file = running[i].files->vehicle();
+    plan.control_file = running[i].files->control();
+    plan.vehicle = io::load_vehicle(plan.vehicle_file);
+    plan.control = io::load_control_settings(plan.control_file);
+    plan.planned_duration_s = require_flyable(plan, reading);
   }
 }
 
 }  // namespace
 
+std::vector<StandingVehicle> running_vehicles(const FlyOptions& options,
+                                              const std::vector<std::string>& vehicles) {
+  if (options.launch_mode != LaunchMode::kAttached) return {};
+  return require_on_ground(network_of(options), vehicles);
+}
+
 int fly_vehicles(const FlyOptions& options, const std::vector<std::string>& vehicles,
-                 std::vector<LaunchConfiguration> planned, const StartWatch& start_watch) {
+                 std::vector<LaunchConfiguration> planned, const std::vector<StandingVehicle>& running,
+                 const StartWatch& start_watch) {
   Fleet fleet{vehicles, std::move(planned), {}, options.program};
   std::vector<LaunchConfiguration>& plans = fleet.plans;
 
   const bool attached = options.launch_mode == LaunchMode::kAttached;
   std::optional<dds::DomainLock> domain_lock;
   if (options.domain < 0 && !attached) domain_lock.emplace();
-  dds::NodeSettings network = options.network;
-  network.domain = domain_lock ? domain_lock->domain() : std::max(options.domain, 0);
+  dds::NodeSettings network = network_of(options);
+  if (domain_lock) network.domain = domain_lock->domain();
   const bool is_alone = !attached && !options.px4_instance;  // all processes are started here
   network.localhost_only = network.localhost_only || is_alone;
-  if (attached) plan_for_running(network, vehicles, plans, options.reading);
+  if (attached) take_running(running, options.reading, plans);
   if (attached && !options.skip_check) require_sound_vehicles(network, vehicles);
   // In a domain that others may use, the vehicles must not live already.
   std::optional<dds::FlightReservation> reservation;

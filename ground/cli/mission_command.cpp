@@ -63,12 +63,12 @@ io::Command add_mission_clear_command(runtime::CommandLine mission) {
 io::Command add_mission_command(runtime::CommandLine root) {
   const runtime::CommandLine mission = root.add_subcommand("mission", kMissionPurpose);
   mission.require_subcommand(1, 1);
-  mission.footer("example: swiftlet mission check square && swiftlet mission fly square");
+  mission.footer("example: swiftlet mission upload square && swiftlet mission start");
   const std::vector<io::Command> commands = {
-      add_mission_check_command(mission),  add_mission_fly_command(mission),
-      add_mission_upload_command(mission), add_mission_start_command(mission),
-      add_mission_pause_command(mission),  add_mission_resume_command(mission),
-      add_mission_skip_command(mission),   add_mission_clear_command(mission),
+      add_mission_check_command(mission),  add_mission_upload_command(mission),
+      add_mission_start_command(mission),  add_mission_pause_command(mission),
+      add_mission_resume_command(mission), add_mission_skip_command(mission),
+      add_mission_clear_command(mission),
   };
   return {mission, [commands] { return io::run_given(commands); }};
 }

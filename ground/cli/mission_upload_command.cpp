@@ -15,7 +15,7 @@ struct MissionUploadOptions : CommandOptions {
 };
 
 int upload(const MissionUploadOptions& options) {
-  const SentFile sent(options.sent);
+  const SentFile sent(options.sent, options.network, options.timeout());
   const io::MissionFile file = sent.mission();
   Vehicle vehicle(options.network);
   sent.require_flyable(vehicle, file, options.timeout());

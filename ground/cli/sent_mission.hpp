@@ -17,8 +17,8 @@ namespace swiftlet::ground {
 struct SentFileOptions {
   std::string file;
   ReadingOptions reading;
-  std::string control = "motor_lag";
-  std::string vehicle;  // a vehicle file, or the name of one; empty: what the running vehicle reports
+  std::string control,
+      vehicle;  // files, or names of such; empty: those that the running controller flies with
 };
 
 // Adds the file, the options of add_file_options(), --control and --vehicle. `options` must outlive the parsing.
@@ -27,12 +27,13 @@ void add_sent_file_options(runtime::CommandLine app, SentFileOptions& options,
 
 // What is needed to read and check the file.
 struct SentFile {
-  explicit SentFile(const SentFileOptions& options);
+  // Throws std::runtime_error if the controller does not tell within the timeout what the options do not say.
+  SentFile(const SentFileOptions& options, const dds::NodeSettings& network,
+           std::chrono::milliseconds timeout);
 
   io::MissionFile mission() const;
   io::TrajectoryFile trajectory() const;
-  // Throws InputError if the vehicle cannot fly it, by its own dry run, from where it stands. If neither
-  // --vehicle nor the running vehicle says which model it is, it says so and checks all but the rotors.
+  // Throws InputError if the vehicle cannot fly it, by its own dry run, from where it stands.
   void require_flyable(const Vehicle& running, const io::MissionFile& file,
                        std::chrono::milliseconds timeout) const;
   // The same of a trajectory, which the vehicle joins from its motion.
@@ -43,11 +44,10 @@ struct SentFile {
   control::ControlSettings settings;
 
  private:
-  void require_flyable(const Vehicle& running, const io::MissionFile& file,
-                       const CheckConditions& conditions) const;
+  void require_flyable(const io::MissionFile& file, const CheckConditions& conditions) const;
 
   ReadingOptions reading_;
-  std::optional<plant::Vehicle> vehicle_;  // of --vehicle
+  plant::Vehicle vehicle_;
 };
 
 }  // namespace swiftlet::ground

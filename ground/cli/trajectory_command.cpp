@@ -12,7 +12,7 @@ struct TrajectoryOptions : RequestOptions {
 };
 
 int send_trajectory(const TrajectoryOptions& options) {
-  const SentFile sent(options.sent);
+  const SentFile sent(options.sent, options.network, options.timeout());
   const io::TrajectoryFile file = sent.trajectory();
   const control::Trajectory trajectory{0, file.segments};
   return run_request(options, {"trajectory", [&](Vehicle& vehicle) {

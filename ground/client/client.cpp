@@ -163,6 +163,17 @@ void Client::hear_controllers() {
       }));
 }
 
+void Client::hear_files() {
+  subscriptions_.push_back(
+      node_.subscribe<msg::FlownFiles>(messages::topics::kFlownFiles, [this](const msg::FlownFiles& files) {
+        {
+          const std::lock_guard lock(mutex_);
+          view_.files = std::make_shared<const msg::FlownFiles>(files);
+        }
+        changed_.notify_all();
+      }));
+}
+
 View Client::view() const {
   const std::lock_guard lock(mutex_);
   return view_;

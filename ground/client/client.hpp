@@ -53,7 +53,8 @@ struct View {
   std::map<std::string, int> peers;  // number of live processes, by name
   std::string foreign_control;  // the last control_status had another wire version, a sentence; empty: not so
   std::map<std::uint64_t, Latest<msg::ControllerState>>
-      controllers;  // by controller number; filled after hear_controllers()
+      controllers;                               // by controller number; filled after hear_controllers()
+  std::shared_ptr<const msg::FlownFiles> files;  // of the active controller; filled after hear_files()
 };
 
 // Works on messages. Programs that fly a vehicle use Vehicle (ground/client/vehicle.hpp), which is built on
@@ -73,6 +74,7 @@ class Client {
 
   // Fills View::controllers from controller_state, which standbys publish too. Call once, from one thread.
   void hear_controllers();
+  void hear_files();
 
   // Publishes the time up to which a lockstep plant that was started paused may advance. The first call
   // starts the publisher.

@@ -43,10 +43,6 @@ VehicleState state_of(const View& view) {
     state.setpoints = {view.control.message.setpoints_accepted(), view.control.message.setpoints_refused(),
                        view.control.message.setpoint_refusal().c_str()};
   }
-  if (view.vehicle.seen()) {
-    const msg::VehicleInfo& info = view.vehicle.message;
-    state.model = {info.name().c_str(), info.mass_kg(), info.rotor_count()};
-  }
   if (view.estimate.seen()) {
     const msg::Estimate& estimate = view.estimate.message;
     state.stamp_ns = estimate.stamp_ns();

@@ -64,13 +64,6 @@ struct MissionProgress {
   std::string reason;  // why it was aborted
 };
 
-// The vehicle model that the vehicle reported.
-struct ReportedModel {
-  std::string name;
-  double mass_kg = 0.0;
-  int rotor_count = 0;
-};
-
 // The newest state that the vehicle and its controller reported. NaN: not received yet.
 struct VehicleState {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -90,7 +83,6 @@ struct VehicleState {
   double battery_charge = kUnknown;  // 0 empty .. 1 full
   MissionProgress mission;
   SetpointTally setpoints;
-  std::optional<ReportedModel> model;
 };
 
 // Thread-safe. Requests of several threads do not wait for each other.

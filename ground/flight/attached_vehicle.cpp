@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -10,9 +9,7 @@
 
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/client/client.hpp"
-#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/network/interfaces.hpp"
-#include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/services/dds/reach.hpp"
 
 namespace swiftlet::ground {
@@ -22,8 +19,9 @@ using namespace std::chrono_literals;
 using control::Mode;
 
 constexpr auto kDiscoveryTimeout = 5s;
-constexpr double kSameMass = 1e-6;  // relative difference of one mass, read from two copies of a file
+constexpr auto kStartTimeout = 15s;  // of control, beside other processes of the vehicle
 constexpr auto kReportTimeout = 1s;
+constexpr auto kFilesTimeout = 5s;       // latched, sent in fragments
 constexpr auto kMissionTimeout = 500ms;  // mission_status arrives with control_status
 
 bool finds(const View& view, const std::string& process) {
@@ -55,14 +53,10 @@ std::string flight_of(const View& view) {
                      view.mission.message.item_count());
 }
 
-StandingVehicle reported_by(const Client& client) {
-  client.wait(kReportTimeout, [](const View& news) { return news.vehicle.seen() && news.estimate.seen(); });
+StandingVehicle reported_by(Client& client) {
+  StandingVehicle vehicle{std::make_unique<RunningFiles>(client, kFilesTimeout), std::nullopt};
+  client.wait(kReportTimeout, [](const View& news) { return news.estimate.seen(); });
   const View view = client.view();
-  StandingVehicle vehicle;
-  if (view.vehicle.seen()) {
-    const msg::VehicleInfo& info = view.vehicle.message;
-    vehicle.model = ReportedModel{info.name().c_str(), info.mass_kg(), info.rotor_count()};
-  }
   const auto& position_ned = view.estimate.message.position_ned();
   if (view.estimate.seen() && view.control.message.has_pose())
     vehicle.start_ned.emplace(position_ned[0], position_ned[1]);
@@ -71,12 +65,14 @@ StandingVehicle reported_by(const Client& client) {
 
 bool is_on_ground(Mode mode) { return control::rotors_off(mode) || mode == Mode::kArmed; }
 
-StandingVehicle require_on_ground(const Client& client, const dds::NodeSettings& network) {
-  const bool found = client.wait(kDiscoveryTimeout, [](const View& view) { return view.control.seen(); });
+StandingVehicle require_on_ground(Client& client, const dds::NodeSettings& network) {
+  const auto is_found = [](const View& view) { return view.control.seen(); };
+  bool found = client.wait(kDiscoveryTimeout, is_found);
+  if (!found && !finds_nothing(client.view()) && !finds(client.view(), "control"))
+    found = client.wait(kStartTimeout, is_found);
   const View view = client.view();
-  if (!found && (finds_nothing(view) || finds(view, "control")))
-    throw std::runtime_error("looked on " + interfaces_of(network) + ": " + client.no_control());
-  if (!found || is_on_ground(static_cast<Mode>(view.control.message.mode()))) return reported_by(client);
+  if (!found) throw std::runtime_error("looked on " + interfaces_of(network) + ": " + client.no_control());
+  if (is_on_ground(static_cast<Mode>(view.control.message.mode()))) return reported_by(client);
   client.wait(kMissionTimeout, [](const View& news) { return news.mission.seen(); });
   throw std::runtime_error(
       fmt::format("vehicle {} is in flight: {}; wait until it has landed, or end its flight with `swiftlet "
@@ -93,27 +89,10 @@ std::vector<StandingVehicle> require_on_ground(const dds::NodeSettings& network,
   for (const std::string& vehicle : vehicles) {
     dds::NodeSettings settings = network;
     settings.vehicle = vehicle;
-    const Client client(participant, settings);
+    Client client(participant, settings);
     standing.push_back(require_on_ground(client, settings));
   }
   return standing;
-}
-
-KnownVehicle known_vehicle(const std::optional<ReportedModel>& reported) {
-  if (!reported) return {std::nullopt, "it reports no vehicle model"};
-  const std::vector<io::ConfigurationFile> files = io::configuration_files(io::kinds::kVehicle);
-  const auto file = std::find_if(files.begin(), files.end(), [&](const io::ConfigurationFile& candidate) {
-    return candidate.name == reported->name;
-  });
-  if (file == files.end()) return {std::nullopt, "no vehicle file is named " + reported->name};
-  plant::Vehicle vehicle = io::load_vehicle(file->path);
-  if (vehicle.rotor_count() != reported->rotor_count ||
-      std::abs(vehicle.mass_kg - reported->mass_kg) > kSameMass * vehicle.mass_kg)
-    return {std::nullopt,
-            fmt::format("it reports {} rotors and {:.1f} g, but the file of {} has {} and {:.1f} g",
-                        reported->rotor_count, reported->mass_kg * 1e3, reported->name, vehicle.rotor_count(),
-                        vehicle.mass_kg * 1e3)};
-  return {std::move(vehicle), ""};
 }
 
 }  // namespace swiftlet::ground

@@ -20,13 +20,13 @@ std::map<std::string, std::filesystem::path> files_of(const Fleet& fleet) {
     const std::string name = "mission" + mission.extension().string();
     files.emplace(mission == first.mission_file ? name : fleet.vehicles[i] + "/" + name, mission);
   }
-  if (first.launch_mode == LaunchMode::kAttached) return files;  // the running processes have their own
   for (std::size_t i = 0; i < fleet.plans.size(); ++i) {
     const std::filesystem::path& vehicle = fleet.plans[i].vehicle_file;
     files.emplace(vehicle == first.vehicle_file ? "vehicle.yaml" : fleet.vehicles[i] + "/vehicle.yaml",
                   vehicle);
   }
-  files.insert({{"control.yaml", first.control_file}, {"simulation.yaml", first.simulation_file}});
+  files.emplace("control.yaml", first.control_file);
+  if (first.launch_mode != LaunchMode::kAttached) files.emplace("simulation.yaml", first.simulation_file);
   return files;
 }
 
@@ -49,11 +49,11 @@ mcap::Metadata flight_metadata(const Fleet& fleet) {
   mcap::Metadata metadata{"swiftlet/flight",
                           {{"vehicles", fmt::format("{}", fmt::join(fleet.vehicles, ","))},
                            {"missions", fmt::format("{}", fmt::join(missions, ","))}}};
-  if (first.launch_mode == LaunchMode::kAttached) return metadata;  // the running processes have their own
   metadata.values.insert({{"vehicle", first.vehicle.name},
                           {"models", fmt::format("{}", fmt::join(models, ","))},
-                          {"control", first.control.name},
-                          {"simulation", first.simulation_file.stem().string()},
+                          {"control", first.control.name}});
+  if (first.launch_mode == LaunchMode::kAttached) return metadata;  // the running plant has its own settings
+  metadata.values.insert({{"simulation", first.simulation_file.stem().string()},
                           {"seed", std::to_string(first.seed)},
                           {"seeds", fmt::format("{}", fmt::join(seeds, ","))},
                           {"clock", report_of(first).clock},

@@ -18,9 +18,9 @@ void copy_to_record(const fs::path& file, const fs::path& copy) {
 void keep_settings(const LaunchConfiguration& plan) {
   // Keeps its extension: it may have another format.
   copy_to_record(plan.mission_file, plan.folder / ("mission" + plan.mission_file.extension().string()));
-  if (plan.launch_mode == LaunchMode::kAttached) return;
   copy_to_record(plan.control_file, plan.folder / "control.yaml");
   copy_to_record(plan.vehicle_file, plan.folder / "vehicle.yaml");
+  if (plan.launch_mode == LaunchMode::kAttached) return;
   copy_to_record(plan.simulation_file, plan.folder / "simulation.yaml");
 }
 

@@ -5,9 +5,8 @@
 
 namespace swiftlet::ground {
 
-// Copies the mission file into the record's folder, and control.yaml, vehicle.yaml and simulation.yaml unless
-// the flight is attached to running processes, which have their own settings. Throws std::runtime_error if a
-// file cannot be copied.
+// Copies the mission file into the record's folder, control.yaml and vehicle.yaml, and simulation.yaml unless the flight is attached
+// to running processes. Throws std::runtime_error if a file cannot be copied.
 void keep_settings(const LaunchConfiguration& plan);
 
 }  // namespace swiftlet::ground

@@ -178,19 +178,11 @@ class ProcessBuilder {
 
 }  // namespace
 
-double require_flyable(const LaunchConfiguration& plan) {
-  const MissionDryRun flown = dry_run(plan.mission.mission, plan.control, plan.start_ned);
-  if (flown.completed) return flown.duration_s;
-  throw io::InputError(fmt::format("{}: the control service would not complete it: {}",
-                                   plan.mission_file.c_str(), flown.reason));
-}
-
-double require_flyable(const LaunchConfiguration& plan, const plant::Vehicle& vehicle,
-                       const io::FileOptions& reading) {
+double require_flyable(const LaunchConfiguration& plan, const io::FileOptions& reading) {
   const CheckConditions conditions = conditions_of(plan);
-  const MissionCheck check = check_mission(plan.mission, vehicle, plan.control, conditions);
-  const std::string refusal = refusal_with_advice(plan.mission, plan.mission_file.string(), reading, vehicle,
-                                                  plan.control, check, conditions);
+  const MissionCheck check = check_mission(plan.mission, plan.vehicle, plan.control, conditions);
+  const std::string refusal = refusal_with_advice(plan.mission, plan.mission_file.string(), reading,
+                                                  plan.vehicle, plan.control, check, conditions);
   if (!refusal.empty()) throw io::InputError(plan.mission_file.string() + ": " + refusal);
   return check.duration_s;
 }
@@ -257,7 +249,7 @@ void take_mission(const FlyOptions& options, const FlightInputs& given, LaunchCo
   require_takeoff_and_land(plan.mission, plan.mission_file);
   if (plan.launch_mode != LaunchMode::kAttached) {
     plan.planned_duration_s =
-        given.mission ? require_flyable_mission(plan) : require_flyable(plan, plan.vehicle, options.reading);
+        given.mission ? require_flyable_mission(plan) : require_flyable(plan, options.reading);
   }
 }
 

@@ -93,15 +93,12 @@ struct LaunchConfiguration {
 };
 
 // Throws io::ConfigError or InputError if the input is invalid or if the vehicle cannot fly the mission, by a dry run
-// (mission_check.hpp), with what would make it possible. Of kAttached neither vehicle nor place is known yet: the mission is
+// (mission_check.hpp), with what would make it possible. Of kAttached the place is not known yet: the mission is
 // not flown in a dry run, and planned_duration_s is 0. Starts no process and writes no file.
 LaunchConfiguration plan_flight(const FlyOptions& options);
 
-// The duration of the mission of the plan, s, from plan.start_ned. Throws InputError if this vehicle cannot fly it, as above.
-double require_flyable(const LaunchConfiguration& plan, const plant::Vehicle& vehicle,
-                       const io::FileOptions& reading);
-// The same by the dry run alone, which holds for any vehicle.
-double require_flyable(const LaunchConfiguration& plan);
+// The duration of the mission of the plan, s, from plan.start_ned. Throws InputError if its vehicle cannot fly it, as above.
+double require_flyable(const LaunchConfiguration& plan, const io::FileOptions& reading);
 
 // flights/<date-time>-<name>
 std::filesystem::path default_record_folder(const std::string& name);

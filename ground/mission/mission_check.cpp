@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/control/design/battery_limits.hpp"
 #include "swiftlet/math/angles.hpp"
 #include "swiftlet/plant/model/endurance.hpp"
 
@@ -173,15 +174,15 @@ std::string MissionCheck::refusal() const {
 MissionCheck check_mission(const io::MissionFile& file, const plant::Vehicle& vehicle,
                            const control::ControlSettings& settings, const CheckConditions& conditions) {
   const MissionDryRun dry_run = ground::dry_run(file.mission, settings, conditions.start_ned);
-  const double supply_voltage_v = conditions.supply_voltage_v.value_or(settings.failsafe.low_battery_voltage);
+  const double least_voltage_v = control::with_battery_limits(settings.failsafe, vehicle).low_battery_voltage;
+  const double supply_voltage_v = conditions.supply_voltage_v.value_or(least_voltage_v);
   const control::Limits limits = control::tightened(settings.limits, file.mission.bounds);
   MissionCheck check;
   check.reason = dry_run.completed ? "" : dry_run.reason;
   check.duration_s = dry_run.duration_s;
   check.supply_voltage_v = supply_voltage_v;
   if (conditions.state_of_charge)
-    check.endurance_s =
-        plant::hover_endurance_s(vehicle, *conditions.state_of_charge, settings.failsafe.low_battery_voltage);
+    check.endurance_s = plant::hover_endurance_s(vehicle, *conditions.state_of_charge, least_voltage_v);
   for (std::size_t i = 0; i < dry_run.item_starts_s.size(); ++i) {
     const bool last = i + 1 == dry_run.item_starts_s.size();
     const double end_s = last ? dry_run.duration_s : dry_run.item_starts_s[i + 1];

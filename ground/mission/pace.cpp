@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "swiftlet/control/design/battery_limits.hpp"
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/planning/feasibility.hpp"
 #include "swiftlet/io/config_error.hpp"
@@ -66,7 +67,7 @@ class FastestSearch {
   std::string exceeded_motion(const control::Mission& mission) const {
     if (mission.segments.empty()) return "";
     const control::Limits limits = control::tightened(settings_.limits, mission.bounds);
-    const double voltage_v = settings_.failsafe.low_battery_voltage;
+    const double voltage_v = control::with_battery_limits(settings_.failsafe, vehicle_).low_battery_voltage;
     for (const control::WorstDemand& worst :
          control::worst_demands(vehicle_, limits, voltage_v, mission.segments)) {
       const bool of_motion =

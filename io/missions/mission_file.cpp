@@ -199,8 +199,7 @@ TrajectoryFile load_trajectory_file(const std::string& path, const control::Limi
   };
   const auto& items = file.mission.items;
   if (std::count_if(items.begin(), items.end(), is_trajectory) != 1) {
-    throw io::ConfigError(path, 0, "",
-                          "must hold exactly one trajectory; `swiftlet mission fly` flies missions");
+    throw io::ConfigError(path, 0, "", "must hold exactly one trajectory; `swiftlet fly` flies missions");
   }
   return {std::move(file.mission.segments), std::move(file.assumptions)};
 }

@@ -59,7 +59,7 @@ const Form& form_of(const std::string& file, const MotionColumns& columns) {
   if (!columns.has(Motion::kT))
     throw ConfigError(file, 1, "header",
                       "has no column " + header_of(Motion::kT) +
-                          ", must have it; a list of waypoints is flown by `swiftlet mission fly`");
+                          ", must have it; a list of waypoints is flown by `swiftlet fly`");
   std::vector<std::vector<Motion>> more = form->more;
   more.push_back({Motion::kT});
   require_columns(columns, file, form->name, form->needed, more);

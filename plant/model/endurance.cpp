@@ -30,6 +30,10 @@ double loaded_voltage(const BatteryParameters& battery, double state_of_charge, 
 
 }  // namespace
 
+double hover_voltage(const Vehicle& vehicle, double state_of_charge) {
+  return loaded_voltage(vehicle.battery, state_of_charge, hover_power(vehicle));
+}
+
 double hover_endurance_s(const Vehicle& vehicle, double state_of_charge, double least_voltage_v) {
   const BatteryParameters& battery = vehicle.battery;
   const double power_w = hover_power(vehicle);

@@ -5,8 +5,12 @@
 
 namespace swiftlet::plant {
 
-// Seconds of hover from a state of charge, 0 .. 1, on, until the voltage under load, v_s of Eq. (9), falls below least_voltage_v or the
-// battery is empty; 0 if it is below at once. The rotors share m g, Eq. (22) and (25); the ESCs have no loss (esc.hpp).
+// The voltage under load, v_s of Eq. (9), of a hovering vehicle at this state of charge, 0 .. 1, in V; 0 if it cannot hover. The rotors
+// share m g, Eq. (22) and (25); the ESCs have no loss (esc.hpp).
+double hover_voltage(const Vehicle& vehicle, double state_of_charge);
+
+// Seconds of hover from a state of charge on, until hover_voltage() falls below least_voltage_v or the battery is empty; 0 if it is
+// below at once.
 double hover_endurance_s(const Vehicle& vehicle, double state_of_charge, double least_voltage_v);
 
 }  // namespace swiftlet::plant

@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "swiftlet/services/messages/topics.hpp"
+#include "swiftlet/services/dds/payload.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::record {
@@ -28,6 +28,7 @@ bool is_command(const std::string& topic) {
          topic == messages::topics::kTrajectorySetpoint.name;
 }
 bool is_info(const std::string& topic) { return topic == messages::topics::kVehicleInfo.name; }
+bool is_files(const std::string& topic) { return topic == messages::topics::kFlownFiles.name; }
 bool is_pose(const std::string& topic) { return topic == messages::topics::kMocapPose.name; }
 // Samples come for each sample of the IMU, in lockstep hundreds at once.
 bool is_fast(const std::string& topic) {
@@ -100,7 +101,42 @@ void FlightRecorder::add(const mcap::Metadata& metadata) {
 }
 
 void FlightRecorder::add(const mcap::Attachment& attachment) {
-  use_file([&](MessageFile& file) { file.write(attachment); });
+  use_file([&](MessageFile& file) {
+    file.write(attachment);
+    attached_[attachment.name] = attachment.data;
+  });
+}
+
+void FlightRecorder::note_files(const std::string& vehicle, const dds::RawSample& sample) {
+  messages::msg::FlownFiles files;
+  if (!dds::from_payload(sample.payload, sample.size, files)) return;
+  const std::lock_guard<std::mutex> lock(told_mutex_);
+  told_files_[vehicle] = std::move(files);
+}
+
+void FlightRecorder::attach_files() {
+  std::map<std::string, messages::msg::FlownFiles> told;
+  {
+    const std::lock_guard<std::mutex> lock(told_mutex_);
+    told.swap(told_files_);
+  }
+  for (const auto& [vehicle, files] : told) {
+    attach(vehicle, "vehicle.yaml", files.vehicle());
+    attach(vehicle, "control.yaml", files.control());
+  }
+}
+
+void FlightRecorder::attach(const std::string& vehicle, const std::string& name,
+                            const messages::msg::SettingsFile& told) {
+  const std::string content(told.content().begin(), told.content().end());
+  const std::string own_name = vehicle + "/" + name;
+  use_file([&](MessageFile& file) {
+    const std::string& known = attached_.count(own_name) > 0 ? attached_[own_name] : attached_[name];
+    if (content.empty() || content == known) return;
+    const std::int64_t now_ns = runtime::system_ns();
+    file.write(mcap::Attachment{now_ns, now_ns, own_name, "application/yaml", content});
+    attached_[own_name] = content;
+  });
 }
 
 void FlightRecorder::add(const StandardMessage& message, std::int64_t time_ns) {
@@ -150,6 +186,7 @@ void FlightRecorder::receive(Channel& channel, const dds::RawSample& sample) {
     if (settings_.on_motion) settings_.on_motion(vehicle.name, known_ns);
   }
   if (stamp_ns && is_info(channel.name)) vehicle.info_ns = *stamp_ns;
+  if (is_files(channel.name)) note_files(vehicle.name, sample);
   if (settings_.clock == RecordClock::kVehicle) {
     if (stamp_ns && *stamp_ns > vehicle.newest_stamp_ns) vehicle.newest_stamp_ns = *stamp_ns;
     message.log_time_ns = stamp_ns.value_or(vehicle.newest_stamp_ns);
@@ -168,6 +205,7 @@ void FlightRecorder::write_until_stopped() {
     const auto now = std::chrono::steady_clock::now();
     if (now - flushed < kFlushPeriod) continue;
     flushed = now;
+    attach_files();
     use_file([](MessageFile& file) { file.flush(); });
   }
 }
@@ -177,6 +215,7 @@ void FlightRecorder::stop() {
   for (const auto& vehicle : vehicles_) vehicle->subscriptions.clear();  // no sample comes any more
   stopping_ = true;
   writer_.join();
+  attach_files();
   write_counts();
   use_file([](MessageFile& file) { file.close(); });
 }

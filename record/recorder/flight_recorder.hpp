@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -19,6 +20,7 @@
 #include "swiftlet/record/recorder/gap_counter.hpp"
 #include "swiftlet/record/recorder/sample_queue.hpp"
 #include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/messages/topics.hpp"
 
 namespace swiftlet::record {
 
@@ -41,7 +43,8 @@ struct RecorderTotals {
   std::uint64_t file_bytes = 0;
 };
 
-// The threads that receive only copy into a bounded queue; one thread writes. Everything older than a second is in the
+// The files that a controller flies with are attached as VEHICLE/vehicle.yaml and VEHICLE/control.yaml when it tells them, unless an
+// attachment has the same content already. The threads that receive only copy into a bounded queue; one thread writes. Everything older than a second is in the
 // file, however the process ends.
 class FlightRecorder {
  public:
@@ -74,6 +77,9 @@ class FlightRecorder {
   template <class T>
   void subscribe(Vehicle& vehicle, const messages::Topic<T>& topic);
   void receive(Channel& channel, const dds::RawSample& sample);
+  void note_files(const std::string& vehicle, const dds::RawSample& sample);
+  void attach_files();
+  void attach(const std::string& vehicle, const std::string& name, const messages::msg::SettingsFile& told);
   void write_until_stopped();
   void write_counts();
   template <class Work>
@@ -81,6 +87,10 @@ class FlightRecorder {
 
   const RecorderSettings settings_;
   const dds::Participant participant_;
+  std::map<std::string, std::string> attached_;  // content by name; guarded by mutex_
+  std::mutex told_mutex_;
+  std::map<std::string, messages::msg::FlownFiles>
+      told_files_;  // by vehicle, not attached yet; guarded by told_mutex_
   SampleQueue queue_;
   mutable std::mutex mutex_;  // guards file_ and fault_; held while a batch is written
   MessageFile file_;

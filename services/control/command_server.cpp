@@ -4,6 +4,7 @@
 #include <tuple>
 #include <utility>
 
+#include "swiftlet/control/design/battery_limits.hpp"
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/planning/feasibility.hpp"
 #include "swiftlet/services/control/arrivals.hpp"
@@ -77,7 +78,7 @@ CommandServer::CommandServer(InnerLoop& loop, const plant::Vehicle& vehicle,
     : loop_(loop),
       vehicle_(vehicle),
       limits_(settings.limits),
-      low_battery_voltage_(settings.failsafe.low_battery_voltage),
+      low_battery_voltage_(control::with_battery_limits(settings.failsafe, vehicle).low_battery_voltage),
       designer_(std::move(designer)),
       wake_(wake),
       gains_in_force_(designer_.initial()) {}

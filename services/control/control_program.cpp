@@ -13,6 +13,7 @@
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/fixed_settings.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/services/control/flown_files.hpp"
 #include "swiftlet/services/control/hosted_control.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/node_options.hpp"
@@ -68,10 +69,13 @@ void add_options(runtime::CommandLine app, Options& options) {
 void run(const Options& options) {
   const std::vector<std::string> names = messages::vehicles_of_list(options.node.vehicle);
   ControllerSettings settings;
-  settings.vehicle = io::load_vehicle(io::configuration_file(io::kinds::kVehicle, options.vehicle));
+  const std::string vehicle_file = io::configuration_file(io::kinds::kVehicle, options.vehicle);
+  settings.vehicle = io::load_vehicle(vehicle_file);
   const std::string settings_file = io::configuration_file(io::kinds::kControl, options.control);
   settings.control = io::load_control_settings(settings_file);
   settings.fixed = io::load_fixed_settings(settings_file);
+  settings.files =
+      flown_files(std::string("swiftlet-control ") + runtime::version_text(), vehicle_file, settings_file);
   settings.failover_priority = options.failover_priority;
   settings.level = options.level;
   settings.clock = options.clock;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "swiftlet/control/design/battery_limits.hpp"
 #include "swiftlet/services/control/failover.hpp"
 #include "swiftlet/services/control/lockstep_driver.hpp"
 #include "swiftlet/services/control/realtime_driver.hpp"
@@ -28,6 +29,7 @@ constexpr double kVehicleClockStands_s = 0.5;
 
 // The battery is sampled at 10 Hz only. Well below battery_timeout_s, so that a restarted vehicle is heard in time.
 constexpr auto kBatterySourceSilence = 1000ms;
+constexpr auto kInfoSourceSilence = 2500ms;  // of vehicle_info, which comes once a second
 
 }  // namespace
 
@@ -40,8 +42,8 @@ ControlService::ControlService(const plant::Vehicle& vehicle, const control::Con
       clock_(clock),
       loop_(vehicle, settings),
       command_server_(loop_, vehicle, settings, GainDesigner(vehicle, settings, std::move(fixed)), wake_),
-      telemetry_(loop_, command_server_, settings.failsafe, node, controller_,
-                 control::observed_rotors(vehicle.motor.time_constant_s, settings)),
+      telemetry_(loop_, command_server_, control::with_battery_limits(settings.failsafe, vehicle), node,
+                 controller_, control::observed_rotors(vehicle.motor.time_constant_s, settings)),
       commands_(node, vehicle.rotor_count()),
       rotor_count_(vehicle.rotor_count()),
       wanted_level_(level),
@@ -94,7 +96,8 @@ void ControlService::subscribe_sensors(dds::Node& node) {
 void ControlService::subscribe(dds::Node& node) {
   subscribe_sensors(node);
   subscriptions_.push_back(node.subscribe<msg::VehicleInfo>(
-      topics::kVehicleInfo, [this](const auto& message) { on_vehicle_info(message); }));
+      topics::kVehicleInfo, [this](const auto& message) { on_vehicle_info(message); }, Delivery::kShared,
+      dds::OneSource{kInfoSourceSilence}));
   subscriptions_.push_back(node.subscribe<msg::Setpoint>(
       topics::kSetpoint, [this](const auto& message) { put(message, loop_.setpoint, setpoint_faults_); }));
   subscriptions_.push_back(node.subscribe<msg::GroundLink>(

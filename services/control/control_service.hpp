@@ -57,6 +57,7 @@ class ControlService {
   // Lockstep: true if another controller commands the vehicle too.
   bool has_rival() const { return driver_->has_rival(); }
 
+  bool active() const { return command_server_.active(); }
   const Snapshot& last() const { return telemetry_.last(); }  // once run() has returned
 
  private:

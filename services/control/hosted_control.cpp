@@ -11,12 +11,23 @@ HostedControl::HostedControl(const dds::Participant& participant, const std::str
                              const ControllerSettings& settings)
     : HostedVehicle(name),
       node_(participant, name, [this](const std::string& fault) { fail(fault); }),
+      files_(settings.files),
       service_(settings.vehicle, settings.control, settings.failover_priority, node_, settings.realtime,
                settings.clock, settings.fixed, settings.level) {
   dds::log_peers(node_);
 }
 
+// A standby has no last sample: late joiners hear of the files of the active controller only.
+void HostedControl::tell_files() {
+  if (service_.active() == has_told_files_) return;
+  has_told_files_ = service_.active();
+  files_out_ = has_told_files_ ? node_.publish(messages::topics::kFlownFiles)
+                               : dds::Publisher<messages::msg::FlownFiles>();
+  if (has_told_files_) files_out_.publish(files_);
+}
+
 void HostedControl::attend() {
+  tell_files();
   if (service_.has_rival())
     throw std::runtime_error("lockstep: another controller commands this vehicle; only one is allowed");
 }

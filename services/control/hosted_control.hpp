@@ -23,6 +23,7 @@ struct ControllerSettings {
   std::optional<plant::ControlLevel> level;  // nullopt: the lowest that the vehicle accepts
   runtime::Clock clock = runtime::Clock::kRealtime;
   runtime::RealtimeSettings realtime;
+  messages::msg::FlownFiles files;  // of vehicle and control
 };
 
 class HostedControl final : public runtime::HostedVehicle {
@@ -36,7 +37,12 @@ class HostedControl final : public runtime::HostedVehicle {
   void log_end() override;
 
  private:
+  void tell_files();
+
   dds::Node node_;
+  const messages::msg::FlownFiles files_;
+  dds::Publisher<messages::msg::FlownFiles> files_out_;  // while it is active
+  bool has_told_files_ = false;
   ControlService service_;
 };
 

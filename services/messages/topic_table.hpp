@@ -33,5 +33,6 @@
   TOPIC(ControlSettings, "control_settings", Request, roles::kGround)                      \
   TOPIC_OF(Mission, FlownMission, "flown_mission", LatchedLarge, roles::kControl)          \
   TOPIC_OF(Trajectory, FlownTrajectory, "flown_trajectory", LatchedLarge, roles::kControl) \
+  TOPIC(FlownFiles, "flown_files", LatchedLarge, roles::kControl)                          \
   TOPIC(CommandAck, "command_ack", Reply, roles::kControl)
 // clang-format on

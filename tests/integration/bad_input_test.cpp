@@ -179,7 +179,7 @@ TEST_F(BadInput, OnlineCommands) {
     EXPECT_NE(result.errors.find(sentence), std::string::npos) << result.errors;
   };
   refuses({"goto", "1"}, "y is required\nUsage: swiftlet goto [OPTIONS] x y [z]\n");
-  refuses({"mission", "fly"}, "file is required\nUsage: swiftlet mission fly [OPTIONS] file\n");
+  refuses({"mission", "upload"}, "file is required\nUsage: swiftlet mission upload [OPTIONS] file\n");
   refuses({"goto", "1", "2"}, "goto: needs either z (down: negative is up) or --height");
   refuses({"goto", "1", "0", "0.1"}, "goto: z = +0.100 m is below the ground, as z points down (NED)");
   refuses({"goto", "1", "0", "-1", "--yaw", "90"},

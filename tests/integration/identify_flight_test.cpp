@@ -101,18 +101,24 @@ TEST_F(IdentifyFlight, RefusesInvalidLogs) {
       "t [s],acc_x [g],acc_y [g],acc_z [g],p [rad/s],q [rad/s],r [rad/s],m1 [1],m2 [1],m3 [1],m4 [1]\n";
   std::string still = head;
   for (int i = 0; i < 200; ++i) still += std::to_string(0.01 * i) + ",0,0,1,0,0,0,0,0,0,0\n";
-  const ProgramResult rotors_off = run({"identify", "flight", folder_.write("still.csv", still)});
+  const ProgramResult rotors_off =
+      run({"identify", "flight", folder_.write("still.csv", still), "--base", "kaylion"});
   EXPECT_EQ(rotors_off.exit_code, 2);
   EXPECT_NE(rotors_off.errors.find("still.csv: the rotors never ran"), std::string::npos)
       << rotors_off.errors;
-  const ProgramResult missing = run({"identify", "flight", in_folder("nowhere.csv")});
+  const ProgramResult no_vehicle = run({"identify", "flight", in_folder("still.csv")});
+  EXPECT_EQ(no_vehicle.exit_code, 2);
+  EXPECT_NE(no_vehicle.errors.find("--base: is needed: " + in_folder("still.csv")), std::string::npos)
+      << no_vehicle.errors;
+  const ProgramResult missing = run({"identify", "flight", in_folder("nowhere.csv"), "--base", "kaylion"});
   EXPECT_EQ(missing.exit_code, 2);
   EXPECT_NE(missing.errors.find("nowhere.csv: cannot be read"), std::string::npos) << missing.errors;
   const ProgramResult no_log = run({"identify", "flight", folder_.path()});
   EXPECT_EQ(no_log.exit_code, 2);
   EXPECT_NE(no_log.errors.find(": holds no flight.mcap, is not the record of a flight"), std::string::npos)
       << no_log.errors;
-  const ProgramResult unit = run({"identify", "flight", folder_.write("unit.csv", "t,acc_x [g]\n0,0\n")});
+  const ProgramResult unit =
+      run({"identify", "flight", folder_.write("unit.csv", "t,acc_x [g]\n0,0\n"), "--base", "kaylion"});
   EXPECT_EQ(unit.exit_code, 2);
   EXPECT_NE(unit.errors.find("has the column t without a unit"), std::string::npos) << unit.errors;
 }

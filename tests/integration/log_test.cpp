@@ -11,6 +11,7 @@
 
 #include "swiftlet/io/mocap/room.hpp"
 #include "swiftlet/math/time.hpp"
+#include "swiftlet/record/mcap/attached_file.hpp"
 #include "swiftlet/record/mcap/reader.hpp"
 #include "tests/integration/recorded_log.hpp"
 #include "tests/support/eventually.hpp"
@@ -90,8 +91,14 @@ TEST_F(Log, HoldsEveryMessageOfAFlight) {
   const mcap::Reader of_flight(path("record/flight.mcap"), mcap::Access::kScanned);
   EXPECT_TRUE(of_flight.finished());
   EXPECT_EQ(gaps_in(heads_of(of_flight).at("/kl1/imu")), lost_of(of_flight, "/kl1/imu"));
-  ASSERT_EQ(of_flight.attachments().size(), 1U) << "the running processes have the other files";
-  EXPECT_EQ(of_flight.attachments()[0].name, "mission.yaml");
+  EXPECT_TRUE(mcap::attached_file(of_flight, "kl1", "mission.yaml"));
+  for (const mcap::Reader* const one : {&recorded, &of_flight}) {
+    const auto vehicle = mcap::attached_file(*one, "kl1", "vehicle.yaml");
+    ASSERT_TRUE(vehicle) << "control tells the files that it flies with";
+    EXPECT_NE(vehicle->find("name: kaylion"), std::string::npos);
+    EXPECT_TRUE(mcap::attached_file(*one, "kl1", "control.yaml"));
+  }
+  EXPECT_EQ(of_flight.attachments().size(), 3U) << "each once";
   const auto& imu = heads.at("/kl1/imu");
   EXPECT_EQ(gaps_in(imu), lost_of(recorded, "/kl1/imu")) << recorder->output();
   EXPECT_GT(imu.size(), 2000U);

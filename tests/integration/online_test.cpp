@@ -155,20 +155,25 @@ TEST_F(Online, InterruptEndsTheSearchForAVehicle) {
   }
 }
 
-// GIVEN `swiftlet mission fly` WHEN the mission completes, is interrupted at the tool, or ended by another one THEN it says so.
-TEST_F(OnlineFlight, MissionFlySaysHowTheMissionEnds) {
+// GIVEN `swiftlet mission start` WHEN the mission completes, is interrupted at the tool, or ended by another one THEN it says so.
+TEST_F(OnlineFlight, MissionStartSaysHowTheMissionEnds) {
   const std::string hop = folder_.write("hop.yaml",
                                         "frame: enu\ntolerance_m: 0.1\nitems:\n"
                                         "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8}\n"
                                         "  - {kind: waypoint, position_m: [0.4, 0, 0.6], speed_m_s: 0.8}\n"
                                         "  - {kind: land, speed_m_s: 0.8}\n");
-  const ProgramResult unarmed = swiftlet({"mission", "fly", hop});
+  const auto upload = [&](const std::string& file) {
+    const ProgramResult sent = swiftlet({"mission", "upload", file});
+    ASSERT_EQ(sent.exit_code, 0) << sent.errors;
+  };
+  ASSERT_NO_FATAL_FAILURE(upload(hop));
+  const ProgramResult unarmed = swiftlet({"mission", "start"});
   EXPECT_EQ(unarmed.exit_code, 1);
-  EXPECT_EQ(unarmed.errors, "swiftlet: mission hop: not armed; run `swiftlet arm` first\n");
+  EXPECT_EQ(unarmed.errors, "swiftlet: mission start: not armed; run `swiftlet arm` first\n");
   ASSERT_NO_FATAL_FAILURE(arm());
-  const ProgramResult flown = swiftlet({"mission", "fly", hop, "--json"});
+  const ProgramResult flown = swiftlet({"mission", "start", "--json"});
   EXPECT_EQ(flown.exit_code, 0) << flown.errors;
-  EXPECT_EQ(json::parse(flown.output), json({{"mission", "hop"}, {"accepted", true}, {"completed", true}}));
+  EXPECT_EQ(json::parse(flown.output).at("done"), true) << flown.output;
   EXPECT_TRUE(contains(flown.errors, "2/3")) << "no progress shown: " << flown.errors;
   const json landed = status();
   EXPECT_EQ(landed.at("mode"), "disarmed");
@@ -180,9 +185,10 @@ TEST_F(OnlineFlight, MissionFlySaysHowTheMissionEnds) {
                     "frame: ned\ntolerance_m: 0.1\nends: hovering\nitems:\n"
                     "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8}\n"
                     "  - {kind: waypoint, position_m: [2, 0.4, -0.6], speed_m_s: 0.02}\n");
+  ASSERT_NO_FATAL_FAILURE(upload(walk));
   {
     ASSERT_NO_FATAL_FAILURE(arm());
-    Program mission = begin({"mission", "fly", walk});
+    Program mission = begin({"mission", "start"});
     ASSERT_TRUE(eventually([&] { return contains(mission.errors(), "2/2"); })) << mission.errors();
     mission.signal(SIGINT);
     EXPECT_EQ(mission.wait(kStuck), 1);
@@ -192,12 +198,11 @@ TEST_F(OnlineFlight, MissionFlySaysHowTheMissionEnds) {
     land();
   }
   ASSERT_NO_FATAL_FAILURE(arm());
-  Program mission = begin({"mission", "fly", walk});
+  Program mission = begin({"mission", "start"});
   ASSERT_TRUE(reaches("in the air", [](const VehicleState& now) { return now.airborne; }));
   expect_accepted({"land"});
   EXPECT_EQ(mission.wait(kStuck), 1);
-  EXPECT_TRUE(contains(mission.errors(),
-                       "swiftlet: mission walk: mission interrupted: another ground tool sent land"))
+  EXPECT_TRUE(contains(mission.errors(), "swiftlet: mission start: canceled by a newer request: land"))
       << mission.errors();
   ASSERT_TRUE(reaches_mode(Mode::kDisarmed));
 }
@@ -317,6 +322,15 @@ TEST_F(AttachedFlight, FliesOnlyFromTheGroundAndLeavesTheVehicleToAToolThatTakes
   EXPECT_EQ(report.at("completed"), true);
   EXPECT_EQ(report.at("vehicle"), "kaylion");
   EXPECT_LT(report.at("rms_3d_m"), 0.01);
+  const auto text_of = [](const fs::path& settings) {
+    std::ifstream in(settings);
+    return std::string{std::istreambuf_iterator<char>(in), {}};
+  };
+  EXPECT_EQ(text_of(folder_.path() / "hop" / "vehicle.yaml"),
+            text_of(in_source("config/vehicles/kaylion.yaml")))
+      << "the file that control flies with";
+  EXPECT_EQ(text_of(folder_.path() / "hop" / "control.yaml"),
+            text_of(in_source("config/control/motor_lag.yaml")));
 
   Program fly = begin(attach(hover_, "hover"));
   ASSERT_TRUE(reaches_place(0.0, 0.0, -0.5));

@@ -28,7 +28,7 @@ DEBIAN_PYTHON = "/usr/bin/python3"  # with Debian's python3-rosidl
 PAGE = ROOT / "docs" / "interoperability.md"
 HEARD_IN_FLIGHT = {
     "imu", "actuator_command", "controller_state", "mocap_pose", "rotor_speeds", "battery", "estimate", "reference", "ground_truth",
-    "control_status", "mission_status", "vehicle_info", "flown_mission", "flown_trajectory", "command_ack"}
+    "control_status", "mission_status", "vehicle_info", "flown_mission", "flown_trajectory", "flown_files", "command_ack"}
 SENT_IN_FLIGHT = {"command", "mission", "trajectory", "setpoint", "simulation_clock", "ground_link"}
 # By vehicle: the level at which it is commanded, and the topics that such a vehicle adds.
 LEVELS = {"kl1": ("rates", {"rates_setpoint", "clock_request", "clock_reply", "clock_status", "control_settings"}),

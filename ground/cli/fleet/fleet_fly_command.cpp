@@ -80,7 +80,8 @@ int fly_fleet(const FleetFlyOptions& options) {
         "leaves its path, is not waited for\n",
         check.fleet.name.c_str());
   }
-  return fly_vehicles(options.flight, names, std::move(plans), watch);
+  return fly_vehicles(options.flight, names, std::move(plans), running_vehicles(options.flight, names),
+                      watch);
 }
 
 }  // namespace

@@ -361,9 +361,12 @@ TEST(FlightController, RefusesTheBatteryOfAnotherNumberOfCells) {
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(error.what(),
                  "motor_lag: failsafe.low_battery_voltage_v is 3.30, must be above 5.30 and below 8.38, the "
-                 "battery of "
-                 "lab25");
+                 "battery of lab25, or 0");
   }
+  ControlSettings of_the_battery = settings("motor_lag");
+  of_the_battery.failsafe.low_battery_voltage = 0.0;
+  of_the_battery.failsafe.critical_battery_voltage = 0.0;
+  EXPECT_NO_THROW(FlightController(two_cells, of_the_battery));
   ControlSettings never = settings("motor_lag");
   never.failsafe.critical_battery_voltage = 2.65;
   EXPECT_THROW(FlightController(kaylion(), never), std::invalid_argument);

@@ -109,7 +109,7 @@ TEST(LoadTrajectoryFile, AddsNeitherTakeOffNorLanding) {
               load_trajectory_file(tests::in_source("config/missions/square.yaml"), control::Limits());
             }),
             tests::in_source("config/missions/square.yaml") +
-                ": must hold exactly one trajectory; `swiftlet mission fly` flies missions");
+                ": must hold exactly one trajectory; `swiftlet fly` flies missions");
 }
 
 TEST(CsvFrame, OfAFileThatNamesNoneIsThatOfTheOption) {

@@ -116,9 +116,9 @@ TEST(SetpointRows, AssumeEnuPositionsWithoutUnits) {
 TEST(SetpointRows, RefuseInvalidColumnsAndRows) {
   EXPECT_EQ(refusal("t [s],x_ned [m],y_ned [m]"),
             "s.csv:1: header: has no column z [m], must have x [m], y [m] and z [m]");
-  EXPECT_EQ(refusal("x_ned [m],y_ned [m],z_ned [m]"),
-            "s.csv:1: header: has no column t [s], must have it; a list of waypoints is flown by `swiftlet "
-            "mission fly`");
+  EXPECT_EQ(
+      refusal("x_ned [m],y_ned [m],z_ned [m]"),
+      "s.csv:1: header: has no column t [s], must have it; a list of waypoints is flown by `swiftlet fly`");
   EXPECT_EQ(
       refusal("t [s],x_ned [ft],y_ned [m],z_ned [m]"),
       "s.csv:1: header: has the column x_ned [ft] with an unknown unit, must be x_ned [m] or x_ned [cm] or "

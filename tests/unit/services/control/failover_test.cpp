@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/services/control/takeover.hpp"
 #include "tests/unit/services/control/failover_vehicle.hpp"
 
 namespace swiftlet::services::failover_test {
@@ -359,6 +360,20 @@ TEST(Failover, TermsRiseWithEachTakeover) {
     ASSERT_EQ(vehicle.active(), 1);
   }
   EXPECT_LE(vehicle.longest_gap_ns(), Failover::kPatienceNs + 3 * kPeriodNs);
+}
+
+// A controller that is started when the one before it has ended, beside a vehicle on the ground.
+TEST(Takeover, OfAVehicleThatStandsLongIsCalledNone) {
+  Takeover takeover;
+  takeover.silence_ns = 7'802'000'000;
+  takeover.obeyed = true;
+  takeover.longest_silence_ns = 7'802'000'000;
+  EXPECT_EQ(to_string(takeover),
+            "commands the vehicle, which has had no command for 7.8 s; the vehicle obeyed after 7802 ms");
+  takeover.silence_ns = 120'000'000;
+  EXPECT_EQ(
+      to_string(takeover).find("takes over without the state of the flight: 120 ms without a new command"),
+      0U);
 }
 
 }  // namespace swiftlet::services::failover_test

@@ -415,5 +415,15 @@ inline msg::VehicleInfo example() {
   message.empty_battery_v(2.65);
   return message;
 }
+template <>
+inline msg::FlownFiles example() {
+  msg::FlownFiles message;
+  message.program() = "swiftlet-control 0.1.0";
+  message.vehicle().sha256() = std::string(64, 'a');
+  message.vehicle().content().assign(65536, 'v');  // maximum length
+  message.control().sha256() = std::string(64, 'b');
+  message.control().content() = {'n', ':', ' ', '1'};
+  return message;
+}
 
 }  // namespace swiftlet::messages::fixtures
