@@ -55,8 +55,8 @@ std::string text(const nlohmann::ordered_json& report, const char* key) {
 }
 
 std::vector<Row> figures(const std::vector<RecordedFlight>& flights) {
-  std::vector<Row> rows(8);
-  const std::array heads = {"flight", "mission",   "vehicle",     "control",
+  std::vector<Row> rows(9);
+  const std::array heads = {"flight", "mission",   "vehicle",     "control",     "level",
                             "seed",   "completed", "RMS 3-D, mm", "peak 3-D, mm"};
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].emplace_back(heads[i]);
   for (const RecordedFlight& flight : flights) {
@@ -64,10 +64,11 @@ std::vector<Row> figures(const std::vector<RecordedFlight>& flights) {
     rows[1].push_back(text(flight.report, "mission"));
     rows[2].push_back(text(flight.report, "vehicle"));
     rows[3].push_back(text(flight.report, "control"));
-    rows[4].push_back(text(flight.report, "seed"));
-    rows[5].push_back(flight.report.value("completed", false) ? "yes" : "NO");
-    rows[6].push_back(millimetres(flight.report, "rms_3d_m"));
-    rows[7].push_back(millimetres(flight.report, "peak_3d_m"));
+    rows[4].push_back(text(flight.report, "level"));
+    rows[5].push_back(text(flight.report, "seed"));
+    rows[6].push_back(flight.report.value("completed", false) ? "yes" : "NO");
+    rows[7].push_back(millimetres(flight.report, "rms_3d_m"));
+    rows[8].push_back(millimetres(flight.report, "peak_3d_m"));
   }
   return rows;
 }

@@ -4,15 +4,20 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <utility>
+
+#include <fmt/ranges.h>
 
 #include "swiftlet/io/command_line/command.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/flat_yaml.hpp"
 #include "swiftlet/io/text.hpp"
 #include "swiftlet/io/text_file.hpp"
+#include "swiftlet/plant/model/control_level.hpp"
 #include "swiftlet/record/evaluation.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
 #include "swiftlet/record/mcap/attached_file.hpp"
+#include "swiftlet/services/messages/topics.hpp"
 
 namespace swiftlet::analysis {
 namespace {
@@ -36,6 +41,25 @@ std::string element_of(const std::map<std::string, std::string>& metadata, const
   return at < elements.size() ? elements[at] : "";
 }
 
+// At which the vehicle was commanded: by the topics of the commands. Several are joined by commas.
+std::string levels_of(const mcap::Reader& file, const std::string& vehicle) {
+  namespace topics = messages::topics;
+  using plant::ControlLevel;
+  const std::array<std::pair<const char*, ControlLevel>, 4> commands = {
+      {{topics::kActuatorCommand.name, ControlLevel::kActuators},
+       {topics::kRatesSetpoint.name, ControlLevel::kRates},
+       {topics::kAttitudeSetpoint.name, ControlLevel::kAttitude},
+       {topics::kTrajectorySetpoint.name, ControlLevel::kTrajectory}}};
+  std::vector<std::string> levels;
+  for (const auto& [id, count] : file.statistics().messages_by_channel) {
+    for (const auto& [topic, level] : commands) {
+      if (count > 0 && file.channels().at(id).topic == "/" + vehicle + "/" + topic)
+        levels.emplace_back(plant::to_string(level));
+    }
+  }
+  return fmt::format("{}", fmt::join(levels, ","));
+}
+
 nlohmann::ordered_json report_of(const mcap::Reader& file, const std::string& vehicle,
                                  const record::Flight& flight) {
   const std::map<std::string, std::string> metadata = record::metadata_of(file, "swiftlet/flight");
@@ -55,6 +79,7 @@ nlohmann::ordered_json report_of(const mcap::Reader& file, const std::string& ve
   const std::string mission = element_of(metadata, "missions", vehicle);
   if (!mission.empty()) json["mission"] = mission;
   json["vehicle_name"] = vehicle;
+  json["level"] = levels_of(file, vehicle);
   json["record"] = file.name();
   json["duration_s"] = flown.duration_s;
   json["matched_samples"] = flown.errors.matched;

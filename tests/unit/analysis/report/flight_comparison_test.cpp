@@ -48,13 +48,14 @@ class FlightComparison : public testing::Test {
     return flight;
   }
   // An MCAP file with a message of each vehicle.
-  void write_file(const std::string& name, const std::vector<std::string>& vehicles) {
+  void write_file(const std::string& name, const std::vector<std::string>& vehicles,
+                  const std::string& topic = "empty") {
     std::filesystem::create_directories((folder_.path() / name).parent_path());
     mcap::Writer file(folder_.path() / name, {});
     const auto schema = file.add_schema("swiftlet_msgs/msg/Empty", "ros2msg", "int64 stamp_ns\n");
     const std::array<std::uint8_t, 12> payload = {0, 1};
     for (const std::string& vehicle : vehicles)
-      file.write(mcap::Message{file.add_channel("/" + vehicle + "/empty", schema, "cdr", {}),
+      file.write(mcap::Message{file.add_channel("/" + vehicle + "/" + topic, schema, "cdr", {}),
                                1,
                                1,
                                1,
@@ -113,6 +114,16 @@ TEST_F(FlightComparison, OfAFileSaysThatNoMissionWasFlown) {
   const std::vector<RecordedFlight> flights = load_record(folder_.path() / "hover.mcap");
   ASSERT_EQ(names(flights), std::vector<std::string>{"hover.mcap"});
   EXPECT_EQ(flights[0].report["reason"], "no mission was flown");
+  EXPECT_EQ(flights[0].report["level"], "") << "no command";
+}
+
+TEST_F(FlightComparison, ShowsTheLevelOfEachFlight) {
+  write_file("a.mcap", {"kl1"}, "rates_setpoint");
+  write_file("b.mcap", {"kl1"}, "attitude_setpoint");
+  std::vector<RecordedFlight> flights = load_record(folder_.path() / "a.mcap");
+  flights.push_back(load_record(folder_.path() / "b.mcap").front());
+  EXPECT_NE(comparison_table(flights).find("level         rates   attitude\n"), std::string::npos)
+      << comparison_table(flights);
 }
 
 TEST_F(FlightComparison, RefusesWhatHoldsNoFlight) {
