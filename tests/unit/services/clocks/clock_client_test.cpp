@@ -1,7 +1,6 @@
 // A process asks the vehicle for its clock.
 #include "swiftlet/services/clocks/clock_client.hpp"
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -67,33 +66,6 @@ TEST_F(Clocks, AreTranslatedAlthoughAStrangerAsksInTheNameOfTheClient) {
     client.ask_if_due();
     return client.to_vehicle(own_ns()).has_value();
   }));
-}
-
-// GIVEN a second process of the vehicle, whose clock is another WHEN both answer THEN the clock stays that of the first.
-TEST_F(Clocks, AreThoseOfTheProcessThatAnsweredFirst) {
-  const ClockServer server(vehicle_, [] { return own_ns() + kOffset_ns; });
-  ClockClient client(asking_, own_ns);
-  const auto ask = [&] {
-    client.ask_if_due();
-    return client.to_vehicle(0).has_value();
-  };
-  ASSERT_TRUE(eventually(ask));
-  dds::Node second_vehicle(swiftlet::tests::settings_of("plant", lock_));
-  std::atomic<int> answered{0};
-  const ClockServer second(second_vehicle, [&] {
-    ++answered;
-    return own_ns() + 2 * kOffset_ns;
-  });
-  std::int64_t furthest_ns = 0;
-  ASSERT_TRUE(eventually([&] {
-    client.ask_if_due();
-    const std::int64_t stamp_ns = own_ns();
-    const auto vehicle_ns = client.to_vehicle(stamp_ns);
-    if (vehicle_ns) furthest_ns = std::max(furthest_ns, std::abs(*vehicle_ns - stamp_ns - kOffset_ns));
-    return answered > 40;
-  }));
-  EXPECT_LT(furthest_ns, kLongestExchangeNs);
-  EXPECT_TRUE(client.to_vehicle(0).has_value()) << "it is not in doubt";
 }
 
 // GIVEN a vehicle's clock that does not run at the first request THEN that is not answered, and the next one is.

@@ -1,5 +1,5 @@
-// A separate process for the tests: joins a domain as "peer", receives requests, publishes its status and actuator
-// commands until its standard input is closed, then leaves.
+// A separate process for the tests: joins a domain as "peer", receives requests, answers clock_request with zeros, publishes its
+// status and actuator commands until its standard input is closed, then leaves.
 //   dds_peer DOMAIN
 // With "isolated" as DOMAIN, it enters a new network namespace, checks that two nodes discover each other
 // there, and exits with 0, or with 77 if it lacks the permission.
@@ -61,6 +61,15 @@ int run_peer(int domain) {
   Node node(settings);
   const Subscription requests = node.subscribe<messages::msg::Command>(messages::topics::kCommand,
                                                                        [](const messages::msg::Command&) {});
+  auto replies = node.publish(messages::topics::kClockReply);
+  const Subscription clock_requests = node.subscribe<messages::msg::ClockRequest>(
+      messages::topics::kClockRequest, [&](const messages::msg::ClockRequest& request) {
+        messages::msg::ClockReply reply;
+        reply.client(request.client());
+        reply.sequence_number(request.sequence_number());
+        reply.sent_ns(request.sent_ns());
+        replies.publish(reply);
+      });
   auto state = node.publish(messages::topics::kControlStatus);
   state.publish(messages::fixtures::example<messages::msg::ControlStatus>());
   auto commands = node.publish(messages::topics::kActuatorCommand);

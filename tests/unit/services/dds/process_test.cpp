@@ -17,6 +17,8 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/services/clocks/clock_client.hpp"
+#include "swiftlet/services/clocks/clock_server.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "tests/support/eventually.hpp"
@@ -143,6 +145,36 @@ TEST_F(Peers, TheNextSourceIsTold) {
   const PeerProcess second = start();
   ASSERT_TRUE(told.wait_for_count(3));
   EXPECT_EQ(told.items(), (std::vector<std::string>{"sample", "next", "sample"}));
+}
+
+// GIVEN a vehicle and a second process of its name, whose clock stands at 0 WHEN both answer THEN the clock stays the vehicle's.
+TEST_F(Peers, DoNotSetTheClockThatTheVehicleToldFirst) {
+  const auto own_ns = [] { return std::chrono::steady_clock::now().time_since_epoch() / 1ns; };
+  constexpr std::int64_t kOffset_ns = 1'000'000'000'000;
+  NodeSettings named = settings();
+  named.name = "plant";
+  Node vehicle(named);
+  const clocks::ClockServer server(vehicle, [&] { return own_ns() + kOffset_ns; });
+  clocks::ClockClient client(node_, own_ns);
+  ASSERT_TRUE(eventually([&] {
+    client.ask_if_due();
+    return client.to_vehicle(0).has_value();
+  }));
+  std::atomic<int> zeros{0};
+  const auto replies = node_.subscribe<messages::msg::ClockReply>(
+      messages::topics::kClockReply,
+      [&](const messages::msg::ClockReply& reply) { zeros += reply.received_ns() == 0; });
+  const PeerProcess peer = start();
+  std::int64_t furthest_ns = 0;
+  ASSERT_TRUE(eventually([&] {
+    client.ask_if_due();
+    const std::int64_t stamp_ns = own_ns();
+    if (const auto vehicle_ns = client.to_vehicle(stamp_ns))
+      furthest_ns = std::max(furthest_ns, std::abs(*vehicle_ns - stamp_ns - kOffset_ns));
+    return zeros > 20;
+  }));
+  EXPECT_LT(furthest_ns, clocks::kLongestExchangeNs);
+  EXPECT_TRUE(client.to_vehicle(0).has_value()) << "it is not in doubt";
 }
 
 // GIVEN a peer WHEN it stands still for longer than its lease THEN it is received again for as long as it runs. WHEN it dies THEN
