@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
+#include "swiftlet/services/dds/reach.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -89,6 +90,7 @@ void judge_hosts(const NetworkFacts& facts, std::vector<NetworkFinding>& found) 
     if (host.clock_steps > 0)
       found.push_back({false, "the clock of " + name + " stepped while it was measured: something sets it"});
   }
+  if (!facts.refused_keys.empty()) return;  // the peers may be silent for want of a key
   for (const std::string& peer : facts.probe.silent_peers)
     found.push_back(
         {false, "peer " + peer + " did not answer: run `swiftlet doctor network` there at the same time; " +
@@ -102,12 +104,15 @@ std::vector<NetworkFinding> findings(const NetworkFacts& facts) {
   judge_interfaces(facts, found);
   judge_multicast(facts, found);
   judge_hosts(facts, found);
+  // Beside processes that are found, they may be those of others.
+  for (const std::string& refused : facts.refused_keys) found.push_back({facts.processes.empty(), refused});
   for (const std::string& mismatch : facts.mismatches) found.push_back({true, mismatch});
-  if (facts.processes.empty() && facts.probe.hosts.empty())
+  if (facts.processes.empty() && facts.probe.hosts.empty() && facts.refused_keys.empty())
     found.push_back(
-        {true, fmt::format("nobody answers in domain {}: no process, and no `swiftlet doctor network` on "
-                           "another host",
-                           facts.settings.domain)});
+        {true, fmt::format("nobody answers in domain {}{}: no process, and no `swiftlet doctor network` on "
+                           "another host; {}",
+                           facts.settings.domain, dds::search_text(facts.settings),
+                           dds::search_advice(facts.settings, {}))});
   std::stable_partition(found.begin(), found.end(), [](const NetworkFinding& it) { return it.is_fault; });
   return found;
 }
