@@ -26,7 +26,9 @@ void judge_interfaces(const NetworkFacts& facts, std::vector<NetworkFinding>& fo
   const bool reaches_others = std::any_of(facts.interfaces.begin(), facts.interfaces.end(),
                                           [](const io::Interface& it) { return !it.is_loopback; });
   if (!reaches_others && !facts.settings.on_loopback())
-    found.push_back({true, "no interface to other hosts is up: they cannot be reached"});
+    found.push_back({true,
+                     "no IPv4 address on an interface to other hosts that is up: they cannot be reached; "
+                     "IPv6 is not used"});
   for (const io::Interface& it : facts.interfaces) {
     if (it.mtu_bytes > 0 && it.mtu_bytes < kUsualMtu_bytes)
       found.push_back(

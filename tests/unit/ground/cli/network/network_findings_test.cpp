@@ -109,7 +109,8 @@ TEST(NetworkFindings, AreFaultsWithoutInterfaceOrAnswer) {
       ": no process, and no `swiftlet doctor network` on another host; check that it runs, with this domain "
       "(--domain, ROS_DOMAIN_ID) and the key of this process (--network-key, --security)";
   EXPECT_EQ(faults(facts), (std::vector<std::string>{
-                               "no interface to other hosts is up: they cannot be reached",
+                               "no IPv4 address on an interface to other hosts that is up: they cannot be "
+                               "reached; IPv6 is not used",
                                "nobody answers in domain 5" + nobody +
                                    "; in a network without multicast give --peer or --discovery-server"}));
   facts.settings.open_network = false;
