@@ -21,6 +21,7 @@ using simulation::VectorEnvironment;
 // Another thread may call it while a step has released the GIL.
 struct HoverEnvironments : VectorEnvironment {
   using VectorEnvironment::VectorEnvironment;
+  HoverEnvironments(const HoverEnvironments& other) : VectorEnvironment(other) {}
   std::mutex in_use;
 };
 
@@ -58,23 +59,30 @@ py::array_t<double> observations(const VectorEnvironment& of) {
   return out;
 }
 
-py::array_t<double> reset(HoverEnvironments& self, const std::optional<Array<std::uint64_t>>& seeds) {
+using Flags = std::optional<Array<bool>>;
+
+// Null if none are given.
+const bool* flags_of(const Flags& flags, const VectorEnvironment& of) {
+  if (flags && static_cast<std::size_t>(flags->size()) != of.count())
+    refuse("chosen must have shape (" + std::to_string(of.count()) + ",)");
+  return flags ? flags->data() : nullptr;
+}
+
+py::array_t<double> reset(HoverEnvironments& self, const std::optional<Array<std::uint64_t>>& seeds,
+                          const Flags& chosen) {
   const InUse use(self.in_use);
   if (seeds && static_cast<std::size_t>(seeds->size()) != self.count())
     refuse("seeds must have shape (" + std::to_string(self.count()) + ",)");
   {
     const std::uint64_t* const data = seeds ? seeds->data() : nullptr;
+    const bool* const flags = flags_of(chosen, self);
     const py::gil_scoped_release without_gil;
-    if (data != nullptr) {
-      self.reset(data);
-    } else {
-      self.reset();
-    }
+    self.reset(data, flags);
   }
   return observations(self);
 }
 
-py::tuple step(HoverEnvironments& self, const Array<double>& actions) {
+py::tuple step(HoverEnvironments& self, const Array<double>& actions, const Flags& chosen) {
   const InUse use(self.in_use);
   const std::size_t size = self.bounds().low.size();
   if (actions.ndim() != 2 || static_cast<std::size_t>(actions.shape(0)) != self.count() ||
@@ -91,6 +99,7 @@ py::tuple step(HoverEnvironments& self, const Array<double>& actions) {
   py::array_t<bool> terminated(rows), truncated(rows);
   VectorEnvironment::Step buffers;
   buffers.actions = actions.data();
+  buffers.chosen = flags_of(chosen, self);
   buffers.observations = seen.mutable_data();
   buffers.final_observations = last.mutable_data();
   buffers.rewards = rewards.mutable_data();
@@ -148,12 +157,20 @@ void add_environments(py::module_& module) {
       .def_property_readonly(
           "action_high", [](const HoverEnvironments& self) { return array_of(self.bounds().high); },
           "Shape (actions,): the upper bounds of an action.")
-      .def("reset", &reset, "seeds"_a = py::none(),
-           "seeds: (count,), of which the first episodes begin; without it the next episode of each. Returns "
-           "the "
-           "observations, shape (count, observation_size).")
-      .def("step", &step, "actions"_a,
-           "actions: (count, actions). Returns observations, rewards, terminated, truncated, and the last "
+      .def(
+          "__deepcopy__",
+          [](HoverEnvironments& self, const py::dict&) {
+            const InUse use(self.in_use);
+            return std::make_unique<HoverEnvironments>(self);
+          },
+          "memo"_a, "With the state of the episodes.")
+      .def("reset", &reset, "seeds"_a = py::none(), "chosen"_a = py::none(),
+           "seeds: (count,), of which the first episodes begin; without it the next episode of each. chosen: "
+           "(count,), which environments; without it all. Returns the observations, shape (count, "
+           "observation_size).")
+      .def("step", &step, "actions"_a, "chosen"_a = py::none(),
+           "actions: (count, actions). chosen: (count,), which environments; others are only observed. "
+           "Returns observations, rewards, terminated, truncated, and the last "
            "observations of "
            "the episodes that ended, of which the next one has begun; zero elsewhere.");
 }

@@ -28,7 +28,7 @@ def array(match):
 def python_type(text, is_argument):
     """A type as pybind11 writes it, in the words of typing. Arguments are converted from anything like an array."""
     text = text.replace("swiftlet._core.", "")
-    text = re.sub(r"numpy\.ndarray\[numpy\.(\w+)(?:\[[^\]]*\])?(?:, flags\.\w+)*\]",
+    text = re.sub(r"numpy\.ndarray\[(?:numpy\.)?(\w+)(?:\[[^\]]*\])?(?:, flags\.\w+)*\]",
                   "ArrayLike" if is_argument else array, text)
     text = text.replace("numpy.ndarray", "NDArray[Any]")
     # Lists of fixed size, as older and newer versions of pybind11 write them.

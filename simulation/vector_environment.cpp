@@ -17,10 +17,18 @@ VectorEnvironment::VectorEnvironment(const World& nominal, const HoverTask& task
                                 std::to_string(kMostThreads));
   environments_.reserve(count);
   for (std::size_t i = 0; i < count; ++i) environments_.emplace_back(nominal, task, dispersion);
-  threads_.reserve(std::min(count, threads) - 1);
+  start_threads(std::min(count, threads));
+}
+
+VectorEnvironment::VectorEnvironment(const VectorEnvironment& other)
+    : environments_(other.environments_), observation_size_(other.observation_size_), parts_(1) {
+  start_threads(other.parts_);
+}
+
+void VectorEnvironment::start_threads(std::size_t parts) {
+  threads_.reserve(parts - 1);
   try {
-    for (; parts_ < std::min(count, threads); ++parts_)
-      threads_.emplace_back([this, part = parts_] { work(part); });
+    for (; parts_ < parts; ++parts_) threads_.emplace_back([this, part = parts_] { work(part); });
   } catch (const std::exception&) {  // the system starts no more
   }
 }
@@ -34,12 +42,11 @@ VectorEnvironment::~VectorEnvironment() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-void VectorEnvironment::reset(const std::uint64_t* seeds) {
-  for_all([&](std::size_t i) { environments_[i].reset(seeds[i]); });
-}
-
-void VectorEnvironment::reset() {
-  for_all([&](std::size_t i) { environments_[i].reset(); });
+void VectorEnvironment::reset(const std::uint64_t* seeds, const bool* chosen) {
+  for_all([&](std::size_t i) {
+    if (chosen != nullptr && !chosen[i]) return;
+    seeds == nullptr ? environments_[i].reset() : environments_[i].reset(seeds[i]);
+  });
 }
 
 void VectorEnvironment::step(const Step& step) {
@@ -50,7 +57,9 @@ void VectorEnvironment::step(std::size_t index, const Step& step) {
   HoverEnvironment& environment = environments_[index];
   double* const observation = step.observations + index * observation_size_;
   double* const last = step.final_observations + index * observation_size_;
-  const auto outcome = environment.step(step.actions + index * bounds().low.size());
+  const bool steps = step.chosen == nullptr || step.chosen[index];
+  const auto outcome =
+      !steps ? HoverEnvironment::Outcome() : environment.step(step.actions + index * bounds().low.size());
   step.rewards[index] = outcome.reward;
   step.terminated[index] = outcome.terminated;
   step.truncated[index] = outcome.truncated;

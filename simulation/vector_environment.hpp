@@ -24,19 +24,19 @@ class VectorEnvironment {
   VectorEnvironment(const World& nominal, const HoverTask& task, const Dispersion& dispersion,
                     std::size_t count, std::size_t threads);
   ~VectorEnvironment();
-  VectorEnvironment(const VectorEnvironment&) = delete;
+  VectorEnvironment(
+      const VectorEnvironment& other);  // with the state of its episodes, and threads of its own
   VectorEnvironment& operator=(const VectorEnvironment&) = delete;
 
   std::size_t count() const { return environments_.size(); }
   std::size_t observation_size() const { return observation_size_; }
   const ActionBounds& bounds() const { return environments_.front().bounds(); }
 
-  // Begins the first episode of a seed for each environment. seeds: count() of them.
-  void reset(const std::uint64_t* seeds);
-  // Begins the next episode of all environments.
-  void reset();
+  // Begins the first episode of a seed for each environment, or the next one of its seed. seeds: count() of them, or null.
+  // chosen: count() flags, which environments; null: all.
+  void reset(const std::uint64_t* seeds = nullptr, const bool* chosen = nullptr);
 
-  // Row by row in the order of the environments; all but `actions` are outputs.
+  // Row by row in the order of the environments; all but `actions` and `chosen` are outputs.
   struct Step {
     const double* actions = nullptr;       // count() x bounds().low.size(), all finite
     double* observations = nullptr;        // count() x observation_size()
@@ -44,6 +44,7 @@ class VectorEnvironment {
     bool* terminated = nullptr;            // count()
     bool* truncated = nullptr;             // count()
     double* final_observations = nullptr;  // as observations; where an episode ended, its last one, else 0
+    const bool* chosen = nullptr;  // count(): others are only observed, and rewarded with 0; null: all
   };
   // An environment whose episode ends begins the next one within the step: its row of `observations` is the first of
   // that. Call reset(seeds) before. Throws as draw() does.
@@ -52,6 +53,7 @@ class VectorEnvironment {
   void observe(double* observations) const;
 
  private:
+  void start_threads(std::size_t parts);
   void step(std::size_t index, const Step& step);
   void for_all(const std::function<void(std::size_t index)>& use);
   void run_part(std::size_t part);

@@ -77,7 +77,15 @@ struct Result {
   ThrustScale scale;
   std::string missing;
   bool ends_early = false;
+  std::vector<ulog::Loss> losses;
 };
+
+std::string text_of(const ulog::Loss& loss) {
+  if (loss.bytes == 0)
+    return fmt::format("PX4 could not log from {:.3f} s to {:.3f} s", loss.from_s, loss.until_s);
+  return fmt::format("{} bytes at byte {} are no messages: nothing is read from {:.3f} s to {:.3f} s",
+                     loss.bytes, loss.at, loss.from_s, loss.until_s);
+}
 
 std::string table_of(const Result& result, const plant::Vehicle& base, const std::string& base_name) {
   const ThrustScale& scale = result.scale;
@@ -101,6 +109,7 @@ std::string table_of(const Result& result, const plant::Vehicle& base, const std
       scale.supply_voltage_v > 0.0 ? fmt::format("{:.2f} V", scale.supply_voltage_v) : "its nominal voltage",
       scale.hover_throttle / scale.curve_throttle, scale.curve_slope_n);
   text += "  not identifiable    " + result.missing + "\n";
+  for (const ulog::Loss& loss : result.losses) text += "  lost                " + text_of(loss) + "\n";
   if (result.ends_early) text += "  the log ends within a message: it is read up to there\n";
   return text;
 }
@@ -122,6 +131,9 @@ nlohmann::ordered_json json_of(const Result& result) {
     json["slope_n"] = scale.slope_n;
     json["slope_half_width_95_n"] = k95 * scale.slope_deviation;
   }
+  json["lost"] = nlohmann::ordered_json::array();
+  for (const ulog::Loss& loss : result.losses)
+    json["lost"].push_back({{"bytes", loss.bytes}, {"from_s", loss.from_s}, {"until_s", loss.until_s}});
   return json;
 }
 
@@ -144,7 +156,7 @@ int identify_ulog(const IdentifyFlightOptions& options, const plant::Vehicle& ba
     if (!is_ulog(file)) throw io::InputError(file + ": is no log of PX4, as " + options.logs.front() + " is");
     const std::string bytes = io::read_text_file(file);
     const ulog::Log log(bytes, file);
-    Result result{file, {}, missing_of(log), log.ends_early()};
+    Result result{file, {}, missing_of(log), log.ends_early(), log.losses()};
     try {
       result.scale = identification::fit_thrust_scale(record_of(log, options), base);
     } catch (const identification::BadData& fault) {

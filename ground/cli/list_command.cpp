@@ -44,8 +44,7 @@ std::uint64_t poses(const View& view) {
 }
 
 // Discovers vehicle names for half of the time, then receives the topics of each vehicle for the other half.
-std::vector<Found> discover(const VehicleListOptions& options) {
-  const Context context(options.network);
+std::vector<Found> discover(const Context& context, const VehicleListOptions& options) {
   std::this_thread::sleep_for(to_milliseconds(0.5 * options.look_s));
   std::map<std::string, std::unique_ptr<Client>> clients;
   for (const std::string& name : context.discovered_vehicles()) {
@@ -111,7 +110,8 @@ void print(const std::vector<Found>& vehicles) {
 }
 
 int list_vehicles(const VehicleListOptions& options) {
-  const std::vector<Found> vehicles = discover(options);
+  const Context context(options.network);
+  const std::vector<Found> vehicles = discover(context, options);
   if (options.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const Found& vehicle : vehicles) json.push_back(to_json(vehicle));
@@ -122,11 +122,9 @@ int list_vehicles(const VehicleListOptions& options) {
     print(vehicles);
   }
   if (!vehicles.empty()) return io::kDone;
-  std::fprintf(
-      stderr,
-      "swiftlet: list: no vehicle found in domain %d within %.1f s%s; check that it runs and that the domain "
-      "is right (--domain, ROS_DOMAIN_ID)\n",
-      options.network.domain, options.look_s, dds::search_text(options.network).c_str());
+  std::fprintf(stderr, "swiftlet: list: no vehicle found in domain %d within %.1f s%s; %s\n",
+               options.network.domain, options.look_s, dds::search_text(options.network).c_str(),
+               dds::search_advice(options.network, context.participant().refused_keys()).c_str());
   return io::kFailed;
 }
 

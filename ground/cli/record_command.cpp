@@ -129,7 +129,8 @@ int record(const RecordOptions& options) {
   fault = recorder.fault();
   if (!fault && totals.received == 0)
     fault = "no message was received in domain " + std::to_string(options.network.domain) +
-            dds::search_text(options.network);
+            dds::search_text(options.network) + "; " +
+            dds::search_advice(options.network, context.participant().refused_keys());
   print(options, totals, recorded_s, fault);
   if (fault) std::fprintf(stderr, "swiftlet: record: %s\n", fault->c_str());
   return fault ? io::kFailed : io::kDone;

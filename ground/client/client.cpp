@@ -7,6 +7,7 @@
 #include "swiftlet/control/estimation/estimator.hpp"
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/client/discovery.hpp"
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/services/dds/reach.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/messages/wire_version.hpp"
@@ -352,8 +353,12 @@ std::string Client::no_control() const {
   std::vector<std::string> others = vehicles_of(topics);
   others.erase(std::remove(others.begin(), others.end(), settings_.vehicle), others.end());
   if (!others.empty()) return text + "; other vehicles found: " + listed(others) + " (--vehicle-name)";
-  if (!seen && own.empty()) text += "; is it running in this domain (--domain, ROS_DOMAIN_ID)?";
-  return text;
+  if (seen || !own.empty()) return text;
+  const std::vector<std::string> keys = node_.refused_keys();
+  return text + "; " +
+         (keys.empty() ? "is it running in this domain (--domain, ROS_DOMAIN_ID), with the key of this "
+                         "process (--network-key, --security)?"
+                       : io::joined(keys, "; "));
 }
 
 const char* pose_fault_name(std::uint8_t fault) {

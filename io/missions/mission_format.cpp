@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "swiftlet/io/missions/crazyflie_log.hpp"
+#include "swiftlet/io/missions/motive_take.hpp"
 #include "swiftlet/io/text.hpp"
 #include "swiftlet/io/text_file.hpp"
 
@@ -42,10 +43,12 @@ Source parse_source(const std::string& text, const std::string& file_name, const
   const std::string extension = lower(std::filesystem::path(file_name).extension().string());
   const std::string_view content = trimmed(text, " \t\r\n\xef\xbb\xbf");  // also without a byte order mark
   Source source;
-  if (is_crazyflie_log(text)) {
+  const bool is_log = is_crazyflie_log(text);
+  if (is_log || is_motive_take(content)) {
     if (!options.columns.empty())
-      throw ConfigError(file_name, 0, "", "is no table: --columns is for CSV files");
-    take(source, read_crazyflie_log(text, file_name));
+      throw ConfigError(file_name, 0, "", "names its columns itself: --columns is for other CSV files");
+    take(source,
+         is_log ? read_crazyflie_log(text, file_name) : read_motive_take(text, file_name, options.frame));
   } else if (is_waypoint_list(content)) {
     source.plan = plan_of_waypoint_list(text, file_name);
     source.assumptions.emplace_back("a list of waypoints, read like a plan of QGroundControl");

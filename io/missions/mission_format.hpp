@@ -3,6 +3,7 @@
 //
 //   polynomial CSV      duration,x^0..x^7,y^0..y^7,z^0..z^7,yaw^0..yaw^7 (Crazyswarm, uav_trajectories)
 //   sampled CSV         t, x, y, z and, if given, vx, vy, vz, ax, ay, az, yaw
+//   take of Motive      a rigid body of an OptiTrack system (motive_take.hpp)
 //   log of a Crazyflie  its estimated position (crazyflie_log.hpp)
 //   flight.csv          of `swiftlet log csv`: its reference between take-off and landing
 //   waypoint CSV        x, y, z and, if given, yaw; or x,y,z[,yaw] without a header line

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/core.h>
@@ -22,6 +23,9 @@ constexpr std::size_t kMessageHeader = 3;
 constexpr std::size_t kFlags = 40;
 constexpr int kDeepest = 8;  // nested formats
 constexpr std::size_t kLongestMessage = 65'535;
+constexpr std::string_view kKinds = "BFIMPQARDLCSO";  // of messages
+constexpr std::size_t kLongestPadding = 7;            // at the end of a format, which is not logged
+constexpr int kMessagesInARow = 4;
 
 struct Type {
   const char* name;
@@ -49,6 +53,20 @@ const Type* type_of(std::string_view name) {
 
 ByteReader reader_of(std::string_view bytes) {
   return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), true};
+}
+
+struct Message {
+  char type = 0;
+  std::string_view content;
+};
+
+// The one at the start of the bytes; nullopt: none is there, or they end within it. Types not known here are capitals too.
+std::optional<Message> message_at(std::string_view bytes) {
+  ByteReader in = reader_of(bytes);
+  const std::size_t size = in.u16();
+  const char type = static_cast<char>(in.u8());
+  if (!in.ok() || in.rest() < size || size == 0 || type < 'A' || type > 'Z') return std::nullopt;
+  return Message{type, bytes.substr(kMessageHeader, size)};
 }
 
 double value_at(std::string_view message, char letter, std::size_t offset) {
@@ -97,32 +115,109 @@ std::size_t size_of(char letter) {
 
 }  // namespace
 
-Log::Log(std::string_view bytes, std::string file_name) : file_name_(std::move(file_name)) {
+Log::Log(std::string_view bytes, std::string file_name) : bytes_(bytes), file_name_(std::move(file_name)) {
   if (bytes.size() < kHeader || bytes.substr(0, kMagic.size()) != kMagic) fail("is no ULog of PX4");
+  read_messages();
+  if (!appended_.empty() && appended_.back() >= bytes.size()) ends_early_ = true;
+}
+
+void Log::read_messages() {
   std::size_t at = kHeader;
-  while (at < bytes.size()) {
+  while (at < bytes_.size()) {
     // A section that is appended begins where the flags say, whether or not the message before it is whole.
     const auto next = std::upper_bound(appended_.begin(), appended_.end(), at);
-    const std::size_t end = next == appended_.end() ? bytes.size() : std::min(*next, bytes.size());
-    ByteReader in = reader_of(bytes.substr(at, end - at));
-    const std::size_t size = in.u16();
-    const char type = static_cast<char>(in.u8());
-    if (!in.ok() || in.rest() < size) {
-      ends_early_ = true;
-      at = end;
+    const std::size_t end = next == appended_.end() ? bytes_.size() : std::min(*next, bytes_.size());
+    const auto message = message_at(bytes_.substr(at, end - at));
+    if (!message) {
+      const std::size_t found = next_messages(at, end);
+      found == end ? static_cast<void>(ends_early_ = true) : note_loss(at, found - at);
+      at = found;
       continue;
     }
-    const std::string_view message = bytes.substr(at + kMessageHeader, size);
-    at += kMessageHeader + size;
-    if (type == 'D' && size >= 2) {
-      data_[reader_of(message).u16()].push_back(message.substr(2));
-    } else if (type == 'B') {
-      read_flags(message, at);
+    at += kMessageHeader + message->content.size();
+    if (message->type == 'D' && message->content.size() >= 2) {
+      note_data(message->content);
+      continue;
+    }
+    if (last_) before_ = std::exchange(last_, std::nullopt);
+    if (message->type == 'B') {
+      read_flags(message->content, at);
     } else {
-      read_definition(type, message);
+      read_definition(message->type, message->content);
     }
   }
-  if (!appended_.empty() && appended_.back() >= bytes.size()) ends_early_ = true;
+}
+
+void Log::note_data(std::string_view message) {
+  if (last_) before_ = last_;
+  last_ = Data{reader_of(message).u16(), message.substr(2)};
+  data_[last_->subscription].push_back(last_->fields);
+  if (std::exchange(loss_has_no_end_, false)) losses_.back().until_s = stamp_s(*last_);
+}
+
+// Drops the message before, in which the loss may begin.
+void Log::note_loss(std::size_t at, std::size_t bytes) {
+  if (last_) {
+    std::vector<std::string_view>& same = data_[last_->subscription];
+    same.pop_back();
+    if (same.empty()) data_.erase(last_->subscription);
+    last_.reset();
+  }
+  losses_.push_back({at, bytes, before_ ? stamp_s(*before_) : 0.0, 0.0});
+  loss_has_no_end_ = true;
+}
+
+// Milliseconds in which PX4 could not write.
+void Log::note_dropout(std::string_view message) {
+  ByteReader in = reader_of(message);
+  const double time_s = 1e-3 * in.u16();
+  lay_out_subscriptions();
+  const double from_s = before_ ? stamp_s(*before_) : 0.0;
+  if (in.ok()) losses_.push_back({0, 0, from_s, from_s + time_s});
+}
+
+void Log::lay_out_subscriptions() {
+  for (const auto& [id, topic] : subscriptions_) {
+    Places places;
+    try {
+      layouts_[id].size = lay_out(topic, "", 0, 0, places);
+      layouts_[id].stamp = places["timestamp"].offset;
+    } catch (const io::ConfigError&) {
+      layouts_.erase(id);  // whoever reads the topic is told
+    }
+  }
+}
+
+double Log::stamp_s(const Data& data) const {
+  const auto layout = layouts_.find(data.subscription);
+  if (layout == layouts_.end() || layout->second.stamp + 8 > data.fields.size()) return 0.0;
+  return 1e-6 * value_at(data.fields, 'Q', layout->second.stamp);
+}
+
+std::size_t Log::next_messages(std::size_t at, std::size_t end) {
+  lay_out_subscriptions();
+  while (++at < end && !begins_messages(at, end)) {
+  }
+  return at;
+}
+
+// True for several messages in a row of kinds and lengths that the definitions allow, one of them with data.
+bool Log::begins_messages(std::size_t at, std::size_t end) const {
+  bool has_data = false;
+  for (int i = 0; i < kMessagesInARow && (i == 0 || at < end); ++i) {
+    const auto message = message_at(bytes_.substr(at, end - at));
+    if (!message || kKinds.find(message->type) == std::string_view::npos) return false;
+    at += kMessageHeader + message->content.size();
+    if (message->type != 'D') continue;
+    if (message->content.size() < 2) return false;
+    const auto layout = layouts_.find(reader_of(message->content).u16());
+    const std::size_t size = message->content.size() - 2;
+    if (layout == layouts_.end() || size > layout->second.size ||
+        size + kLongestPadding < layout->second.size)
+      return false;
+    has_data = true;
+  }
+  return has_data;
 }
 
 // 8 bytes of what a reader may ignore, 8 of what it may not, of which the first bit says that data is appended, and three offsets
@@ -144,7 +239,7 @@ void Log::read_flags(std::string_view message, std::size_t next) {
   }
 }
 
-// Messages of other kinds, such as texts and drop-outs, are not needed.
+// Messages of other kinds, such as texts, are not needed.
 void Log::read_definition(char type, std::string_view message) {
   switch (type) {
     case 'F':
@@ -153,6 +248,8 @@ void Log::read_definition(char type, std::string_view message) {
       return read_parameter(message);
     case 'A':
       return read_subscription(message);
+    case 'O':
+      return note_dropout(message);
     default:
       return;
   }
@@ -201,7 +298,9 @@ void Log::read_subscription(std::string_view message) {
   ByteReader in = reader_of(message);
   const std::uint8_t instance = in.u8();
   const std::uint16_t id = in.u16();
-  if (in.ok() && instance == 0) topics_.emplace(std::string(message.substr(3)), id);
+  if (!in.ok()) return;
+  subscriptions_[id] = message.substr(3);
+  if (instance == 0) topics_.emplace(subscriptions_[id], id);
 }
 
 bool Log::has(const std::string& topic) const {

@@ -34,6 +34,7 @@ target, tips over (tilt above 90 degrees) or touches the ground, and truncated a
 
 The same seed and actions give bit-identical results, for any number of threads.
 """
+import copy
 import os
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple, Union
 
@@ -52,16 +53,18 @@ if TYPE_CHECKING:  # the members that are there with Gymnasium and without
     from .spaces import Box
 
     USES_GYMNASIUM: bool
-    _SAME_STEP: Any
+
+    def _mode_of(value: str) -> Any:
+        ...
+
 else:
     try:
         from gymnasium import Env as _Env
         from gymnasium.spaces import Box as _GymnasiumBox
-        from gymnasium.vector import AutoresetMode
+        from gymnasium.vector import AutoresetMode as _mode_of
         from gymnasium.vector import VectorEnv as _VectorEnv
 
         USES_GYMNASIUM = True
-        _SAME_STEP = AutoresetMode.SAME_STEP
 
         def Box(low, high):
             return _GymnasiumBox(low, high, dtype=np.float64)
@@ -70,7 +73,7 @@ else:
         from .spaces import Box
 
         USES_GYMNASIUM = False
-        _SAME_STEP = "SameStep"
+        _mode_of = str
 
         class _Env:
             pass
@@ -82,15 +85,21 @@ else:
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
+_MODES = ("SameStep", "NextStep", "Disabled")  # the values of Gymnasium's AutoresetMode
+
 
 def _random_seed() -> int:
     return int.from_bytes(os.urandom(8), "little") >> 1
 
 
+def _made(kind: Any, arguments: Dict[str, Any]) -> Any:
+    return kind(**arguments)
+
+
 class HoverVectorEnv(_VectorEnv):
     """Many vehicles that hover, each by itself. Shapes have the number of environments in front."""
 
-    metadata: Dict[str, Any] = {"render_modes": [], "autoreset_mode": _SAME_STEP}
+    metadata: Dict[str, Any] = {"render_modes": [], "autoreset_mode": _mode_of("SameStep")}
     render_mode = None
     spec = None
 
@@ -103,16 +112,27 @@ class HoverVectorEnv(_VectorEnv):
         vehicle: Union[str, _core.VehicleModel] = "kaylion",
         simulation: Union[str, _core.SimulationSettings] = "default",
         dispersion: str = "",
+        autoreset_mode: Any = "SameStep",
         **task: Any,
     ) -> None:
         """threads: 0: one for each core. vehicle, simulation: names of files, their paths, or objects. dispersion: a file, or
-        "uncertainty" of the vehicle file. task: action_period_s, episode_s, target_ned, radius_m, start_distance_m,
-        start_speed_m_s, start_tilt_rad, start_rate_rad_s, and the bounds max_rate_rad_s, max_tilt_rad, max_speed_m_s and
-        max_yaw_rate_rad_s; docs/python.md has their defaults. Throws swiftlet.InputError."""
-        self._core = _core.HoverEnvironments(
-            num_envs, level=level, threads=threads, vehicle=vehicle, simulation=simulation, dispersion=dispersion, **task
+        "uncertainty" of the vehicle file. autoreset_mode: of Gymnasium, "SameStep", "NextStep" or "Disabled". task:
+        action_period_s, episode_s, target_ned, radius_m, start_distance_m, start_speed_m_s, start_tilt_rad, start_rate_rad_s,
+        and the bounds max_rate_rad_s, max_tilt_rad, max_speed_m_s and max_yaw_rate_rad_s; docs/python.md has their defaults.
+        Throws swiftlet.InputError."""
+        self._mode = str(getattr(autoreset_mode, "value", autoreset_mode))
+        if self._mode not in _MODES:
+            raise _core.InputError(f"autoreset_mode is {self._mode}, must be {', '.join(_MODES[:2])} or {_MODES[2]}")
+        self.metadata = {**self.metadata, "autoreset_mode": _mode_of(self._mode)}
+        made_of: Dict[str, Any] = dict(
+            level=level, threads=threads, vehicle=vehicle, simulation=simulation, dispersion=dispersion, **task
         )
+        self._core = _core.HoverEnvironments(num_envs, **made_of)
+        self._made_of = {"num_envs": num_envs, "autoreset_mode": self._mode, **made_of}
         self.num_envs = num_envs
+        # Whose episode has ended, and the last observations. The core has begun the next one already.
+        self._ended = np.zeros(num_envs, dtype=bool)
+        self._last: Optional[Floats] = None
         size = self._core.observation_size
         low, high = self._core.action_low, self._core.action_high
         unbounded = np.full(size, np.inf)
@@ -128,8 +148,14 @@ class HoverVectorEnv(_VectorEnv):
         seed: Union[int, Sequence[Optional[int]], None] = None,
         options: Optional[Dict[str, Any]] = None,
     ) -> Tuple[Floats, Dict[str, Any]]:
-        """Begins an episode in all environments. seed: environment i has seed + i, or its own of a sequence; without a seed
-        they go on with the next episode of theirs, and before the first one have seeds of the operating system."""
+        """Begins an episode in all environments, or in those of options["reset_mask"], bool of shape (num_envs,). seed:
+        environment i has seed + i, or its own of a sequence; without a seed they go on with the next episode of theirs, and
+        before the first one have seeds of the operating system."""
+        chosen = np.asarray((options or {}).get("reset_mask", np.ones(self.num_envs, dtype=bool)))
+        if chosen.dtype != bool or chosen.shape != (self.num_envs,):
+            raise _core.InputError(f"reset_mask must be bool of shape ({self.num_envs},)")
+        if not self._seeded and not chosen.all():
+            raise RuntimeError("reset() of some environments before reset() of all")
         seeds: Optional[List[int]] = None
         if isinstance(seed, (int, np.integer)):
             seeds = [int(seed) + i for i in range(self.num_envs)]
@@ -139,22 +165,47 @@ class HoverVectorEnv(_VectorEnv):
             seeds = [_random_seed() for _ in range(self.num_envs)]
         if seeds is not None and min(seeds) < 0:
             raise _core.InputError(f"seed is {min(seeds)}, must be at least 0")
-        observations = self._core.reset(None if seeds is None else np.array(seeds, dtype=np.uint64))
+        if seeds is None:
+            observations = self._core.reset(chosen=chosen & ~self._ended)
+        else:
+            observations = self._core.reset(np.array(seeds, dtype=np.uint64), chosen)
         self._seeded = True
+        self._ended = self._ended & ~chosen
+        if self._last is not None:
+            observations[self._ended] = self._last[self._ended]
         return observations, {}
 
     def step(self, actions: ArrayLike) -> Tuple[Floats, Floats, Flags, Flags, Dict[str, Any]]:
-        """Returns observations, rewards, terminated, truncated, infos. Where an episode ends, the next one begins in the same
-        step: its row of the observations is the first of that, and infos["final_obs"] has the last one, with
-        infos["_final_obs"] true there (autoreset mode SAME_STEP of Gymnasium)."""
+        """Returns observations, rewards, terminated, truncated, infos. Where an episode ends, by autoreset mode,
+
+        - SameStep: the next one begins in the same step: its row of the observations is the first of that, and
+          infos["final_obs"] has the last one, with infos["_final_obs"] true there;
+        - NextStep: the next one begins with the next step, whose action is ignored and whose reward is 0;
+        - Disabled: call reset(options={"reset_mask": terminated | truncated}) before the next step."""
         if not self._seeded:
             raise RuntimeError("step() before reset()")
-        observations, rewards, terminated, truncated, last = self._core.step(np.asarray(actions, dtype=np.float64))
+        if self._mode == "Disabled" and self._ended.any():
+            raise RuntimeError("step() before reset(): an episode has ended")
+        actions = np.asarray(actions, dtype=np.float64)
+        observations, rewards, terminated, truncated, last = self._core.step(actions, ~self._ended)
         infos: Dict[str, Any] = {}
         ended = terminated | truncated
-        if ended.any():
+        if self._mode != "SameStep":
+            observations[ended] = last[ended]
+            self._ended, self._last = ended, last
+        elif ended.any():
             infos = {"final_obs": last, "_final_obs": ended}
         return observations, rewards, terminated, truncated, infos
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        """Pickles what it was made of, without the state of its episodes: call reset(). copy.deepcopy() copies that too."""
+        return _made, (type(self), self._made_of)
+
+    def __deepcopy__(self, memo: Dict[int, Any]) -> "HoverVectorEnv":
+        copied = type(self).__new__(type(self))
+        memo[id(self)] = copied
+        copied.__dict__.update({name: copy.deepcopy(value, memo) for name, value in self.__dict__.items()})
+        return copied
 
     def close(self, **kwargs: Any) -> None:
         """Nothing is open."""
@@ -168,10 +219,9 @@ class HoverEnv(_Env):
     spec = None
 
     def __init__(self, **arguments: Any) -> None:
-        self._vector = HoverVectorEnv(1, threads=1, **arguments)
+        self._vector = HoverVectorEnv(1, threads=1, autoreset_mode="Disabled", **arguments)
         self.action_space = self._vector.single_action_space
         self.observation_space = self._vector.single_observation_space
-        self._ended = True
 
     def reset(
         self, *, seed: Optional[int] = None, options: Optional[Dict[str, Any]] = None
@@ -179,28 +229,12 @@ class HoverEnv(_Env):
         """Begins an episode. Without a seed it goes on with the next one of its seed."""
         if USES_GYMNASIUM:
             super().reset(seed=seed)
-        if seed is None and self._next is not None:
-            observation = self._next
-        else:
-            observation = self._vector.reset(seed=seed)[0][0]
-        self._next = None
-        self._ended = False
-        return observation, {}
-
-    # The first observation of an episode that the core has begun with the end of the last one.
-    _next: Optional[Floats] = None
+        return self._vector.reset(seed=seed)[0][0], {}
 
     def step(self, action: ArrayLike) -> Tuple[Floats, float, bool, bool, Dict[str, Any]]:
         """Returns observation, reward, terminated, truncated, info. After an end, call reset()."""
-        if self._ended:
-            raise RuntimeError("step() before reset(): the episode has ended")
-        observations, rewards, terminated, truncated, infos = self._vector.step(np.asarray(action, dtype=float)[np.newaxis])
-        observation = observations[0]
-        self._ended = bool(terminated[0] or truncated[0])
-        if self._ended:
-            self._next = observation
-            observation = infos["final_obs"][0]
-        return observation, float(rewards[0]), bool(terminated[0]), bool(truncated[0]), {}
+        observations, rewards, terminated, truncated, _ = self._vector.step(np.asarray(action, dtype=float)[np.newaxis])
+        return observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), {}
 
     def close(self) -> None:
         """Nothing is open."""

@@ -119,7 +119,7 @@ void Reader::check_summary(const Footer& footer) const {
     fail(footer.summary_start, "the CRC of the summary is wrong; `swiftlet log repair` reads the rest");
 }
 
-// Returns false if the summary does not say where all messages are.
+// Returns false if the summary does not say where all is: what of it a file repeats there is up to its writer.
 bool Reader::read_summary(const Footer& footer) {
   check_summary(footer);
   bool counted = false;
@@ -163,8 +163,10 @@ bool Reader::read_summary(const Footer& footer) {
     }
   });
   return counted && chunks_.size() == statistics_.chunk_count &&
-         (statistics_.message_count == 0 || !chunks_.empty()) &&
-         (statistics_.message_count == 0 || !channels_.empty());
+         schemas_.size() == statistics_.schema_count && channels_.size() == statistics_.channel_count &&
+         metadata_.size() == statistics_.metadata_count &&
+         attachments_.size() == statistics_.attachment_count &&
+         (statistics_.message_count == 0 || !chunks_.empty());
 }
 
 void Reader::add_definition(const Record& record) {

@@ -64,6 +64,7 @@ Node::~Node() {
 std::vector<std::string> Participant::topics_seen() const { return impl_->topics_seen(); }
 std::vector<ProcessIdentity> Participant::processes_seen() const { return impl_->processes_seen(); }
 std::vector<std::string> Participant::mismatches_seen() const { return impl_->mismatches_seen(); }
+std::vector<std::string> Participant::refused_keys() const { return impl_->refused_keys(); }
 
 std::optional<std::string> Participant::become_source(const std::vector<std::string>& excluded,
                                                       std::function<void(const std::string&)> on_lost) {

@@ -195,6 +195,9 @@ class Participant {
   // A sentence for each two of the other known processes that do not receive each other's topic, "rt/kl1/imu: control (...) does
   // not receive from plant (...): reliability (...)", and for each topic of Swiftlet that one has with another type, or without "rt/".
   std::vector<std::string> mismatches_seen() const;
+  // A sentence with what to do for each host, and with security for each process, that is refused since it has no key, or another
+  // than this process: neither side discovers the other.
+  std::vector<std::string> refused_keys() const;
 
   // Checks that this process is the only source of settings.source_of for the vehicles that it serves, and that
   // none of `excluded` has a source either. Blocks for kSourceSearchTime, or kLongSourceSearchTime.
@@ -250,6 +253,7 @@ class Node {
                              Delivery delivery = Delivery::kShared);
 
   std::vector<std::string> topics_seen() const { return participant_.topics_seen(); }
+  std::vector<std::string> refused_keys() const { return participant_.refused_keys(); }
   // As Participant::mismatches_seen(), of the topics of the vehicle.
   std::vector<std::string> mismatches_seen() const;
 

@@ -198,6 +198,7 @@ void Participant::Impl::leave() {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   peers_.clear();
   strangers_.clear();
+  refused_.clear();
   writers_.clear();
   readers_.clear();
   lost_.clear();

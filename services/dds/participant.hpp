@@ -51,6 +51,7 @@ struct Participant::Impl final : public DiscoveryListener {
   std::vector<std::string> topics_seen() const;
   std::vector<ProcessIdentity> processes_seen() const;
   std::vector<std::string> mismatches_seen() const;
+  std::vector<std::string> refused_keys() const;
   ProcessIdentity identity_of(const fastrtps::GuidPrefix_t& participant) const;
   // node: key of the callback; an empty callback removes it. Calls it at once for known peers of the vehicle.
   void listen(const Node* node, const std::string& vehicle, std::function<void(const PeerEvent&)> callback);
@@ -136,8 +137,9 @@ struct Participant::Impl final : public DiscoveryListener {
   std::function<void(const std::string&)> on_lost_source_;
   std::map<Guid, Peer>
       peers_;  // of any vehicle; with security only authenticated ones, also before they are discovered
-  std::map<Guid, Peer> strangers_;  // with security: discovered, but not authenticated yet
-  RemoteEndpoints writers_;         // of other processes, any vehicle
+  std::map<Guid, Peer> strangers_;       // with security: discovered, but not authenticated yet
+  std::map<Guid, std::string> refused_;  // with security: their names
+  RemoteEndpoints writers_;              // of other processes, any vehicle
   RemoteEndpoints readers_;
   LimitedLog log_;
   std::map<const Node*, PeerListener> peer_listeners_;

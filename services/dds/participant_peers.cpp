@@ -14,6 +14,7 @@
 #include "swiftlet/services/dds/qos/qos_conflicts.hpp"
 #include "swiftlet/services/messages/topic_table.hpp"
 #include "swiftlet/services/messages/vehicle_names.hpp"
+#include "swiftlet/services/rtps/key_rules.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 
 namespace swiftlet::dds {
@@ -105,6 +106,22 @@ std::vector<std::string> Participant::Impl::mismatches_seen() const {
   return sentences;
 }
 
+std::vector<std::string> Participant::Impl::refused_keys() const {
+  const runtime::RealtimeScope scope = realtime();
+  std::vector<std::string> sentences;
+  for (const auto& [sender, rule] : guard_->refusals().last()) {
+    const char* const remedy = rtps::remedy_of(rule);
+    if (remedy == nullptr) continue;
+    const std::string from = sender == 0 ? "several hosts" : io::to_string(sender);
+    sentences.push_back("datagrams from " + from + " are refused, " + rule + "; " + remedy);
+  }
+  const std::lock_guard<std::mutex> lock(peers_mutex_);
+  for (const auto& [guid, name] : refused_)
+    sentences.push_back(named(name, guid.guidPrefix) +
+                        " is refused: it has no keys of this --security; the log of Fast DDS says more");
+  return sentences;
+}
+
 ProcessIdentity Participant::Impl::identity_of(const fastrtps::GuidPrefix_t& participant) const {
   const runtime::RealtimeScope scope = realtime();
   const std::lock_guard<std::mutex> lock(peers_mutex_);
@@ -137,6 +154,7 @@ void Participant::Impl::on_participant(const Guid& guid, const std::string& name
 void Participant::Impl::on_participant_gone(const Guid& guid, bool said_goodbye) {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   strangers_.erase(guid);
+  refused_.erase(guid);
   drop_peer(guid, said_goodbye);
 }
 
@@ -145,6 +163,7 @@ void Participant::Impl::on_authentication(const Guid& guid, bool authenticated) 
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   if (!authenticated) {
     const std::string name = in_one_line(guard_->name_of(bytes_of(guid.guidPrefix)));
+    refused_[guid] = name;
     log_.warn("refused " + named(name, guid.guidPrefix) + ": see the log of Fast DDS", Clock::now());
   } else if (peers_.count(guid) == 0) {
     update_peer(guid, strangers_[guid]);

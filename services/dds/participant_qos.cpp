@@ -33,7 +33,7 @@ void add_host(const std::string& ipv4, const DiscoveryPorts& ports, std::uint32_
 void add_servers(const NodeSettings& settings, fastrtps::DiscoverySettings& discovery) {
   const std::string& list = settings.network.discovery_servers;
   if (const std::string fault = io::fault_of_discovery_servers(list); !fault.empty())
-    throw io::ConfigError("discovery server " + fault);
+    throw io::ConfigError("discovery server (--discovery-server, ROS_DISCOVERY_SERVER) " + fault);
   // A plain client hears only of those with which it exchanges topics: a source would not hear of another one.
   const bool hears_of_all = settings.hears_of_all || !settings.source_of.empty();
   discovery.discoveryProtocol =
@@ -88,7 +88,7 @@ void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
            builtin.initialPeersList);  // the processes of this host
   for (const std::string& peer : network.peers) {
     if (const std::string fault = io::fault_of_host_address(peer); !fault.empty())
-      throw io::ConfigError("peer " + fault);
+      throw io::ConfigError("peer (--peer, ROS_STATIC_PEERS) " + fault);
     const io::HostAddress host = io::parse_host_address(peer);
     for (const std::string& address : io::ipv4_addresses_of(host.host)) {
       if (host.port != 0) {

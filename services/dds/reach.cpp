@@ -11,9 +11,9 @@ namespace swiftlet::dds {
 
 std::string search_text(const NodeSettings& settings) {
   if (settings.on_loopback())
-    return settings.localhost_only
-               ? " on the loopback interface"
-               : " on the loopback interface (--network-key FILE or --open-network: on the network too)";
+    return settings.localhost_only ? " on the loopback interface"
+                                   : " on the loopback interface (on the network too with --network-key, "
+                                     "--security or --open-network)";
   const NetworkSettings& network = settings.network;
   std::string text;
   if (!network.peers.empty()) {
@@ -23,6 +23,16 @@ std::string search_text(const NodeSettings& settings) {
   }
   if (!network.interfaces.empty()) text += " on " + io::joined(network.interfaces, ", ");
   return text;
+}
+
+std::string search_advice(const NodeSettings& settings, const std::vector<std::string>& refused_keys) {
+  if (!refused_keys.empty()) return io::joined(refused_keys, "; ");
+  std::string advice =
+      "check that it runs, with this domain (--domain, ROS_DOMAIN_ID) and the key of this process "
+      "(--network-key, --security)";
+  if (!settings.on_loopback() && settings.network.uses_multicast())
+    advice += "; in a network without multicast give --peer or --discovery-server";
+  return advice;
 }
 
 void log_reach(const NodeSettings& settings) {

@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "swiftlet/io/byte_reader.hpp"
+#include "swiftlet/services/rtps/datagram_seal.hpp"
+#include "swiftlet/services/rtps/key_rules.hpp"
 #include "swiftlet/services/rtps/parameter_list.hpp"
 #include "swiftlet/services/rtps/submessage.hpp"
 
@@ -120,6 +122,8 @@ const char* DatagramCheck::check_next() {
     rest_.skip(kStatisticsBytes);
     return nullptr;
   }
+  // Its sender refuses what this process answers: they would only half discover each other.
+  if (rest_.rest() == kSealBytes && *rest_.data() == kSeal) return kNoKey;
   const std::uint8_t* const header = rest_.take(2);
   if (header == nullptr) return "submessage header too short (8.3.3.3)";
   ByteReader length_field(rest_.data(), rest_.rest(), (header[1] & kLittleEndianFlag) != 0);
@@ -139,14 +143,13 @@ const char* DatagramCheck::check_next() {
 
 const char* DatagramCheck::check_encryption(std::uint8_t kind) {
   const bool is_of_security = kind >= kSecureBody && kind <= kSecureRtpsPostfix;
-  if (!limits_.security)
-    return is_of_security ? "encrypted submessage, but security is off (DDS Security 7.3.6)" : nullptr;
+  if (!limits_.security) return is_of_security ? kEncrypted : nullptr;
   if (encrypted_) {
     const bool belongs = kind == kSecureBody || kind == kSecureRtpsPostfix;
     return belongs ? nullptr : "submessage beside the content of an encrypted message (DDS Security 7.3.6)";
   }
   encrypted_ = kind == kSecureRtpsPrefix;
-  return may_be_clear(kind) ? nullptr : "submessage that is not encrypted (DDS Security 7.3.6)";
+  return may_be_clear(kind) ? nullptr : kNotEncrypted;
 }
 
 const char* DatagramCheck::check_body(Submessage& submessage) {
@@ -262,9 +265,9 @@ const char* DatagramCheck::check_data(Submessage& submessage) {
   const std::optional<BuiltinTopic> topic = topic_of(reader, writer);
   if (!topic) return "DATA between endpoints that do not belong together (9.3.1.3)";
   const bool of_security = *topic == BuiltinTopic::kSecurity || *topic == BuiltinTopic::kHandshake;
-  if (of_security && !limits_.security) return "DATA of DDS Security, but security is off (DDS Security 7.4)";
+  if (of_security && !limits_.security) return kSecurityData;
   if (limits_.security && *topic != BuiltinTopic::kParticipant && *topic != BuiltinTopic::kHandshake)
-    return "DATA that is not encrypted (DDS Security 7.4)";
+    return kDataNotEncrypted;
   const bool relays = limits_.discovery_servers && is_discovery_server(result_.source);
   const ListContext context{begin_, result_.source, *topic, limits_.security, relays};
   bool names_key = false;

@@ -7,6 +7,8 @@
 #include <string_view>
 
 #include "swiftlet/io/byte_writer.hpp"
+#include "swiftlet/services/rtps/key_rules.hpp"
+#include "swiftlet/services/rtps/submessage.hpp"
 
 namespace swiftlet::rtps {
 namespace {
@@ -14,7 +16,6 @@ namespace {
 using io::NetworkKey;
 
 // The trailer, little endian: submessage header, key id, time of sending, count, tag over all bytes before it, zeros.
-constexpr std::uint8_t kSealKind = 0x81;
 constexpr std::uint16_t kSealLength = kSealBytes - 4;  // as the header states it
 constexpr std::size_t kTimeAt = 8;
 constexpr std::size_t kCountAt = 16;
@@ -57,7 +58,7 @@ void DatagramSealer::seal(std::vector<std::uint8_t>& datagram, std::int64_t now_
   datagram.resize(at + kSealBytes);
   std::uint8_t* const trailer = datagram.data() + at;
   std::fill_n(trailer, kSealBytes, std::uint8_t{0});
-  trailer[0] = kSealKind;
+  trailer[0] = kSeal;
   trailer[1] = 1;  // little endian
   io::store(kSealLength, trailer + 2);
   io::store(key_id_, trailer + 4);
@@ -71,19 +72,17 @@ DatagramOpener::DatagramOpener(const io::NetworkKeys& keys) : senders_(kSenders)
 }
 
 const char* DatagramOpener::verify(const std::uint8_t* data, std::size_t size, std::int64_t now_ns) const {
-  if (size < kPrefixAt + GuidPrefix().size() + kSealBytes) return "not sealed with a network key";
+  if (size < kPrefixAt + GuidPrefix().size() + kSealBytes) return kNotSealed;
   const std::uint8_t* const trailer = data + size - kSealBytes;
-  if (trailer[0] != kSealKind || get<std::uint16_t>(trailer + 2) != kSealLength)
-    return "not sealed with a network key";
+  if (trailer[0] != kSeal || get<std::uint16_t>(trailer + 2) != kSealLength) return kNotSealed;
   const auto id = get<std::uint32_t>(trailer + 4);
   const auto key = std::find_if(keys_.begin(), keys_.end(), [&](const Key& known) { return known.id == id; });
-  if (key == keys_.end()) return "sealed with another network key";
+  if (key == keys_.end()) return kOtherKey;
   std::array<std::uint8_t, kTagBytes> tag{};
   tag_of(key->secret, data, size - kSealBytes + kTagAt, tag.data());
   if (sodium_memcmp(tag.data(), trailer + kTagAt, kTagBytes) != 0) return "changed after it was sealed";
   const auto sent_ns = get<std::int64_t>(trailer + kTimeAt);
-  if (sent_ns < now_ns - kSealTolerance_ns || sent_ns > now_ns + kSealTolerance_ns)
-    return "sealed more than 30 s ago or ahead: a recording, or the clocks of the hosts differ";
+  if (sent_ns < now_ns - kSealTolerance_ns || sent_ns > now_ns + kSealTolerance_ns) return kOtherTime;
   return nullptr;
 }
 

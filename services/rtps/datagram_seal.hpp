@@ -1,5 +1,5 @@
 // Authenticates datagrams with a shared key: a trailer that the sender appends and the receiver checks before anything is
-// parsed. It is a vendor-specific submessage, which receivers without the key skip (RTPS 2.5, 8.3.4.1).
+// parsed. It is a vendor-specific submessage, which programs of others skip (RTPS 2.5, 8.3.4.1).
 #pragma once
 
 #include <array>

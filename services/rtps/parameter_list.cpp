@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "swiftlet/services/rtps/key_rules.hpp"
+
 namespace swiftlet::rtps {
 namespace {
 
@@ -184,7 +186,7 @@ const char* check_value(const ParameterRule& rule, ByteReader value, const ListC
     case Shape::kLease:
       return check_lease(value);
     case Shape::kToken:
-      if (!context.security) return "security token, but security is off (DDS Security 7.2.4)";
+      if (!context.security) return kSecurityToken;
       rule.bytes > 0 ? value.skip(rule.bytes) : static_cast<void>(valid = skip_token(value));
       break;
     case Shape::kHidden:

@@ -38,4 +38,11 @@ void RefusalLog::write_due(std::chrono::steady_clock::time_point now) {
   }
 }
 
+std::vector<RefusalLog::Refusal> RefusalLog::last() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<Refusal> refusals;
+  for (const Sender& sender : senders_) refusals.push_back({sender.address, sender.last_rule});
+  return refusals;
+}
+
 }  // namespace swiftlet::rtps

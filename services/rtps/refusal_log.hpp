@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <vector>
 
 #include <boost/container/static_vector.hpp>
 
@@ -24,6 +25,12 @@ class RefusalLog {
   void note(io::Ipv4 sender, const char* rule);
   // Logs what is due. Called by a thread that may wait.
   void write_due(std::chrono::steady_clock::time_point now);
+  struct Refusal {
+    io::Ipv4 sender = 0;  // 0: several
+    const char* rule = nullptr;
+  };
+  // The last one of each sender, unless it has been silent for kRefusalLogPeriod or longer.
+  std::vector<Refusal> last() const;
   std::uint64_t total() const { return total_; }
 
  private:
@@ -35,7 +42,7 @@ class RefusalLog {
   };
   static constexpr std::size_t kSenders = 16;  // that are not silent for long
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   boost::container::static_vector<Sender, kSenders> senders_;
   std::atomic<std::uint64_t> total_{0};
 };

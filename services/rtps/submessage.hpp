@@ -32,6 +32,7 @@ enum SubmessageKind : std::uint8_t {
   kSecureRtpsPrefix = 0x33,
   kSecureRtpsPostfix = 0x34,
   kStatistics = 0x80,  // of Fast DDS built with statistics, which appends it to every message
+  kSeal = 0x81,        // of a network key (datagram_seal.hpp)
 };
 
 constexpr std::uint8_t kLittleEndianFlag = 1;  // of every submessage (9.4.5.1.2)

@@ -13,6 +13,7 @@
 #include <type_traits>
 #include <unistd.h>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -22,24 +23,28 @@
 namespace swiftlet::runtime {
 namespace {
 
-// Names the environment variable instead of the option whose value came from it.
-std::string with_source(const CLI::App& app, const std::string& fault) {
+using Words = std::vector<std::string>;
+
+// Names the environment variable instead of the option of the command whose value came from it. words: that were given.
+std::string with_source(const CLI::App& app, const std::string& fault, const Words& words) {
   for (const CLI::Option* const option : app.get_options()) {
-    const char* const value =
-        option->get_envname().empty() ? nullptr : std::getenv(option->get_envname().c_str());
-    const std::string refused = option->get_name() + ": is " + (value == nullptr ? "" : value) + ",";
-    if (value != nullptr && fault.compare(0, refused.size(), refused) == 0)
-      return option->get_envname() + fault.substr(option->get_name().size());
+    const std::string& name = option->get_name();
+    const bool is_given = std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+      return word == name || word.rfind(name + "=", 0) == 0;
+    });
+    if (!option->get_envname().empty() && !is_given && fault.rfind(name + ": ", 0) == 0)
+      return option->get_envname() + fault.substr(name.size());
   }
-  return fault;
+  const std::vector<CLI::App*> commands = app.get_subcommands();
+  return commands.empty() ? fault : with_source(*commands.front(), fault, words);
 }
 
 // The error, and the usage line of the command that was given.
-std::string failure_text(const CLI::App* app, const CLI::Error& error) {
-  const std::string help = app->help();
+std::string failure_text(const CLI::App& app, const CLI::Error& error, const Words& words) {
+  const std::string help = app.help();
   const std::size_t begin = std::min(help.find("Usage:"), help.size());
   const std::string usage = help.substr(begin, help.find('\n', begin) - begin);
-  return with_source(*app, error.what()) + "\n" + usage + "\nRun with --help for more information.\n";
+  return with_source(app, error.what(), words) + "\n" + usage + "\nRun with --help for more information.\n";
 }
 
 constexpr std::size_t kHelpColumn = 30;  // of descriptions
@@ -323,7 +328,6 @@ bool CommandLine::parsed() const { return app_->parsed(); }
 Program::Program(const std::string& name, const std::string& purpose)
     : app_(std::make_unique<CLI::App>(purpose, name)) {
   app_->formatter(std::make_shared<WrappedHelp>());
-  app_->failure_message(failure_text);
 }
 Program::~Program() = default;
 
@@ -337,6 +341,9 @@ Program::Parsed Program::parse(int argc, const char* const* argv) {
     return Parsed::kRun;
   } catch (const CLI::ParseError& stop) {
     const std::string unknown = stop.get_exit_code() == 0 ? "" : unknown_argument(*app_);
+    app_->failure_message([&](const CLI::App* app, const CLI::Error& error) {
+      return failure_text(*app, error, {argv + 1, argv + argc});
+    });
     if (unknown.empty()) return app_->exit(stop) == 0 ? Parsed::kHelp : Parsed::kWrongUsage;
     std::cerr << unknown << "\nRun with --help for more information.\n";
     return Parsed::kWrongUsage;

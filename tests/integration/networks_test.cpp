@@ -1,10 +1,10 @@
 // Hosts on a switch, and behind routers that forward no multicast: who reaches whom.
-#include <algorithm>
+#include "tests/integration/networks.hpp"
+
 #include <csignal>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
-#include <functional>
 #include <memory>
 #include <netinet/in.h>
 #include <set>
@@ -12,106 +12,20 @@
 #include <sys/socket.h>
 #include <thread>
 #include <unistd.h>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "swiftlet/io/network/sockets.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "tests/support/eventually.hpp"
-#include "tests/support/network/network_namespace.hpp"
-#include "tests/support/program.hpp"
 #include "tests/support/rtps_message.hpp"
 #include "tests/support/security_keys.hpp"
-#include "tests/support/shifted_clock.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/terminal.hpp"
 
 namespace swiftlet::tests {
 namespace {
 
-using nlohmann::json;
-using Layout = HostNetwork::Layout;
-using Words = std::vector<std::string>;
-
 constexpr std::uint16_t kFirstDiscoveryPort = 7410;
-
-// Plant and motion capture on host 0, control on host 1, and the ground tools on host 2. In lockstep, so that a busy
-// machine slows the flight down instead of failing it.
-class Networks : public testing::Test {
- protected:
-  void SetUp() override {
-    if (const std::string why = HostNetwork::why_unavailable(); !why.empty()) GTEST_SKIP() << why;
-  }
-
-  void connect(Layout layout) { hosts_ = std::make_unique<HostNetwork>(layout, 3); }
-  void start_all(const std::vector<Words>& options_of_hosts) {
-    options_ = options_of_hosts;
-    plant_ = start(0, "swiftlet-plant", {"--clock", "lockstep", "--speed", "16"});
-    mocap_ = start(0, "swiftlet-mocap", {"--clock", "lockstep"});
-    control_ = start(1, "swiftlet-control", {"--clock", "lockstep"});
-  }
-  // The other hosts, as peers.
-  std::vector<Words> all_peers() const {
-    const std::string a = hosts_->address(0);
-    const std::string b = hosts_->address(1);
-    const std::string c = hosts_->address(2);
-    return {{"--peer", b, "--peer", c}, {"--peer", a, "--peer", c}, {"--peer", a, "--peer", b}};
-  }
-
-  std::unique_ptr<Program> start(int host, const std::string& program, Words words) const {
-    const Words& options = options_.at(static_cast<std::size_t>(host));
-    words.insert(words.end(), options.begin(), options.end());
-    if (reach_ != nullptr) words.emplace_back(reach_);
-    const HostNetwork::Inside inside(*hosts_, host);
-    return std::make_unique<Program>(program, std::move(words), folder_.path());
-  }
-  ProgramResult swiftlet(int host, Words words) const {
-    const std::unique_ptr<Program> program = start(host, "swiftlet", std::move(words));
-    const int exit_code = program->wait(kStuck);
-    return {exit_code, program->output(), program->errors()};
-  }
-  bool finds_the_vehicle(int host) const {
-    return eventually([&] {
-      const ProgramResult result = swiftlet(host, {"list", "--json"});
-      if (result.exit_code != 0) return false;
-      const json list = json::parse(result.output);
-      return list.size() == 1 && list[0].at("mode") == "disarmed" && list[0].at("model") == "kaylion" &&
-             list[0].at("controllers") == 1 && list[0].at("mocap_hz") > 20.0;
-    });
-  }
-  // Whether the tools that show one vehicle do so.
-  void expect_shows_the_vehicle(int host) const {
-    const ProgramResult status = swiftlet(host, {"status", "--json", "--watch", "0.1"});
-    EXPECT_EQ(status.exit_code, 0) << status.errors;
-    Words words = options_.at(static_cast<std::size_t>(host));
-    words.insert(words.begin(), "watch");
-    words.emplace_back(reach_);
-    const HostNetwork::Inside inside(*hosts_, host);
-    Terminal watch("swiftlet", words, 100, 40);
-    EXPECT_TRUE(eventually([&] { return watch.text().find("disarmed") != std::string::npos; }))
-        << watch.text();
-    watch.type("q");
-    EXPECT_EQ(watch.wait(kStuck), 0);
-  }
-  void expect_flies(const Words& mission) const {
-    Words words = {"fly"};
-    words.insert(words.end(), mission.begin(), mission.end());
-    words.insert(words.end(), {"--attach", "--json", "--record", (folder_.path() / "record").string()});
-    const ProgramResult flight = swiftlet(2, words);
-    ASSERT_EQ(flight.exit_code, 0) << flight.errors << logs();
-    EXPECT_LT(json::parse(flight.output).at("rms_3d_m"), 0.05);
-  }
-  std::string logs() const { return plant_->errors() + mocap_->errors() + control_->errors(); }
-
-  const char* reach_ = "--open-network";  // an option of all programs
-  TemporaryFolder folder_;
-  std::unique_ptr<HostNetwork> hosts_;
-  std::vector<Words> options_;
-  std::unique_ptr<Program> plant_, mocap_, control_;
-};
 
 // Control has its options from a file.
 TEST_F(Networks, PeersFlyThroughRoutersWithoutMulticast) {
@@ -137,6 +51,9 @@ TEST_F(Networks, FindNothingThroughRoutersWithoutPeers) {
   ASSERT_TRUE(eventually([&] { return plant_->errors().find("mocap joined") != std::string::npos; }));
   const ProgramResult list = swiftlet(2, {"list", "--time", "1"});
   EXPECT_EQ(list.exit_code, 1) << list.output;
+  EXPECT_NE(list.errors.find("in a network without multicast give --peer or --discovery-server"),
+            std::string::npos)
+      << list.errors;
   options_[2] = {"--peer", hosts_->address(0), "--interface", "lo"};
   const ProgramResult elsewhere = swiftlet(2, {"list", "--time", "1"});
   EXPECT_EQ(elsewhere.exit_code, 1) << elsewhere.output;
@@ -306,15 +223,48 @@ TEST_F(Networks, WhoHasNoKeyIsNeitherParsedNorAnswered) {
     return plant->errors().find(hosts_->address(1) + "; the last: not sealed with a network key") !=
            std::string::npos;
   })) << plant->errors();
-  reach_ = "--open-network";
-  EXPECT_EQ(swiftlet(1, {"list", "--time", "1"}).exit_code, 1);
+  const std::string from = " from " + hosts_->address(0) + " are refused, ";
+  const std::string give = "give this process the key of those there (--network-key, SWIFTLET_NETWORK_KEY)";
+  const std::string other = (folder_.path() / "other.key").string();
+  ASSERT_EQ(swiftlet(0, {"keys", "network", other}).exit_code, 0);
+  expect_names_the_key({"--network-key", other}, from + "sealed with another network key; " + give);
+  expect_names_the_key({"--open-network"},
+                       from + "sealed with a network key, and this process has none; " + give);
+  expect_names_the_key({}, "(on the network too with --network-key, --security or --open-network)");
 
+  reach_ = "--open-network";
   plant.reset();
   plant = start(0, "swiftlet-plant", {});
   EXPECT_TRUE(eventually([&] { return answers(*hosts_, 0, 1); })) << "without a key it is";
   EXPECT_TRUE(eventually([&] {
     return plant->errors().find("--open-network: who is in the network of ") != std::string::npos;
   })) << plant->errors();
+  reach_ = nullptr;
+  expect_names_the_key({"--network-key", key},
+                       from + "not sealed with a network key; start those there with ");
+  EXPECT_TRUE(eventually([&] {
+    return plant->errors().find(hosts_->address(1) +
+                                "; the last: sealed with a network key, and this process has none") !=
+           std::string::npos;
+  })) << plant->errors();
+}
+
+// An announcement is neither encrypted nor sealed, but says that its sender has certificates.
+TEST_F(Networks, WhoHasOtherCertificatesOrNoneIsToldSo) {
+  connect(Layout::kSwitch);
+  options_ = {{}, {}, {}};
+  reach_ = nullptr;
+  const std::string lab = make_security_keys(folder_.path() / "lab", "kl1");
+  const std::string other = make_security_keys(folder_.path() / "other", "kl1");
+  const std::unique_ptr<Program> plant = start(0, "swiftlet-plant", {"--security", lab});
+  ASSERT_TRUE(eventually([&] {
+    return swiftlet(1, {"list", "--names", "--time", "2", "--security", lab}).output == "kl1\n";
+  })) << plant->errors();
+  const std::string from = " from " + hosts_->address(0) + " are refused, ";
+  expect_names_the_key({"--open-network"}, from +
+                                               "security token, but security is off (DDS Security 7.2.4); "
+                                               "give this process keys as those there have (--security, ");
+  expect_names_the_key({"--security", other}, ") is refused: it has no keys of this --security; ");
 }
 
 // Fast DDS 2.9 mixes up who is discovered by two threads together (DatagramGuard::takes_turns()).
@@ -335,114 +285,6 @@ TEST_F(Networks, SecureProcessesThatStartTogetherAllMeet) {
   for (std::thread& start : starts) start.join();
   for (const auto& process : processes)
     EXPECT_TRUE(eventually([&] { return process->processes_seen().size() == kProcesses - 1; }));
-}
-
-class Doctors : public Networks {
- protected:
-  // Runs `swiftlet doctor network` on hosts 0 and 1 at the same time. Returns the report of host 0.
-  json examine() const {
-    const Words words = {"doctor", "network", "--time", time_s_, "--json"};
-    const std::unique_ptr<Program> other = start_other(words);
-    const ProgramResult own = swiftlet(0, words);
-    EXPECT_NE(other->wait(kStuck), -1) << other->errors();
-    json report = json::parse(own.output);
-    EXPECT_EQ(own.exit_code, report.at("faults").empty() ? 0 : 1) << own.output << own.errors;
-    return report;
-  }
-  std::unique_ptr<Program> start_other(const Words& words) const {
-    const ShiftedClock clock(folder_.path() / "shift", clock_);
-    return start(1, "swiftlet", words);
-  }
-  // The same until a report meets the predicate: on a busy machine one may end before the other begins.
-  json examine_until(const std::function<bool(const json&)>& predicate) const {
-    json report;
-    EXPECT_TRUE(eventually([&] { return predicate(report = examine()); })) << report;
-    return report;
-  }
-  bool has_measured(const json& report) const {
-    const json& hosts = report.at("hosts");
-    return hosts.size() == 1 && hosts[0].at("answered") > 0 && report.at("faults").empty();
-  }
-  void expect_plausible(const json& host) const {
-    EXPECT_EQ(host.at("address"), hosts_->address(1));
-    EXPECT_LE(host.at("answered"), host.at("sent"));
-    const double shortest_ms = host.at("round_trip_min_ms");
-    EXPECT_GT(shortest_ms, 0.0);
-    EXPECT_LE(host.at("round_trip_min_ms"), host.at("round_trip_median_ms"));
-    expect_offset(host, 0.0, 0.0);
-  }
-  void expect_offset(const json& host, double least_ms, double largest_ms) const {
-    const double offset_ms = host.at("clock_offset_ms");
-    const double uncertainty_ms = host.at("clock_uncertainty_ms");
-    EXPECT_GE(offset_ms, least_ms - uncertainty_ms) << host;
-    EXPECT_LE(offset_ms, largest_ms + uncertainty_ms) << host;
-    EXPECT_GT(uncertainty_ms, 0.0);
-  }
-
-  std::string time_s_ = "1";
-  ClockShift clock_{};  // of host 1
-};
-
-TEST_F(Doctors, MeasureMulticastAndTheClockOfAHostOverASwitch) {
-  connect(Layout::kSwitch);
-  options_ = {{}, {}, {}};
-  const json report = examine_until([&](const json& it) { return has_measured(it); });
-  ASSERT_EQ(report.at("interfaces").size(), 1U) << report;
-  EXPECT_EQ(report.at("interfaces")[0].at("name"), "eth0");
-  EXPECT_EQ(report.at("interfaces")[0].at("mtu_bytes"), 1500);
-  EXPECT_EQ(report.at("interfaces")[0].at("own_multicast"), true);
-  EXPECT_EQ(report.at("hosts")[0].at("multicast_from_there"), true);
-  EXPECT_EQ(report.at("hosts")[0].at("multicast_to_there"), true);
-  expect_plausible(report.at("hosts")[0]);
-
-  clock_.shift_s = 3;
-  clock_.drift_ppm = 1000.0;
-  time_s_ = "3";  // in 1 s the filter's prior of 200 ppm pulls the drift by more than its uncertainty
-  const json drifts = examine_until([&](const json& it) {
-    if (!has_measured(it)) return false;
-    const json& uncertainty_ppm = it.at("hosts")[0].at("clock_drift_uncertainty_ppm");
-    return uncertainty_ppm.is_number() && uncertainty_ppm < 60.0;
-  });
-  EXPECT_NEAR(drifts.at("hosts")[0].at("clock_drift_ppm").get<double>(), 1000.0, 200.0) << drifts;
-  expect_offset(drifts.at("hosts")[0], 3000.0, 3060.0);  // drifts for up to a minute
-  EXPECT_EQ(drifts.at("hosts")[0].at("clock_steps"), 0);
-  EXPECT_EQ(drifts.at("hints").back().get<std::string>().rfind("the clock of ", 0), 0U) << drifts;
-
-  time_s_ = "1";
-  clock_.drift_ppm = 0.0;
-  clock_.step_s = 1.0;
-  clock_.step_after_s = 0.6;
-  const json steps = examine_until(
-      [&](const json& it) { return has_measured(it) && it.at("hosts")[0].at("clock_steps") == 1; });
-  expect_offset(steps.at("hosts")[0], 4000.0, 4000.0);
-  EXPECT_NE(steps.at("hints").back().get<std::string>().find("stepped while it was measured"),
-            std::string::npos)
-      << steps;
-}
-
-TEST_F(Doctors, FindEachOtherThroughRoutersByPeersOnly) {
-  connect(Layout::kRouter);
-  options_ = {{}, {}, {}};
-  const json alone = examine();
-  EXPECT_EQ(alone.at("hosts"), json::array());
-  ASSERT_EQ(alone.at("faults").size(), 1U) << alone;
-  EXPECT_EQ(alone.at("faults")[0].get<std::string>().rfind("nobody answers in domain 0: ", 0), 0U) << alone;
-
-  options_ = all_peers();
-  const std::unique_ptr<Program> plant = start(2, "swiftlet-plant", {});
-  const json report = examine_until([&](const json& it) {
-    const json& processes = it.at("processes");
-    return has_measured(it) && std::any_of(processes.begin(), processes.end(), [&](const json& process) {
-             return process.at("name") == "plant" && process.at("process") == plant->pid();
-           });
-  });
-  EXPECT_EQ(report.at("hosts")[0].at("multicast_from_there"), false);
-  expect_plausible(report.at("hosts")[0]);
-  const std::string silent = "peer " + hosts_->address(2) + " did not answer";  // no doctor there
-  const json& hints = report.at("hints");
-  EXPECT_TRUE(std::any_of(hints.begin(), hints.end(), [&](const json& hint) {
-    return hint.get<std::string>().rfind(silent, 0) == 0;
-  })) << report;
 }
 
 }  // namespace

@@ -420,10 +420,11 @@ TEST_F(Online, SaysWhereNothingWasFound) {
   for (const char* command : {"status", "arm"}) {
     const ProgramResult result = swiftlet({command, "--timeout", "0.1"});
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_EQ(result.errors, "swiftlet: " + std::string(command) +
-                                 ": no control service for vehicle kl7 in domain " + domain +
-                                 "; processes found: none; is it running in this domain (--domain, "
-                                 "ROS_DOMAIN_ID)?\n");
+    EXPECT_EQ(result.errors,
+              "swiftlet: " + std::string(command) + ": no control service for vehicle kl7 in domain " +
+                  domain +
+                  "; processes found: none; is it running in this domain (--domain, "
+                  "ROS_DOMAIN_ID), with the key of this process (--network-key, --security)?\n");
   }
 }
 

@@ -1,4 +1,6 @@
 """The environments of reinforcement learning, without Gymnasium and with it if it is installed."""
+import copy
+import pickle
 import unittest
 
 import numpy as np
@@ -116,6 +118,52 @@ class Vector(unittest.TestCase):
             HoverVectorEnv(1, level="wings")
         with self.assertRaisesRegex(swiftlet.InputError, "at least 0"):
             envs.reset(seed=-1)
+
+    def test_a_copy_goes_on_and_a_pickle_begins_anew(self):
+        for env in (HoverEnv(level="rates"), HoverVectorEnv(3, level="rates", autoreset_mode="NextStep", episode_s=0.1)):
+            actions = np.ones(env.action_space.shape)
+            env.reset(seed=7)
+            env.step(actions)
+            copied, pickled = copy.deepcopy(env), pickle.loads(pickle.dumps(env))
+            with self.assertRaises(RuntimeError):
+                pickled.step(actions)
+            for _ in range(5):
+                np.testing.assert_equal(copied.step(actions), env.step(actions))
+            np.testing.assert_array_equal(pickled.reset(seed=7)[0], env.reset(seed=7)[0])
+            np.testing.assert_equal(pickled.step(actions), env.step(actions))
+
+    def test_all_autoreset_modes_fly_the_same_episodes(self):
+        """Episodes of 3 steps, and what each mode says where one ends."""
+        flown = {}
+        for mode in ("SameStep", "NextStep", "Disabled"):
+            envs = HoverVectorEnv(2, level="rates", episode_s=0.06, autoreset_mode=mode)
+            value = envs.metadata["autoreset_mode"]
+            self.assertEqual(getattr(value, "value", value), mode)
+            rows = [envs.reset(seed=1)[0]]
+            while len(rows) < 8:
+                observations, rewards, terminated, truncated, infos = envs.step(np.zeros((2, 4)))
+                rows.append(observations)
+                if not truncated.all():
+                    continue
+                if mode == "SameStep":
+                    rows[-1:] = [infos["final_obs"], observations]
+                elif mode == "NextStep":
+                    observations, rewards, terminated, truncated, infos = envs.step(np.full((2, 4), np.pi))
+                    self.assertEqual((rewards.any(), terminated.any(), truncated.any(), infos), (False, False, False, {}))
+                    rows.append(observations)
+                else:
+                    with self.assertRaisesRegex(RuntimeError, "an episode has ended"):
+                        envs.step(np.zeros((2, 4)))
+                    first, _ = envs.reset(options={"reset_mask": np.array([True, False])})
+                    np.testing.assert_array_equal(first[1], observations[1], "not chosen: its last observation")
+                    rows.append(envs.reset(options={"reset_mask": np.array([False, True])})[0])
+            flown[mode] = np.array(rows)
+        np.testing.assert_array_equal(flown["SameStep"], flown["NextStep"])
+        np.testing.assert_array_equal(flown["SameStep"], flown["Disabled"])
+        with self.assertRaisesRegex(swiftlet.InputError, "^autoreset_mode is Never, must be"):
+            HoverVectorEnv(1, autoreset_mode="Never")
+        with self.assertRaisesRegex(swiftlet.InputError, "reset_mask must be bool"):
+            envs.reset(options={"reset_mask": [1, 0]})
 
     @unittest.skipUnless(USES_GYMNASIUM, "Gymnasium is not installed")
     def test_passes_the_checker_of_gymnasium(self):

@@ -79,9 +79,10 @@ std::vector<std::string> names_in(const Context& context, const FleetRequestOpti
     }
   }
   if (names.empty())
-    throw std::runtime_error(fmt::format("no vehicle found in domain {} within {:g} s{}",
-                                         options.network.domain, options.look_s,
-                                         dds::search_text(options.network)));
+    throw std::runtime_error(
+        fmt::format("no vehicle found in domain {} within {:g} s{}; {}", options.network.domain,
+                    options.look_s, dds::search_text(options.network),
+                    dds::search_advice(options.network, context.participant().refused_keys())));
   return names;
 }
 

@@ -63,6 +63,7 @@ NetworkFacts examine(const DoctorNetworkOptions& options) {
   facts.probe = probe.run(std::chrono::milliseconds(static_cast<std::int64_t>(options.time_s * 1e3)));
   facts.processes = participant.processes_seen();
   facts.mismatches = participant.mismatches_seen();
+  facts.refused_keys = participant.refused_keys();
   return facts;
 }
 

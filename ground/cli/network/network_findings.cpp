@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
+#include "swiftlet/services/dds/reach.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -25,7 +26,9 @@ void judge_interfaces(const NetworkFacts& facts, std::vector<NetworkFinding>& fo
   const bool reaches_others = std::any_of(facts.interfaces.begin(), facts.interfaces.end(),
                                           [](const io::Interface& it) { return !it.is_loopback; });
   if (!reaches_others && !facts.settings.on_loopback())
-    found.push_back({true, "no interface to other hosts is up: they cannot be reached"});
+    found.push_back({true,
+                     "no IPv4 address on an interface to other hosts that is up: they cannot be reached; "
+                     "IPv6 is not used"});
   for (const io::Interface& it : facts.interfaces) {
     if (it.mtu_bytes > 0 && it.mtu_bytes < kUsualMtu_bytes)
       found.push_back(
@@ -89,6 +92,7 @@ void judge_hosts(const NetworkFacts& facts, std::vector<NetworkFinding>& found) 
     if (host.clock_steps > 0)
       found.push_back({false, "the clock of " + name + " stepped while it was measured: something sets it"});
   }
+  if (!facts.refused_keys.empty()) return;  // the peers may be silent for want of a key
   for (const std::string& peer : facts.probe.silent_peers)
     found.push_back(
         {false, "peer " + peer + " did not answer: run `swiftlet doctor network` there at the same time; " +
@@ -102,12 +106,15 @@ std::vector<NetworkFinding> findings(const NetworkFacts& facts) {
   judge_interfaces(facts, found);
   judge_multicast(facts, found);
   judge_hosts(facts, found);
+  // Beside processes that are found, they may be those of others.
+  for (const std::string& refused : facts.refused_keys) found.push_back({facts.processes.empty(), refused});
   for (const std::string& mismatch : facts.mismatches) found.push_back({true, mismatch});
-  if (facts.processes.empty() && facts.probe.hosts.empty())
+  if (facts.processes.empty() && facts.probe.hosts.empty() && facts.refused_keys.empty())
     found.push_back(
-        {true, fmt::format("nobody answers in domain {}: no process, and no `swiftlet doctor network` on "
-                           "another host",
-                           facts.settings.domain)});
+        {true, fmt::format("nobody answers in domain {}{}: no process, and no `swiftlet doctor network` on "
+                           "another host; {}",
+                           facts.settings.domain, dds::search_text(facts.settings),
+                           dds::search_advice(facts.settings, {}))});
   std::stable_partition(found.begin(), found.end(), [](const NetworkFinding& it) { return it.is_fault; });
   return found;
 }

@@ -16,6 +16,7 @@ struct NetworkFacts {
   ground::ProbeReport probe;
   std::vector<dds::ProcessIdentity> processes;  // discovered over DDS
   std::vector<std::string> mismatches;          // of types, QoS and topic names: sentences
+  std::vector<std::string> refused_keys;        // likewise
 };
 
 struct NetworkFinding {

@@ -56,7 +56,11 @@ int error_of_binding(std::uint32_t port, const std::string& own_address) {
 std::uint32_t free_discovery_port(int domain, const std::string& address) {
   const DiscoveryPorts ports = discovery_ports(domain);
   for (std::uint32_t i = 0; i < ports.count; ++i) {
-    if (error_of_binding(ports.first + i * ports.gap, address) == 0) return i;
+    const int error = error_of_binding(ports.first + i * ports.gap, address);
+    if (error == 0) return i;
+    if (error == EADDRNOTAVAIL)
+      throw std::runtime_error("this host has not the IPv4 address " + address +
+                               ": its interface is down, or has lost it");
   }
   throw domain_is_full(domain);
 }

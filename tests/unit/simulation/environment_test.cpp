@@ -1,7 +1,9 @@
 // Environments of reinforcement learning: what they start with, reward and end, and that they repeat.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <memory>
 #include <stdexcept>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -246,6 +248,38 @@ TEST(VectorEnvironment, WorksWithTheThreadsThatTheSystemStarts) {
   }
 }
 #endif
+
+// GIVEN two environments in the middle of an episode THEN a copy goes on like them; of those that are not chosen nothing changes.
+TEST(VectorEnvironment, IsCopiedWithItsEpisodesAndStepsTheChosenOnes) {
+  auto environments =
+      std::make_unique<VectorEnvironment>(nominal(), task_at(ControlLevel::kRates), Dispersion{}, 2, 2);
+  const std::uint64_t seeds[] = {1, 2};
+  environments->reset(seeds);
+  const std::vector<double> actions{0.1, 0.2, 0.3, 9.0, 0.3, -0.1, 0.0, 11.0};
+  std::vector<double> rewards(2);
+  bool terminated[2], truncated[2];
+  const auto stepped = [&](VectorEnvironment& of, const bool* chosen) {
+    std::vector<double> seen(2 * kObservation), last(2 * kObservation);
+    of.step({actions.data(), seen.data(), rewards.data(), terminated, truncated, last.data(), chosen});
+    return seen;
+  };
+  for (int i = 0; i < 5; ++i) stepped(*environments, nullptr);
+  VectorEnvironment copy(*environments);
+  const std::vector<double> original = stepped(*environments, nullptr);
+  environments = nullptr;
+  EXPECT_EQ(stepped(copy, nullptr), original);
+
+  const bool second[] = {false, true};
+  const std::vector<double> half = stepped(copy, second);
+  EXPECT_TRUE(std::equal(half.begin(), half.begin() + kObservation, original.begin()));
+  EXPECT_NE(half[kObservation], original[kObservation]);
+  EXPECT_EQ(rewards[0], 0.0);
+  copy.reset(nullptr, second);
+  std::vector<double> seen(2 * kObservation);
+  copy.observe(seen.data());
+  EXPECT_TRUE(std::equal(seen.begin(), seen.begin() + kObservation, original.begin()));
+  EXPECT_NE(seen[kObservation], half[kObservation]);
+}
 
 TEST(VectorEnvironment, BeginsTheNextEpisodeInTheStepThatEndsOne) {
   HoverTask task = task_at(ControlLevel::kTrajectory);

@@ -10,6 +10,7 @@
 
 #include "swiftlet/io/command_line/command.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/io/text_file.hpp"
 #include "swiftlet/math/random.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 #include "tests/support/paths.hpp"
@@ -92,6 +93,24 @@ TEST_F(IdentifyUlog, AHoverHasNoSlope) {
   EXPECT_TRUE(found.at("slope_n").is_null());
   EXPECT_NE(found.at("not_identifiable").get<std::string>().find("actuator_motors is not logged"),
             std::string::npos);
+}
+
+// A sector that was not written, within a swing of the throttle.
+TEST_F(IdentifyUlog, SaysWhatIsLostWithin) {
+  const std::string file = log(0.05);
+  std::string bytes = io::read_text_file(file);
+  bytes.replace(bytes.size() / 2, 5000, std::string(5000, '\0'));
+  const json found = identify(folder_.write("lost.ulg", bytes));
+  EXPECT_NEAR(found.at("hover_throttle").get<double>(), 0.4, 0.002);
+  const double slope_n = 1.5 * base_.mass_kg * plant::kGravity / 0.4;
+  EXPECT_NEAR(found.at("slope_n").get<double>(), slope_n, 0.03 * slope_n);
+  ASSERT_EQ(found.at("lost").size(), 1U);
+  const json& loss = found.at("lost")[0];
+  EXPECT_NEAR(loss.at("bytes").get<double>(), 5000.0, 60.0);
+  EXPECT_NEAR(loss.at("from_s").get<double>(), 12.0, 0.1) << "the middle of the log";
+  const double lost_s = 24.0 * 5000.0 / static_cast<double>(bytes.size());
+  EXPECT_NEAR(loss.at("until_s").get<double>() - loss.at("from_s").get<double>(), lost_s, 0.1 * lost_s);
+  EXPECT_EQ(identify(file).at("lost"), json::array());
 }
 
 std::string refusal(const IdentifyFlightOptions& options, const plant::Vehicle& base) {

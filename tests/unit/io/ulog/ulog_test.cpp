@@ -1,5 +1,7 @@
 #include "swiftlet/io/ulog/ulog.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "swiftlet/io/config_error.hpp"
@@ -81,6 +83,53 @@ TEST(Ulog, AppendedDataIsReadBehindAMessageThatWasCutOff) {
           .ends_early());
   EXPECT_TRUE(Log(with_appended_at(cut, cut.size() + 100), "a.ulg").ends_early()) << "it was lost itself";
   EXPECT_THROW(Log(with_appended_at(bytes, 20), "a.ulg"), io::ConfigError) << "within the flags";
+}
+
+// 100 messages of two topics, 10 ms apart, with 5,000 bytes of zeros in place of some, and with the same bytes left out or of noise.
+TEST(Ulog, IsReadBehindWhatIsLostWithin) {
+  UlogWriter file;
+  file.format("motion:uint64_t timestamp;float[12] xyz;uint8_t kind;uint8_t[7] _padding0;");
+  file.format("state:uint64_t timestamp;uint8_t[16] values;");
+  file.subscribe(7, "motion");
+  file.subscribe(8, "state");
+  std::vector<std::size_t> begins;
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    begins.push_back(file.bytes().size());
+    std::string fields;
+    for (int k = 0; k < 12; ++k) fields += UlogWriter::raw(static_cast<float>(i + 1));
+    file.data(7, 1'000'000 + 10'000 * i, fields + "k");
+    file.data(8, 1'000'000 + 10'000 * i, std::string(16, 'x'));
+  }
+  const std::size_t at = begins[50] + 20;  // within a message
+  std::string zeros = file.bytes();
+  zeros.replace(at, 5000, std::string(5000, '\0'));
+  std::string hole = file.bytes();
+  hole.erase(at, 5000);
+  std::string noise = file.bytes();
+  for (std::size_t i = 0; i < 5000; ++i) noise[at + i] = static_cast<char>(i * i * 2654435761U >> 13U);
+  for (const std::string& bytes : {zeros, hole, noise}) {
+    const Log log(bytes, "a.ulg");
+    EXPECT_FALSE(log.ends_early());
+    const Table table = log.read("motion", {"xyz[0]"});
+    for (std::size_t i = 0; i < table.rows(); ++i)
+      EXPECT_NEAR(table.columns[0][i], 100.0 * (table.time_s[i] - 1.0) + 1.0, 1e-6) << "no value is made up";
+    ASSERT_EQ(log.losses().size(), 1U);
+    const Loss loss = log.losses().front();
+    EXPECT_NEAR(loss.from_s, 1.49, 1e-9);
+    EXPECT_NEAR(loss.until_s, 2.05, 0.011) << "55 rows are 5,005 bytes";
+    EXPECT_NEAR(static_cast<double>(table.rows()) + 100.0 * (loss.until_s - loss.from_s), 200.5, 0.6);
+  }
+  EXPECT_NEAR(static_cast<double>(Log(zeros, "a.ulg").losses().front().bytes), 5000.0, 100.0);
+}
+
+TEST(Ulog, TellsWhenPx4CouldNotLog) {
+  UlogWriter file = written();
+  file.message('O', UlogWriter::raw(std::uint16_t{35}));
+  const Log log(file.bytes(), "a.ulg");
+  ASSERT_EQ(log.losses().size(), 1U);
+  EXPECT_EQ(log.losses().front().bytes, 0U);
+  EXPECT_DOUBLE_EQ(log.losses().front().from_s, 1.02);
+  EXPECT_DOUBLE_EQ(log.losses().front().until_s, 1.055);
 }
 
 TEST(Ulog, PaddingHasItsPlaceAndIsNotLoggedAtTheEnd) {

@@ -1,5 +1,6 @@
 #include <csignal>
 #include <filesystem>
+#include <set>
 #include <stdexcept>
 #include <sys/resource.h>
 
@@ -8,6 +9,7 @@
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/record/mcap/merge.hpp"
 #include "swiftlet/record/mcap/reader.hpp"
+#include "swiftlet/record/mcap/record_writer.hpp"
 #include "swiftlet/record/mcap/topic_decoder.hpp"
 #include "swiftlet/record/mcap/writer.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -181,6 +183,51 @@ TEST_F(McapTest, FilesAreMergedInOrderOfTime) {
 }
 
 // The limit of a file's size stands for a full disk.
+// The file without the records of some kinds in its summary, and without the CRC of that.
+std::string with_less_summary(const std::string& whole, const std::set<Opcode>& left_out) {
+  constexpr std::size_t kFooterAndMagic = 9 + 20 + 8;
+  const std::size_t footer_at = whole.size() - kFooterAndMagic;
+  const auto footer = to_footer(first_record(view_of(whole.substr(footer_at)))->content);
+  std::string file = whole.substr(0, footer->summary_start);
+  for (std::size_t at = footer->summary_start; at < footer_at;) {
+    const std::string rest = whole.substr(at, footer_at - at);
+    const auto record = first_record(view_of(rest));
+    if (left_out.count(record->opcode) == 0) file += rest.substr(0, record->size);
+    at += record->size;
+  }
+  const bool is_empty = file.size() == footer->summary_start;
+  Bytes end;
+  RecordWriter out(end);
+  out.begin(Opcode::kFooter);
+  out.u64(is_empty ? 0 : footer->summary_start).u64(0).u32(0);
+  out.end();
+  return file + std::string(end.begin(), end.end()) + whole.substr(whole.size() - 8);
+}
+
+// MCAP leaves to the writer what a summary repeats and indexes. All choices of six kinds of records.
+TEST_F(McapTest, AFileIsReadWhateverItsSummaryLeavesOut) {
+  write_file(path(), kCount);
+  const std::string whole = file_content(path());
+  constexpr Opcode kKinds[] = {Opcode::kSchema,     Opcode::kChannel,         Opcode::kStatistics,
+                               Opcode::kChunkIndex, Opcode::kAttachmentIndex, Opcode::kMetadataIndex};
+  for (unsigned choice = 0; choice < 64; ++choice) {
+    std::set<Opcode> left_out{Opcode::kSummaryOffset};
+    for (unsigned kind = 0; kind < 6; ++kind) {
+      if ((choice >> kind & 1U) != 0) left_out.insert(kKinds[kind]);
+    }
+    const std::string less = with_less_summary(whole, left_out);
+    const Reader file(view_of(less), "less");
+    EXPECT_TRUE(file.damages().empty()) << choice;
+    EXPECT_EQ(messages_of(file), first_messages(kCount)) << choice;
+    for (const auto& [id, channel] : file.channels())
+      ASSERT_NE(file.schema_of(channel), nullptr) << channel.topic << ", " << choice;
+    EXPECT_EQ(file.schemas().size(), 2U) << choice;
+    EXPECT_EQ(file.metadata().size(), 1U) << choice;
+    ASSERT_EQ(file.attachments().size(), 1U) << choice;
+    EXPECT_EQ(file.statistics().message_count, 30U) << choice;
+  }
+}
+
 TEST_F(McapTest, AFullDiskLeavesAReadableFile) {
   ::signal(SIGXFSZ, SIG_IGN);
   ::rlimit before{};

@@ -18,6 +18,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/unit/services/dds/node_settings.hpp"
@@ -46,6 +47,18 @@ TEST(Participant, IgnoresProcessesOfOtherVehiclesThatIgnoreIt) {
   for (const Participant* const it : {&plant, &other_plant}) {
     for (const ProcessIdentity& seen : it->processes_seen()) EXPECT_NE(seen.name, "plant");
   }
+}
+
+// Fast DDS would map files of /dev/shm, and end with a bus error where it is full.
+TEST(Participant, UsesNoSharedMemory) {
+  const DomainLock lock;
+  Node plant(settings(lock, "plant"));
+  Node ground(settings(lock, "ground"));
+  const Publisher<messages::msg::Battery> battery = plant.publish(messages::topics::kBattery);
+  const Subscription subscription =
+      ground.subscribe<messages::msg::Battery>(messages::topics::kBattery, [](const auto&) {});
+  ASSERT_TRUE(eventually([&] { return subscription.matched() == 1; }));
+  EXPECT_EQ(io::read_text_file("/proc/self/maps").find("/dev/shm"), std::string::npos);
 }
 
 TEST(Node, ACallbackThatThrowsEndsItsSubscriptionAlone) {

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/services/rtps/key_rules.hpp"
 #include "tests/support/malloc_guard.hpp"
 #include "tests/support/rtps_message.hpp"
 
@@ -239,6 +240,18 @@ TEST(Seal, RefusesWhoHasNotTheKey) {
     EXPECT_NE(fault_of(guard, changed, kSecond_ns), "") << at;
   }
   EXPECT_EQ(fault_of(guard, datagram, kSecond_ns), "") << "forgeries do not use up its number";
+}
+
+// It would half discover a participant that refuses its answers, and take the network for a healthy one.
+TEST(Seal, IsRefusedByWhoHasNoKey) {
+  DatagramGuard guard;
+  EXPECT_EQ(fault_of(guard, sealed({kOldKey}, sample(1), kSecond_ns), kSecond_ns),
+            "sealed with a network key, and this process has none");
+  const std::vector<RefusalLog::Refusal> last = guard.refusals().last();
+  ASSERT_EQ(last.size(), 1U);
+  EXPECT_EQ(last[0].sender, kHost);
+  EXPECT_NE(std::string(remedy_of(last[0].rule)).find("--network-key"), std::string::npos);
+  EXPECT_EQ(remedy_of("message without submessages (8.3.3)"), nullptr);
 }
 
 TEST(Seal, RefusesRecordings) {

@@ -1,6 +1,7 @@
 #include "swiftlet/services/runtime/command_line.hpp"
 
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -96,6 +97,28 @@ TEST_F(Words, ThatAreNoChoiceGetTheChoices) {
 TEST_F(Words, ThatAreUnknownAreNamedBeforeThoseThatAreMissing) {
   EXPECT_EQ(message({"goto", "--sped"}), "Unknown option '--sped'. Did you mean '--speed'?");
   EXPECT_EQ(message({"goto"}), "x is required");
+}
+
+// What a program prints whose command `list` takes --domain, or its variable.
+std::string printed(std::vector<const char*> words) {
+  int domain = 0;
+  Program program("test", "a test");
+  const CommandLine list = program.command_line().add_subcommand("list", "a command");
+  list.add_option("--domain", domain, "").environment("SWIFTLET_TEST_DOMAIN").range(0, 232);
+  words.insert(words.begin(), "test");
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(program.parse(static_cast<int>(words.size()), words.data()), Program::Parsed::kWrongUsage);
+  const std::string text = testing::internal::GetCapturedStderr();
+  return text.substr(0, text.find('\n'));
+}
+
+TEST(Environment, IsBlamedForItsValuesOnly) {
+  setenv("SWIFTLET_TEST_DOMAIN", "9999", 1);
+  EXPECT_EQ(printed({"list"}), "SWIFTLET_TEST_DOMAIN: is 9999, must be a whole number from 0 to 232");
+  for (const std::vector<const char*>& given :
+       {std::vector{"list", "--domain", "9999"}, {"list", "--domain=9999"}})
+    EXPECT_EQ(printed(given), "--domain: is 9999, must be a whole number from 0 to 232");
+  unsetenv("SWIFTLET_TEST_DOMAIN");
 }
 
 TEST(Help, WrapsDescriptions) {

@@ -105,15 +105,37 @@ TEST(NetworkFindings, AreFaultsWithoutInterfaceOrAnswer) {
   NetworkFacts facts;
   facts.settings.open_network = true;
   facts.settings.domain = 5;
+  const std::string nobody =
+      ": no process, and no `swiftlet doctor network` on another host; check that it runs, with this domain "
+      "(--domain, ROS_DOMAIN_ID) and the key of this process (--network-key, --security)";
   EXPECT_EQ(faults(facts), (std::vector<std::string>{
-                               "no interface to other hosts is up: they cannot be reached",
-                               "nobody answers in domain 5: no process, and no `swiftlet doctor network` on "
-                               "another host"}));
+                               "no IPv4 address on an interface to other hosts that is up: they cannot be "
+                               "reached; IPv6 is not used",
+                               "nobody answers in domain 5" + nobody +
+                                   "; in a network without multicast give --peer or --discovery-server"}));
+  facts.settings.open_network = false;
+  EXPECT_EQ(faults(facts),
+            std::vector<std::string>{
+                "nobody answers in domain 5 on the loopback interface (on the network too with "
+                "--network-key, --security or --open-network)" +
+                nobody});
   facts = good_network();
   facts.mismatches = {"rt/kl1/imu: control does not receive from plant: deadline"};
   facts.probe.silent_peers = {"10.0.0.9"};
   EXPECT_EQ(faults(facts), facts.mismatches);
   EXPECT_TRUE(findings(facts).front().is_fault);
+}
+
+TEST(NetworkFindings, NameAKeyInPlaceOfAFirewallOrAnEmptyNetwork) {
+  NetworkFacts facts = good_network();
+  facts.probe.hosts.clear();
+  facts.probe.silent_peers = {"10.0.0.9"};
+  facts.refused_keys = {"datagrams from 10.0.0.9 are refused, sealed with another network key"};
+  EXPECT_EQ(faults(facts), facts.refused_keys);
+  EXPECT_TRUE(hints(facts).empty());
+  facts.processes = {{"control", "lab2", 7}};
+  EXPECT_TRUE(faults(facts).empty());
+  EXPECT_EQ(hints(facts), facts.refused_keys) << "of another network, perhaps";
 }
 
 }  // namespace swiftlet::ground::network_findings_test

@@ -114,6 +114,17 @@ TEST(DiscoveryPorts, AreTakenInTheirOrder) {
   EXPECT_EQ(free_discovery_port(lock.domain(), "127.0.0.1"), 4U);
 }
 
+// As 127.0.0.1, where the loopback interface is down.
+TEST(DiscoveryPorts, AreNotTakenWhereTheAddressIsMissing) {
+  try {
+    free_discovery_port(0, "192.0.2.1");
+    FAIL() << "no host has it";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(),
+                 "this host has not the IPv4 address 192.0.2.1: its interface is down, or has lost it");
+  }
+}
+
 TEST(DiscoveryPorts, HaveNumbers) {
   const DiscoveryPorts ports = discovery_ports(0);
   EXPECT_EQ(ports.index_of(7410), 0U);
