@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/analysis/identify/report_page.hpp"
+#include "swiftlet/io/json_text.hpp"
 
 namespace swiftlet::analysis {
 namespace {
@@ -273,7 +274,7 @@ std::string flight_identification_json(const FlightIdentificationReport& report)
   out["unexcited"] = found.unexcited;
   out["findings"] = found.findings;
   out["warnings"] = found.warnings;
-  return out.dump();
+  return io::json_text(out);
 }
 
 pages::Page flight_identification_page(const FlightIdentificationReport& report) {

@@ -11,6 +11,7 @@
 
 #include "swiftlet/analysis/identify/identification_figures.hpp"
 #include "swiftlet/analysis/identify/report_page.hpp"
+#include "swiftlet/io/json_text.hpp"
 
 namespace swiftlet::analysis {
 namespace {
@@ -218,7 +219,7 @@ std::string identification_json(const IdentificationReport& report) {
                     {"parameters", parameters},
                     {"experiments", experiments},
                     {"warnings", report.found.warnings}};
-  return out.dump();
+  return io::json_text(out);
 }
 
 }  // namespace swiftlet::analysis

@@ -14,6 +14,7 @@
 #include "swiftlet/ground/client/network_options.hpp"
 #include "swiftlet/ground/client/silence.hpp"
 #include "swiftlet/ground/terminal/state_lines.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/services/dds/reach.hpp"
 
 namespace swiftlet::ground {
@@ -115,7 +116,7 @@ int list_vehicles(const VehicleListOptions& options) {
   if (options.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const Found& vehicle : vehicles) json.push_back(to_json(vehicle));
-    std::printf("%s\n", json.dump(2).c_str());
+    std::printf("%s\n", io::json_text(json, 2).c_str());
   } else if (options.names) {
     for (const Found& vehicle : vehicles) std::printf("%s\n", vehicle.name.c_str());
   } else if (!vehicles.empty()) {

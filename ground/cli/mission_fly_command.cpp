@@ -7,6 +7,7 @@
 #include "swiftlet/ground/cli/request_command.hpp"
 #include "swiftlet/ground/cli/sent_mission.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
+#include "swiftlet/io/json_text.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -44,7 +45,7 @@ int fly_mission(const MissionFlyOptions& options) {
     nlohmann::ordered_json json = {{"mission", mission.name}, {"accepted", flight.accepted()}};
     if (!options.no_wait) json["completed"] = end.done();
     if (!end.done()) json["reason"] = end.reason;
-    std::printf("%s\n", json.dump().c_str());
+    std::printf("%s\n", io::json_text(json).c_str());
   } else if (end.done()) {
     std::printf("%s: %s\n", mission.name.c_str(), options.no_wait ? "started" : "completed");
   }

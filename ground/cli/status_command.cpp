@@ -15,6 +15,7 @@
 #include "swiftlet/ground/client/silence.hpp"
 #include "swiftlet/ground/terminal/clock_text.hpp"
 #include "swiftlet/ground/terminal/state_lines.hpp"
+#include "swiftlet/io/json_text.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -215,7 +216,7 @@ int show_status(const StatusOptions& options) {
   const TopicRates rates = rates_between(before, after, options.watch_s);
   const std::vector<std::string> mismatches = client.node().mismatches_seen();
   if (options.json) {
-    std::printf("%s\n", status_json(after, rates, options, mismatches).dump(2).c_str());
+    std::printf("%s\n", io::json_text(status_json(after, rates, options, mismatches), 2).c_str());
   } else if (is_flown_by_autopilot(after)) {
     print_flown_by_autopilot(after, rates, options);
   } else {

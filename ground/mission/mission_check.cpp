@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/math/angles.hpp"
 #include "swiftlet/plant/model/endurance.hpp"
 
@@ -238,7 +239,7 @@ std::string check_json(const MissionCheck& check, const io::MissionFile& file, c
                              {"duration_s", item.duration_s},
                              {"demands", std::move(demands)}});
   }
-  return json.dump(2);
+  return io::json_text(json, 2);
 }
 
 }  // namespace swiftlet::ground

@@ -19,6 +19,7 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/command_line/programs.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
 
 namespace swiftlet::ground {
@@ -79,8 +80,8 @@ int report(const ReportOptions& options) {
     write_page(flights, options.page);
     return io::kDone;
   }
-  std::string text =
-      options.json ? analysis::comparison_json(flights).dump(2) + "\n" : analysis::comparison_table(flights);
+  std::string text = options.json ? io::json_text(analysis::comparison_json(flights), 2) + "\n"
+                                  : analysis::comparison_table(flights);
   if (options.settings) text += "\n" + analysis::settings_table(flights);
   std::fputs(text.c_str(), stdout);
   if (options.json || records.size() > 1 || !fs::is_directory(records.front())) return io::kDone;
