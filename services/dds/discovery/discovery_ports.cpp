@@ -7,7 +7,6 @@
 #include <sys/socket.h>
 
 #include "swiftlet/io/descriptor.hpp"
-#include "swiftlet/io/network/interfaces.hpp"
 #include "swiftlet/io/network/sockets.hpp"
 #include "swiftlet/services/dds/fast_dds.hpp"
 
@@ -57,11 +56,7 @@ int error_of_binding(std::uint32_t port, const std::string& own_address) {
 std::uint32_t free_discovery_port(int domain, const std::string& address) {
   const DiscoveryPorts ports = discovery_ports(domain);
   for (std::uint32_t i = 0; i < ports.count; ++i) {
-    const int error = error_of_binding(ports.first + i * ports.gap, address);
-    if (error == 0) return i;
-    if (error == EADDRNOTAVAIL)
-      throw std::runtime_error(address + " is no address of this host now" +
-                               (address == io::kLoopback ? ": its loopback interface is down" : ""));
+    if (error_of_binding(ports.first + i * ports.gap, address) == 0) return i;
   }
   throw domain_is_full(domain);
 }

@@ -27,8 +27,7 @@ std::runtime_error domain_is_full(int domain);
 // Why a UDP port cannot be opened, an errno; 0 if it can. address: an IPv4 address of this host; empty: all of them.
 int error_of_binding(std::uint32_t port, const std::string& address);
 
-// Returns the index of the first free port of the domain, from 0. address: as above. Throws std::runtime_error if all
-// are taken, or if this host does not have the address now.
+// Returns the index of the first free port of the domain, from 0. address: as above. Throws domain_is_full().
 std::uint32_t free_discovery_port(int domain, const std::string& address);
 
 // Returns to how many of the domain's ports a process with port index `own` announces itself: to all ports

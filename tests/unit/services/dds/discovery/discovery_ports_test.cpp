@@ -136,16 +136,6 @@ TEST(DiscoveryPorts, FullDomainIsRefused) {
   }
 }
 
-// A host without the address is no full domain. 192.0.2.1 is for documentation: no host has it.
-TEST(DiscoveryPorts, AMissingAddressIsNamed) {
-  try {
-    free_discovery_port(0, "192.0.2.1");
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(), "192.0.2.1 is no address of this host now");
-  }
-}
-
 // Domain 232 has fewer than 120 ports below the end of the UDP range.
 // More often than it has ports, while another participant of the process stays.
 TEST(DiscoveryPorts, LastDomainCanBeJoinedAgainAndAgain) {
