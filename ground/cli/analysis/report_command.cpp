@@ -48,7 +48,8 @@ void write_page(const std::vector<analysis::RecordedFlight>& recorded, const std
   }
   std::string title = flights.size() == 1 ? "Flight" : "Flights";
   for (std::size_t i = 0; i < flights.size(); ++i) title += (i == 0 ? " " : ", ") + flights[i].name;
-  const std::string note = "Time is 0 at take-off. Errors count from take-off to landing.";
+  const std::string note =
+      "Time counts from the start of the mission, without one from take-off. Errors count until it lands.";
   const std::string text = pages::flight_page(title, note, flights);
   io::write_atomically(page, text);
   std::printf("report: wrote %s, %zu %s, %.1f MB\n", page.c_str(), flights.size(),
