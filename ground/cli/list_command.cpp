@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <map>
 #include <memory>
 #include <thread>
@@ -99,13 +101,16 @@ void print(const std::vector<Found>& vehicles) {
     for (const Silence& silence : vehicle.silences)
       print_alarm(stdout, vehicle.name + ": " + to_string(silence, std::chrono::system_clock::now()));
   }
-  std::printf("%-16s %-12s %-12s %9s %11s %8s\n", "vehicle", "model", "mode", "battery", "controllers",
+  std::size_t widest = std::strlen("vehicle");
+  for (const Found& vehicle : vehicles) widest = std::max(widest, vehicle.name.size());
+  const int width = static_cast<int>(widest);
+  std::printf("%-*s %-12s %-12s %9s %11s %8s\n", width, "vehicle", "model", "mode", "battery", "controllers",
               "mocap");
   for (const Found& vehicle : vehicles) {
     const View& view = vehicle.view;
     const std::string battery =
         view.battery.seen() ? fmt::format("{:.2f} V", view.battery.message.voltage_v()) : "-";
-    std::printf("%-16s %-12s %-12s %9s %11d %5.0f Hz\n", vehicle.name.c_str(),
+    std::printf("%-*s %-12s %-12s %9s %11d %5.0f Hz\n", width, vehicle.name.c_str(),
                 view.vehicle.seen() ? view.vehicle.message.name().c_str() : "-", mode_of(vehicle).c_str(),
                 battery.c_str(), vehicle.controllers, vehicle.mocap_hz);
   }

@@ -203,8 +203,9 @@ void print_results(const RequestOutcomes& outcomes, const std::string& what, boo
 
 runtime::CommandLine add_vehicle_subcommand(runtime::CommandLine root, const std::string& name,
                                             const std::string& description, const std::string& example,
-                                            const std::shared_ptr<CommandOptions>& options) {
-  return add_subcommand(root, name, description, example, options, Vehicles::kOne);
+                                            const std::shared_ptr<CommandOptions>& options,
+                                            Vehicles vehicles) {
+  return add_subcommand(root, name, description, example, options, vehicles);
 }
 
 runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std::string& name,
