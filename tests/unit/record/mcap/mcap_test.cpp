@@ -125,7 +125,7 @@ TEST_F(McapTest, ADamagedChunkLosesNoOther) {
   spoiled[second.offset + second.length - 3] ^= 0x10;
   EXPECT_EQ(refusal([&] { messages_of(Reader(view_of(spoiled), "spoiled.mcap")); }),
             "spoiled.mcap: byte " + std::to_string(second.offset) +
-                ": the chunk does not unpack; `swiftlet log repair` keeps the rest");
+                ": the CRC of the chunk is wrong; `swiftlet log repair` keeps the rest");
 
   const Reader file(view_of(spoiled), "spoiled.mcap", Access::kScanned);
   ASSERT_EQ(file.damages().size(), 2U);
