@@ -17,6 +17,7 @@
 #include "swiftlet/ground/flight/recorded_flight.hpp"
 #include "swiftlet/io/command_line/command.hpp"
 #include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/simulation/open_loop.hpp"
 
 namespace swiftlet::python {
@@ -253,7 +254,7 @@ void add_flight(py::module_& module) {
           "record", [](const Flight& self) { return self.report.record_dir; },
           "The folder of its record; empty without one.")
       .def(
-          "report_json", [](const Flight& self) { return analysis::to_json(self.report).dump(2); },
+          "report_json", [](const Flight& self) { return io::json_text(analysis::to_json(self.report), 2); },
           "What `swiftlet sim fly --json` prints.")
       .def(
           "truth", [](const Flight& self) { return columns_of(self.flown->truth); },

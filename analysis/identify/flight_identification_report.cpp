@@ -1,12 +1,14 @@
 #include "swiftlet/analysis/identify/flight_identification_report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/analysis/identify/report_page.hpp"
+#include "swiftlet/io/json_text.hpp"
 
 namespace swiftlet::analysis {
 namespace {
@@ -109,7 +111,12 @@ plot::Figure horizon_figure(const FlightIdentification& found, const std::string
 }
 
 std::string ratio_text(const FileComparison& row) {
-  return row.identified.identifiable ? fmt::format("{:.3f}", row.ratio()) : "-";
+  if (!row.identified.identifiable) return "-";
+  return text_of(row.ratio(), row.identified.half_width / std::abs(row.file)).value;
+}
+std::string file_text(const FileComparison& row) {
+  return row.identified.identifiable ? text_of(row.file, row.identified.half_width).value
+                                     : three_digits(row.file);
 }
 
 std::string comparison_table(const FlightIdentification& found) {
@@ -117,8 +124,8 @@ std::string comparison_table(const FlightIdentification& found) {
   std::string out = fmt::format("  {:<30} {:>12}  {:<10} {:>12} {:>8}  {}\n", "comparison with vehicle file",
                                 "identified", "+- (95 %)", "file", "ratio", "unit");
   for (const FileComparison& row : found.comparisons) {
-    out += fmt::format("  {:<30} {} {:12.5g} {:>8}  {}\n", row.identified.parameter,
-                       table_cells(row.identified), row.file, ratio_text(row), row.identified.unit);
+    out += fmt::format("  {:<30} {} {:>12} {:>8}  {}\n", row.identified.parameter,
+                       table_cells(row.identified), file_text(row), ratio_text(row), row.identified.unit);
   }
   return out;
 }
@@ -128,15 +135,15 @@ std::string horizon_table(const FlightIdentification& found) {
   std::string out = fmt::format("  {:<30} {:>12} {:>12} {:>12}  {}\n", "error by the commands, RMS",
                                 "horizon, s", "error", "persistence", "unit");
   for (const HorizonError& e : found.horizons) {
-    out += fmt::format("  {:<30} {:12.4g} {:12.4g} {:12.4g}  {}\n", e.quantity.c_str(), e.horizon_s,
-                       e.by_commands, e.persistence, e.unit.c_str());
+    out += fmt::format("  {:<30} {:>12} {:>12} {:>12}  {}\n", e.quantity, three_digits(e.horizon_s),
+                       three_digits(e.by_commands), three_digits(e.persistence), e.unit);
   }
   return out;
 }
 
 // A row with a text, numbers and a unit.
 pages::Row row_of(pages::Row texts, std::initializer_list<double> numbers, const std::string& unit) {
-  for (const double number : numbers) texts.push_back(fmt::format("{:.4g}", number));
+  for (const double number : numbers) texts.push_back(three_digits(number));
   texts.push_back(unit_cell(unit));
   return texts;
 }
@@ -147,8 +154,8 @@ void add_comparison(pages::Page& page, const FlightIdentification& found) {
   for (const FileComparison& row : found.comparisons) {
     const ParameterEstimate& e = row.identified;
     const EstimateText text = text_of(e);
-    rows.push_back({e.parameter, e.symbol, text.value, text.half_width, fmt::format("{:.4g}", row.file),
-                    ratio_text(row), unit_cell(e.unit)});
+    rows.push_back({e.parameter, e.symbol, text.value, text.half_width, file_text(row), ratio_text(row),
+                    unit_cell(e.unit)});
   }
   page.heading("Comparison with the vehicle file");
   page.table({"parameter", "symbol", "identified", "\u00b1 (95 %)", "file", "ratio", "unit"}, rows);
@@ -240,8 +247,9 @@ std::string flight_identification_table(const FlightIdentificationReport& report
   out += fmt::format("  {:<30} {:>12} {:>12} {:>12} {:>12}  {}\n", "prediction error, RMS", "one step",
                      "persistence", "0.5 s", "persistence", "unit");
   for (const PredictionError& e : found.errors) {
-    out += fmt::format("  {:<30} {:12.4g} {:12.4g} {:12.4g} {:12.4g}  {}\n", e.quantity.c_str(), e.one_step,
-                       e.persistence_one_step, e.half_second, e.persistence_half_second, e.unit.c_str());
+    out += fmt::format("  {:<30} {:>12} {:>12} {:>12} {:>12}  {}\n", e.quantity, three_digits(e.one_step),
+                       three_digits(e.persistence_one_step), three_digits(e.half_second),
+                       three_digits(e.persistence_half_second), e.unit);
   }
   out += horizon_table(found);
   for (const auto& [kind, sentences] : notes(report)) {
@@ -273,7 +281,7 @@ std::string flight_identification_json(const FlightIdentificationReport& report)
   out["unexcited"] = found.unexcited;
   out["findings"] = found.findings;
   out["warnings"] = found.warnings;
-  return out.dump();
+  return io::json_text(out);
 }
 
 pages::Page flight_identification_page(const FlightIdentificationReport& report) {

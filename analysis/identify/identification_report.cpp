@@ -11,6 +11,7 @@
 
 #include "swiftlet/analysis/identify/identification_figures.hpp"
 #include "swiftlet/analysis/identify/report_page.hpp"
+#include "swiftlet/io/json_text.hpp"
 
 namespace swiftlet::analysis {
 namespace {
@@ -147,10 +148,11 @@ void add_summary(pages::Page& page, const IdentificationReport& report) {
           report.base_vehicle + ".",
       "quiet");
   std::vector<pages::Row> rows;
-  for (const plant::ParameterUncertainty& p : report.found.uncertainty.parameters)
-    rows.push_back({p.parameter, fmt::format("{:.5g}", 0.5 * (p.low + p.high)),
-                    fmt::format("{:.5g} to {:.5g}", p.low, p.high), report.found.sources.at(p.parameter)});
-  page.table({"parameter", "value", "95 % interval", "source"}, rows);
+  for (const plant::ParameterUncertainty& p : report.found.uncertainty.parameters) {
+    const EstimateText text = text_of(0.5 * (p.low + p.high), 0.5 * (p.high - p.low));
+    rows.push_back({p.parameter, text.value, text.half_width, report.found.sources.at(p.parameter)});
+  }
+  page.table({"parameter", "value", "\u00b1 (95 %)", "source"}, rows);
   for (const std::string& warning : report.found.warnings) page.paragraph(warning + ".", "warning");
 }
 
@@ -218,7 +220,7 @@ std::string identification_json(const IdentificationReport& report) {
                     {"parameters", parameters},
                     {"experiments", experiments},
                     {"warnings", report.found.warnings}};
-  return out.dump();
+  return io::json_text(out);
 }
 
 }  // namespace swiftlet::analysis

@@ -10,6 +10,7 @@
 #include "swiftlet/identification/fitting/estimate.hpp"
 #include "swiftlet/identification/flight/thrust_scale.hpp"
 #include "swiftlet/io/command_line/command.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/io/ulog/ulog.hpp"
 
@@ -168,7 +169,8 @@ int identify_ulog(const IdentifyFlightOptions& options, const plant::Vehicle& ba
       std::printf("%s", table_of(result, base, base_name).c_str());
     }
   }
-  if (options.json) std::printf("%s\n", nlohmann::ordered_json{{"thrust_scales", all}}.dump().c_str());
+  if (options.json)
+    std::printf("%s\n", io::json_text(nlohmann::ordered_json{{"thrust_scales", all}}).c_str());
   return io::kDone;
 }
 

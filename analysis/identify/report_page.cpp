@@ -31,15 +31,19 @@ std::string with_digits(double value, int digits) {
 
 }  // namespace
 
+std::string three_digits(double value) { return with_digits(value, 3); }
+
+EstimateText text_of(double value, double half_width) {
+  const double size = std::abs(value);
+  if (!(half_width > 0.0) || !std::isfinite(half_width) || !(size > 0.0))
+    return {fmt::format("{:.5g}", value), fmt::format("{:.2g}", half_width)};
+  const double digits = 2.0 + std::floor(std::log10(size)) - std::floor(std::log10(half_width));
+  return {with_digits(value, static_cast<int>(std::clamp(digits, 1.0, 12.0))), with_digits(half_width, 2)};
+}
+
 EstimateText text_of(const identification::ParameterEstimate& estimate) {
   if (!estimate.identifiable) return {"-", "-"};
-  const double value = std::abs(estimate.value);
-  const double half_width = estimate.half_width;
-  if (!(half_width > 0.0) || !std::isfinite(half_width) || !(value > 0.0))
-    return {fmt::format("{:.5g}", estimate.value), fmt::format("{:.2g}", half_width)};
-  const double digits = 2.0 + std::floor(std::log10(value)) - std::floor(std::log10(half_width));
-  return {with_digits(estimate.value, static_cast<int>(std::clamp(digits, 1.0, 12.0))),
-          with_digits(half_width, 2)};
+  return text_of(estimate.value, estimate.half_width);
 }
 
 std::string table_cells(const identification::ParameterEstimate& estimate) {

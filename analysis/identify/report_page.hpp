@@ -17,12 +17,16 @@ std::string written_unit(const std::string& unit);
 // The same for a cell of a table: empty for the unit 1.
 std::string unit_cell(const std::string& unit);
 
-// Value and half width of the interval: the half width with two digits, the value up to the last of them; dashes for one that is not
-// identifiable.
+// The precision of these reports: the half width of an interval has two digits, its value ends with the last of them; what has no
+// interval has three digits.
+std::string three_digits(double value);
 struct EstimateText {
   std::string value;
   std::string half_width;
 };
+EstimateText text_of(double value, double half_width);
+
+// Dashes for one that is not identifiable.
 EstimateText text_of(const identification::ParameterEstimate& estimate);
 
 // As the columns "value" and "+- (95 %)" of a table in a terminal.

@@ -11,6 +11,7 @@
 #include "swiftlet/analysis/pages/assets.hpp"
 #include "swiftlet/analysis/pages/html.hpp"
 #include "swiftlet/analysis/pages/packed_column.hpp"
+#include "swiftlet/io/json_text.hpp"
 
 namespace swiftlet::pages {
 namespace {
@@ -134,7 +135,7 @@ std::string flight_page(const std::string& title, const std::string& note,
   Json data = Json::array();
   for (const FlightLog& flight : flights) data.push_back(json_of(flight, columns));
   // In a script element only '<' could end the text.
-  const std::string json = boost::algorithm::replace_all_copy(data.dump(), "<", "\\u003c");
+  const std::string json = boost::algorithm::replace_all_copy(io::json_text(data), "<", "\\u003c");
   const std::string body = element("h1", title) + "\n<div class=\"top\">" + summary_table(flights) +
                            "<div id=\"scene\"></div></div>\n" + kControls +
                            "<div id=\"timeline\"></div>\n<p class=\"quiet\">" + escaped(note) + " " + kHint +

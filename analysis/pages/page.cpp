@@ -7,6 +7,7 @@
 
 #include "swiftlet/analysis/pages/assets.hpp"
 #include "swiftlet/analysis/pages/packed_column.hpp"
+#include "swiftlet/io/json_text.hpp"
 
 namespace swiftlet::pages {
 namespace {
@@ -72,13 +73,12 @@ void Page::figures(const std::vector<plot::Figure>& figures) {
       }
       const std::string caption = caption_of(figure, panel);
       body_ += "<figure data-panel=\"" +
-               escaped(Json({{"caption", caption},
-                             {"height", figure.panels.size() == 1 ? figure.height : 360},
-                             {"x", json_of(panel.x)},
-                             {"y", json_of(panel.y)},
-                             {"zero_line", panel.zero_line},
-                             {"series", std::move(series)}})
-                           .dump()) +
+               escaped(io::json_text(Json({{"caption", caption},
+                                           {"height", figure.panels.size() == 1 ? figure.height : 360},
+                                           {"x", json_of(panel.x)},
+                                           {"y", json_of(panel.y)},
+                                           {"zero_line", panel.zero_line},
+                                           {"series", std::move(series)}}))) +
                "\">" + element("figcaption", caption) + "</figure>\n";
     }
   }

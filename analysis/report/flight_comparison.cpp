@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include "swiftlet/io/json_text.hpp"
+
 namespace swiftlet::analysis {
 namespace {
 
@@ -51,7 +53,7 @@ std::string millimetres(const nlohmann::ordered_json& report, const char* key) {
 std::string text(const nlohmann::ordered_json& report, const char* key) {
   const auto found = report.find(key);
   if (found == report.end()) return kMissing;
-  return found->is_string() ? found->get<std::string>() : found->dump();
+  return found->is_string() ? found->get<std::string>() : io::json_text(*found);
 }
 
 std::vector<Row> figures(const std::vector<RecordedFlight>& flights) {

@@ -13,6 +13,7 @@
 #include "swiftlet/analysis/plot/gnuplot.hpp"
 #include "swiftlet/analysis/plot/path_figure.hpp"
 #include "swiftlet/io/atomic_write.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/math/time.hpp"
 
 namespace swiftlet::analysis {
@@ -83,7 +84,7 @@ plot::Figure flight_figure(const record::Flight& flight, const FlightReport& rep
 }  // namespace
 
 void write_report_json(const std::filesystem::path& file, const FlightReport& report) {
-  io::write_atomically(file, to_json(report).dump(2) + "\n");
+  io::write_atomically(file, io::json_text(to_json(report), 2) + "\n");
 }
 
 std::string draw_flight(const std::filesystem::path& folder, const record::Flight& flight,

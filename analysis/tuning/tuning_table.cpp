@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/control/design/margins.hpp"
+#include "swiftlet/io/json_text.hpp"
 
 namespace swiftlet::analysis {
 namespace {
@@ -83,7 +84,7 @@ std::string tuning_json(const TuningStudy& study) {
                       {"actuation_s", study.delay.actuation_s},
                       {"flight", study.delay.flight}}},
                     {"settings", settings}};
-  return out.dump(2);
+  return io::json_text(out, 2);
 }
 
 }  // namespace swiftlet::analysis

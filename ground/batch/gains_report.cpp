@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/control/design/flown_loops.hpp"
+#include "swiftlet/io/json_text.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -183,7 +184,7 @@ std::string gains_json(const ControlDesign& design, const MarginStudy& margins,
       {"samples", margins.samples},
       {"seed", margins.seed},
       {"unstable", margins.unstable}};
-  return out.dump(2);
+  return io::json_text(out, 2);
 }
 
 std::string gains_table(const ControlDesign& design, const MarginStudy& margins,

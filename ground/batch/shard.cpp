@@ -11,6 +11,7 @@
 
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/command_line/command.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::ground {
@@ -195,7 +196,7 @@ void write_shard(const fs::path& folder, const ShardResult& result) {
   Json& runs = json["runs"] = Json::array();
   for (const BatchRun& run : report.batch.runs) runs.push_back(exact_json(run));
   json["inputs"] = result.inputs;
-  io::write_atomically(folder / kShardFile, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  io::write_atomically(folder / kShardFile, io::json_text(json, 1) + "\n");
 }
 
 ShardResult read_shard(const fs::path& folder) {

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <map>
 #include <memory>
 #include <thread>
@@ -14,6 +16,7 @@
 #include "swiftlet/ground/client/network_options.hpp"
 #include "swiftlet/ground/client/silence.hpp"
 #include "swiftlet/ground/terminal/state_lines.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/services/dds/reach.hpp"
 
 namespace swiftlet::ground {
@@ -97,13 +100,16 @@ void print(const std::vector<Found>& vehicles) {
     for (const Silence& silence : vehicle.silences)
       print_alarm(stdout, vehicle.name + ": " + to_string(silence, std::chrono::system_clock::now()));
   }
-  std::printf("%-16s %-12s %-12s %9s %11s %8s\n", "vehicle", "model", "mode", "battery", "controllers",
+  std::size_t widest = std::strlen("vehicle");
+  for (const Found& vehicle : vehicles) widest = std::max(widest, vehicle.name.size());
+  const int width = static_cast<int>(widest);
+  std::printf("%-*s %-12s %-12s %9s %11s %8s\n", width, "vehicle", "model", "mode", "battery", "controllers",
               "mocap");
   for (const Found& vehicle : vehicles) {
     const View& view = vehicle.view;
     const std::string battery =
         view.battery.seen() ? fmt::format("{:.2f} V", view.battery.message.voltage_v()) : "-";
-    std::printf("%-16s %-12s %-12s %9s %11d %5.0f Hz\n", vehicle.name.c_str(),
+    std::printf("%-*s %-12s %-12s %9s %11d %5.0f Hz\n", width, vehicle.name.c_str(),
                 view.vehicle.seen() ? view.vehicle.message.name().c_str() : "-", mode_of(vehicle).c_str(),
                 battery.c_str(), vehicle.controllers, vehicle.mocap_hz);
   }
@@ -115,7 +121,7 @@ int list_vehicles(const VehicleListOptions& options) {
   if (options.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const Found& vehicle : vehicles) json.push_back(to_json(vehicle));
-    std::printf("%s\n", json.dump(2).c_str());
+    std::printf("%s\n", io::json_text(json, 2).c_str());
   } else if (options.names) {
     for (const Found& vehicle : vehicles) std::printf("%s\n", vehicle.name.c_str());
   } else if (!vehicles.empty()) {

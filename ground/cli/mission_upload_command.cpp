@@ -6,6 +6,7 @@
 #include "swiftlet/ground/cli/request_command.hpp"
 #include "swiftlet/ground/cli/sent_mission.hpp"
 #include "swiftlet/io/format.hpp"
+#include "swiftlet/io/json_text.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -24,7 +25,7 @@ int upload(const MissionUploadOptions& options) {
     nlohmann::ordered_json json = {{"mission", file.name}, {"accepted", answer.accepted()}};
     if (answer.accepted()) json["mission_id"] = vehicle.uploaded_id();
     if (!answer.accepted()) json["reason"] = answer.reason;
-    std::printf("%s\n", json.dump().c_str());
+    std::printf("%s\n", io::json_text(json).c_str());
   } else if (answer.accepted()) {
     std::printf("%s: uploaded to %s as mission %llu, %s\n", file.name.c_str(),
                 options.network.vehicle.c_str(), static_cast<unsigned long long>(vehicle.uploaded_id()),

@@ -16,6 +16,7 @@
 #include "swiftlet/ground/client/network_options.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/io/command_line/progress_line.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/record/recorder/flight_recorder.hpp"
 #include "swiftlet/services/dds/reach.hpp"
 #include "swiftlet/services/messages/vehicle_names.hpp"
@@ -90,7 +91,7 @@ void print(const RecordOptions& options, const record::RecorderTotals& totals, d
         {"bytes", totals.file_bytes}, {"dropped", totals.dropped},
         {"lost", totals.lost}};
     if (fault) json["reason"] = *fault;
-    std::printf("%s\n", json.dump().c_str());
+    std::printf("%s\n", io::json_text(json).c_str());
     return;
   }
   std::printf("record: %s\n",

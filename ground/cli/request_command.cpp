@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/client/network_options.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/services/messages/vehicle_names.hpp"
 
 namespace swiftlet::ground {
@@ -178,7 +179,7 @@ void await_all(RequestOutcomes& outcomes, const VehicleRequest& request, const R
 void print_json(const RequestOutcomes& outcomes) {
   nlohmann::ordered_json json;
   for (const RequestOutcome& outcome : outcomes) json[outcome.vehicle->name()] = to_json(outcome);
-  std::printf("%s\n", (outcomes.size() == 1 ? json.front() : json).dump().c_str());
+  std::printf("%s\n", io::json_text(outcomes.size() == 1 ? json.front() : json).c_str());
 }
 
 // Some reasons begin with the name of the request, which the line already has.
@@ -202,8 +203,9 @@ void print_results(const RequestOutcomes& outcomes, const std::string& what, boo
 
 runtime::CommandLine add_vehicle_subcommand(runtime::CommandLine root, const std::string& name,
                                             const std::string& description, const std::string& example,
-                                            const std::shared_ptr<CommandOptions>& options) {
-  return add_subcommand(root, name, description, example, options, Vehicles::kOne);
+                                            const std::shared_ptr<CommandOptions>& options,
+                                            Vehicles vehicles) {
+  return add_subcommand(root, name, description, example, options, vehicles);
 }
 
 runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std::string& name,

@@ -48,11 +48,12 @@ struct VehicleRequest {
   std::string undone = "disarmed again", not_undone = "still armed", cause = "did not arm";
 };
 
-// Adds a subcommand for one vehicle with the network options, --timeout and --json. The command's run
-// function must keep `options` alive.
+// Adds a subcommand with the network options, --timeout and --json. The command's run function must keep `options`
+// alive.
 runtime::CommandLine add_vehicle_subcommand(runtime::CommandLine root, const std::string& name,
                                             const std::string& description, const std::string& example,
-                                            const std::shared_ptr<CommandOptions>& options);
+                                            const std::shared_ptr<CommandOptions>& options,
+                                            Vehicles vehicles = Vehicles::kOne);
 
 // As add_vehicle_subcommand(), with --wait and --no-wait in addition, and for several vehicles by default.
 runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std::string& name,

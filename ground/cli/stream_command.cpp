@@ -16,6 +16,7 @@
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/flight_csv.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/io/missions/flight_table.hpp"
 #include "swiftlet/io/missions/setpoint_rows.hpp"
 #include "swiftlet/io/text_file.hpp"
@@ -244,7 +245,7 @@ void print(const StreamResult& result, const VehicleState& end, bool json) {
                                    {"duration_s", result.duration_s},
                                    {"mode", control::to_string(end.mode)}};
     if (!result.fault.empty()) text["reason"] = result.fault;
-    std::printf("%s\n", text.dump().c_str());
+    std::printf("%s\n", io::json_text(text).c_str());
   } else {
     std::printf(
         "stream: %llu setpoints in %.1f s, %llu accepted and %llu refused; now %s at (%.2f, %.2f, "

@@ -11,6 +11,7 @@
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/ground/mission/shifted_mission.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
@@ -224,7 +225,7 @@ std::string check_json(const FleetCheck& check) {
       {"needed_slack_s", check.needed_slack_s},
       {"vehicles", vehicles},
       {"pairs", pairs}};
-  return json.dump();
+  return io::json_text(json);
 }
 
 }  // namespace swiftlet::ground

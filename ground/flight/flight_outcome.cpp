@@ -10,6 +10,7 @@
 
 #include "swiftlet/analysis/report/flight_files.hpp"
 #include "swiftlet/io/command_line/command.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
 
 namespace swiftlet::ground {
@@ -81,7 +82,7 @@ void write_report(const std::filesystem::path& folder, const record::Flight& fli
 int print_report(const analysis::FlightReport& report, bool json, io::ProgressLine& progress) {
   progress.close();
   if (json) {
-    std::printf("%s\n", to_json(report).dump().c_str());
+    std::printf("%s\n", io::json_text(to_json(report)).c_str());
     if (!report.completed) progress.say("swiftlet: " + report.reason);
   } else {
     std::fputs(to_text(report).c_str(), report.completed ? stdout : stderr);
@@ -98,7 +99,7 @@ int print_report(const std::vector<analysis::FlightReport>& reports, bool json, 
   if (json) {
     nlohmann::ordered_json whole = {{"completed", all}, {"vehicles", nlohmann::ordered_json::array()}};
     for (const analysis::FlightReport& report : reports) whole["vehicles"].push_back(to_json(report));
-    std::printf("%s\n", whole.dump().c_str());
+    std::printf("%s\n", io::json_text(whole).c_str());
   }
   for (const analysis::FlightReport& report : reports) {
     if (!json) {

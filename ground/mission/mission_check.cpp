@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/control/design/battery_limits.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/math/angles.hpp"
 #include "swiftlet/plant/model/endurance.hpp"
 
@@ -239,7 +240,7 @@ std::string check_json(const MissionCheck& check, const io::MissionFile& file, c
                              {"duration_s", item.duration_s},
                              {"demands", std::move(demands)}});
   }
-  return json.dump(2);
+  return io::json_text(json, 2);
 }
 
 }  // namespace swiftlet::ground

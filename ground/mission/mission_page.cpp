@@ -87,7 +87,7 @@ std::string mission_page(const io::MissionFile& file, const MissionDryRun& dry_r
   flight.summary.emplace_back("duration", fmt::format("{:.1f} s", dry_run.duration_s));
   flight.summary.emplace_back("result", dry_run.completed ? "completed" : dry_run.reason);
   return pages::flight_page("Mission " + file.name,
-                            "The dry run of the mission, with an ideal vehicle. Time is 0 at its start.",
+                            "The dry run of the mission, with an ideal vehicle. Time counts from its start.",
                             {flight});
 }
 

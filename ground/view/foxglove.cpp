@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/io/byte_writer.hpp"
+#include "swiftlet/io/json_text.hpp"
 
 namespace swiftlet::ground::foxglove {
 namespace {
@@ -27,9 +28,6 @@ Json schema_of(const std::string& name, const std::string& definition) {
           {"schemaEncoding", kSchemaEncoding},
           {"schema", definition}};
 }
-
-// Invalid UTF-8 of a vehicle's sentence becomes a replacement character.
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 std::optional<std::uint32_t> id_of(const Json& json) {
   if (!json.is_number_unsigned()) return std::nullopt;
@@ -68,12 +66,12 @@ ClientMessage unsubscribe_of(const Json& json) {
 }  // namespace
 
 std::string server_info(const std::string& program, const std::string& session) {
-  return text_of({{"op", "serverInfo"},
-                  {"name", program},
-                  {"capabilities", {"services"}},
-                  {"supportedEncodings", {kEncoding}},
-                  {"metadata", Json::object()},
-                  {"sessionId", session}});
+  return io::json_text({{"op", "serverInfo"},
+                        {"name", program},
+                        {"capabilities", {"services"}},
+                        {"supportedEncodings", {kEncoding}},
+                        {"metadata", Json::object()},
+                        {"sessionId", session}});
 }
 
 std::string advertise(const std::vector<Channel>& channels) {
@@ -83,7 +81,7 @@ std::string advertise(const std::vector<Channel>& channels) {
     entry.update(schema_of(channel.schema->name, channel.schema->definition));
     list.push_back(std::move(entry));
   }
-  return text_of({{"op", "advertise"}, {"channels", std::move(list)}});
+  return io::json_text({{"op", "advertise"}, {"channels", std::move(list)}});
 }
 
 std::string advertise(const std::vector<Service>& services) {
@@ -97,15 +95,15 @@ std::string advertise(const std::vector<Service>& services) {
                     {"requestSchema", service.request},
                     {"responseSchema", service.response}});
   }
-  return text_of({{"op", "advertiseServices"}, {"services", std::move(list)}});
+  return io::json_text({{"op", "advertiseServices"}, {"services", std::move(list)}});
 }
 
 std::string status(Level level, const std::string& message) {
-  return text_of({{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}});
+  return io::json_text({{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}});
 }
 
 std::string service_failure(std::uint32_t service, std::uint32_t call, const std::string& message) {
-  return text_of(
+  return io::json_text(
       {{"op", "serviceCallFailure"}, {"serviceId", service}, {"callId", call}, {"message", message}});
 }
 
@@ -145,7 +143,7 @@ ClientMessage parse_text(std::string_view text) {
   if (has_too_many_keys)
     return Fault{"an object of the message has more than " + std::to_string(kMostKeys) + " keys"};
   if (!json.is_object()) return Fault{"the message is not a JSON object"};
-  const std::string op = text_of(json.value("op", Json()));
+  const std::string op = io::json_text(json.value("op", Json()));
   if (op == "\"subscribe\"") return subscribe_of(json);
   if (op == "\"unsubscribe\"") return unsubscribe_of(json);
   return Fault{"op " + op.substr(0, kMostShown) + " is not served: only subscribe and unsubscribe are"};

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/io/command_line/command_text.hpp"
+#include "swiftlet/io/json_text.hpp"
 
 namespace swiftlet::io {
 
@@ -10,7 +11,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OptionText, names, positional, required, valu
                                    facts)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CommandText, words, description, footer, options, commands)
 
-std::string json_of(const CommandText& command) { return nlohmann::json(command).dump(); }
+std::string json_of(const CommandText& command) { return io::json_text(nlohmann::json(command)); }
 
 CommandText command_text_of_json(const std::string& text) {
   try {

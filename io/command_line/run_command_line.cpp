@@ -39,7 +39,7 @@ int run_reporting_errors(const std::function<int()>& run) {
 
 int run_command_line(runtime::Program& program, int argc, char** argv, const std::function<int()>& run) {
   using Parsed = runtime::Program::Parsed;
-  runtime::log_to_stderr();
+  runtime::log_to_stderr("swiftlet");
   const int exit_code = run_reporting_errors([&] {
     const Parsed parsed = program.parse(argc, argv);
     return parsed == Parsed::kRun ? run() : parsed == Parsed::kHelp ? kDone : kBadInput;

@@ -362,7 +362,7 @@ void Messages::load(std::size_t block) {
   loaded->block = block;
   const Reader::Block& place = reader_.blocks_[block];
   if (const std::string fault = reader_.load(place, loaded->records); !fault.empty())
-    reader_.fail(place.offset, fault);
+    reader_.fail(place.offset, fault + "; `swiftlet log repair` keeps the rest");
   for_each_record(
       {loaded->records.data(), loaded->records.size()}, 0, [&](const Record& record, std::uint64_t) {
         const auto message = record.opcode == Opcode::kMessage ? to_message(record.content) : std::nullopt;

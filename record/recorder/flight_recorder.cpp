@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "swiftlet/services/dds/payload.hpp"
-#include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::record {
 namespace {
@@ -174,7 +173,7 @@ void FlightRecorder::receive(Channel& channel, const dds::RawSample& sample) {
                          std::memory_order_relaxed);
   mcap::Message message{channel.id,
                         static_cast<std::uint32_t>(sample.sequence_number),
-                        runtime::system_ns(),
+                        runtime::monotonic_ns() + system_minus_monotonic_ns_,
                         sample.source_stamp_ns,
                         {sample.payload, sample.size}};
   Vehicle& vehicle = channel.vehicle;

@@ -21,6 +21,7 @@
 #include "swiftlet/record/recorder/sample_queue.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/messages/topics.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::record {
 
@@ -91,6 +92,8 @@ class FlightRecorder {
   std::mutex told_mutex_;
   std::map<std::string, messages::msg::FlownFiles>
       told_files_;  // by vehicle, not attached yet; guarded by told_mutex_
+  // The wall clock of the file goes on evenly when the system clock is set: what was sent later stands later.
+  const std::int64_t system_minus_monotonic_ns_ = runtime::system_ns() - runtime::monotonic_ns();
   SampleQueue queue_;
   mutable std::mutex mutex_;  // guards file_ and fault_; held while a batch is written
   MessageFile file_;

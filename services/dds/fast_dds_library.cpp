@@ -1,13 +1,15 @@
 #include "swiftlet/services/dds/fast_dds_library.hpp"
 
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
-#include <fastdds/dds/log/StdoutErrConsumer.hpp>
+#include <fmt/core.h>
 
 #include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/runtime/token_bucket.hpp"
@@ -18,11 +20,15 @@ namespace fastdds = eprosima::fastdds::dds;
 
 namespace {
 
-// Called by the thread of the log.
-class Consumer final : public fastdds::StdoutErrConsumer {
+// Called by the thread of Fast DDS's log, which outlives the log of the process: it writes lines of the same form itself.
+class Consumer final : public fastdds::LogConsumer {
  public:
   void Consume(const fastdds::Log::Entry& entry) override {
-    if (entry.kind == fastdds::Log::Kind::Error || is_told(entry)) StdoutErrConsumer::Consume(entry);
+    const bool is_error = entry.kind == fastdds::Log::Kind::Error;
+    if (!is_error && !is_told(entry)) return;
+    const std::string time = entry.timestamp.substr(entry.timestamp.find(' ') + 1);
+    fmt::print(stderr, "{} fastdds {}: {}: {}\n", time, is_error ? "error" : "warning",
+               entry.context.category, entry.message);
   }
 
  private:

@@ -79,7 +79,7 @@ fastdds::DomainParticipant* create_participant(const NodeSettings& settings,
 
 // Empty: all addresses of this host.
 std::string listening_address(const NodeSettings& settings) {
-  if (settings.on_loopback()) return "127.0.0.1";
+  if (settings.on_loopback()) return io::addresses_of_interfaces({io::kLoopback}).front();
   const std::vector<std::string> addresses = io::addresses_of_interfaces(settings.network.interfaces);
   return addresses.empty() ? "" : addresses.front();
 }

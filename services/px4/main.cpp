@@ -91,6 +91,10 @@ void add_options(runtime::CommandLine app, Options& options) {
       .range(0, 254)
       .show_default();
   app.add_option(
+         "--namespace-prefix", bridge.namespace_prefix,
+         "The namespace of each instance is this and its number: uav_ for a PX4 with UXRCE_DDS_NS_IDX")
+      .check(messages::fault_of_vehicle_name, "NAME");
+  app.add_option(
          "--levels", options.levels,
          "Levels at which control may command, a list of rates, attitude, trajectory; without --level "
          "of swiftlet-control it takes the first of them")
@@ -173,7 +177,7 @@ void run(const Options& options) {
   }
   dds::log_reach(network);
   runtime::log_info("ready: vehicle {} in domain {}, PX4 instance {}, topics rt{}", fmt::join(names, ","),
-                    network.domain, first_instance, topic_folder(first_instance));
+                    network.domain, first_instance, topic_folder(first_instance, settings.namespace_prefix));
   runtime::host(std::move(vehicles), stop, kReportPeriod);
   source.check();
 }

@@ -26,7 +26,7 @@ Px4Bridge::Px4Bridge(const dds::Participant& participant, const std::string& nam
                      const BridgeSettings& settings)
     : HostedVehicle(name),
       settings_(settings),
-      topics_(settings.instance),
+      topics_(settings.instance, settings.namespace_prefix),
       vehicle_(settings),
       participant_(participant),
       node_(participant, name, [this](const std::string& fault) { fail(fault); }),

@@ -27,6 +27,7 @@ namespace swiftlet::px4 {
 
 struct BridgeSettings : Px4VehicleSettings {
   int instance = 0;
+  std::string namespace_prefix{};  // of topic_folder()
   runtime::RealtimeSettings realtime;
 };
 

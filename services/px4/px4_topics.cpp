@@ -40,8 +40,9 @@ SWIFTLET_FOR_EACH_MESSAGE(SWIFTLET_INSTANTIATE)
 
 namespace swiftlet::px4 {
 
-std::string topic_folder(int instance) {
-  return instance == 0 ? "/fmu" : "/px4_" + std::to_string(instance) + "/fmu";
+std::string topic_folder(int instance, const std::string& prefix) {
+  if (prefix.empty()) return instance == 0 ? "/fmu" : topic_folder(instance, "px4_");
+  return "/" + prefix + std::to_string(instance) + "/fmu";
 }
 
 }  // namespace swiftlet::px4

@@ -23,8 +23,9 @@ namespace swiftlet::px4 {
 
 namespace msg = px4_msgs::msg;
 
-// The folder of the first instance, 0, is "/fmu", that of instance N "/px4_N/fmu", as PX4's simulation names them.
-std::string topic_folder(int instance);
+// As PX4's simulation names them, the folder of the first instance, 0, is "/fmu", that of instance N "/px4_N/fmu". On a vehicle,
+// UXRCE_DDS_NS_IDX makes "/uav_N/fmu" of each: the prefix is then "uav_".
+std::string topic_folder(int instance, const std::string& prefix = "");
 
 // A topic of PX4 whose name this object keeps. The name begins with "/": it is outside the namespace of a vehicle.
 template <class T>
@@ -39,7 +40,7 @@ class Px4Topic {
 };
 
 struct Px4Topics {
-  explicit Px4Topics(int instance) : folder(topic_folder(instance)) {}
+  Px4Topics(int instance, const std::string& prefix) : folder(topic_folder(instance, prefix)) {}
 
   std::string folder;
   // Topics that PX4 reads.

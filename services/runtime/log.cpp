@@ -19,6 +19,7 @@ namespace swiftlet::runtime {
 namespace {
 
 constexpr std::size_t kQueuedLines = 1024;
+constexpr const char* kPattern = "%H:%M:%S.%e %n %^%l%$: %v";  // "05:12:03.123 control warning: ..."
 
 // Adds the label of the calling thread: the asynchronous logger below writes in another thread.
 class LabellingLogger final : public spdlog::logger {
@@ -68,8 +69,11 @@ void write_log(LogLevel level, fmt::string_view format, fmt::format_args argumen
   }
 }
 
-void log_to_stderr() {
-  spdlog::default_logger()->sinks() = {std::make_shared<spdlog::sinks::stderr_color_sink_mt>()};
+void log_to_stderr(const std::string& program) {
+  const auto logger =
+      std::make_shared<spdlog::logger>(program, std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+  logger->set_pattern(kPattern);
+  spdlog::set_default_logger(logger);
 }
 
 Logging::Logging(const std::string& process, const LogSettings& settings) {
@@ -86,7 +90,7 @@ Logging::Logging(const std::string& process, const LogSettings& settings) {
                                              spdlog::async_overflow_policy::overrun_oldest);
   logger->set_level(spdlog::level::from_str(settings.level));
   logger->flush_on(spdlog::level::info);
-  logger->set_pattern("%H:%M:%S.%e %n %^%l%$: %v");
+  logger->set_pattern(kPattern);
   spdlog::set_default_logger(std::make_shared<LabellingLogger>(logger));
 }
 

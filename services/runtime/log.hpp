@@ -38,7 +38,7 @@ struct LogSettings {
 };
 
 // Lets the default logger write to stderr, for a program whose output is on stdout.
-void log_to_stderr();
+void log_to_stderr(const std::string& program);
 
 // Sets the default logger for its lifetime; the destructor writes the queued lines. One per process.
 class Logging {

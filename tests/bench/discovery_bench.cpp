@@ -356,7 +356,7 @@ nlohmann::ordered_json measure(int count, Hosts& hosts, const Options& options) 
 }
 
 void run(const Options& options) {
-  runtime::log_to_stderr();
+  runtime::log_to_stderr("bench");
   Hosts hosts(options.hosts);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   if (!options.json) {

@@ -245,7 +245,7 @@ class ServingProcess {
 };
 
 void run(const Options& options) {
-  runtime::log_to_stderr();
+  runtime::log_to_stderr("bench");
   const dds::DomainLock lock;
   const ServingProcess<Control> control("control", lock.domain(), options);
   const ServingProcess<Mocap> mocap("mocap", lock.domain(), options);

@@ -1,4 +1,5 @@
-// The hosts of the tests of networks: what reaches whom over a switch, and through a router.
+// The hosts of the tests of networks: what reaches whom over a switch, and through a router;
+// and what a program says in one without interfaces.
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <string>
@@ -9,6 +10,8 @@
 
 #include "swiftlet/io/network/sockets.hpp"
 #include "tests/support/network/network_namespace.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::tests {
 namespace {
@@ -54,6 +57,18 @@ TEST(HostNetwork, CarriesMulticastOverASwitchButNotThroughARouter) {
   EXPECT_FALSE(arrives(network, 0, 1, kGroup, kMoment));
   network.run(0, "ip link set eth0 down");
   EXPECT_FALSE(arrives(network, 0, 1, network.address(1), kMoment));
+}
+
+// As in a network namespace that was just made.
+TEST(HostNetwork, WithoutItsLoopbackInterfaceIsNoFullDomain) {
+  if (const std::string why = HostNetwork::why_unavailable(); !why.empty()) GTEST_SKIP() << why;
+  const HostNetwork network(HostNetwork::Layout::kSwitch, 1);
+  network.run(0, "ip link set lo down");
+  const HostNetwork::Inside inside(network, 0);
+  const ProgramResult list = run_program("swiftlet", {"list"}, TemporaryFolder().path(), kStuck);
+  EXPECT_EQ(list.exit_code, 1);
+  EXPECT_NE(list.errors.find("interface is '127.0.0.1', must be an interface that is up"), std::string::npos)
+      << list.errors;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/io/text.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/program.hpp"
@@ -95,6 +96,24 @@ TEST_F(Hosting, AStandbyTakesOverAHostedVehicle) {
   const json after = status_of("kl2");
   EXPECT_EQ(after.at("mode"), "holding") << after.dump();
   EXPECT_EQ(standby->errors().find("kl2: "), std::string::npos) << "one vehicle alone has no label";
+}
+
+TEST_F(Hosting, StatusOfSeveralVehiclesIsATableAndOfOneHasShortLines) {
+  const auto plant = start("plant", "kl1,longer", {});
+  const auto mocap = start("mocap", "kl1,longer", {});
+  const auto control = start("control", "kl1,longer", {});
+  ASSERT_TRUE(accepts("kl1,longer", {"arm"})) << control->errors();
+  const ProgramResult table = ask("kl1,longer", {"status", "--watch", "0.1"});
+  ASSERT_EQ(table.exit_code, 0) << table.errors;
+  const std::vector<std::string> rows = io::split_text(table.output, '\n');
+  ASSERT_GE(rows.size(), 3U) << table.output;
+  EXPECT_EQ(rows[0].rfind("vehicle mode ", 0), 0U) << table.output;
+  EXPECT_EQ(rows[1].rfind("kl1     armed ", 0), 0U) << table.output;
+  EXPECT_EQ(rows[2].rfind("longer  armed ", 0), 0U) << table.output;
+  for (const std::string& row : {rows[1], rows[2]}) EXPECT_EQ(row.size(), rows[0].size()) << table.output;
+  EXPECT_EQ(json::parse(ask("kl1,longer", {"status", "--json"}).output).at("longer").at("mode"), "armed");
+  for (const std::string& line : io::split_text(ask("kl1", {"status"}).output, '\n'))
+    EXPECT_LT(line.size(), 100U) << line;
 }
 
 TEST_F(Hosting, RefusesABadListInOneSentence) {

@@ -167,7 +167,7 @@ class LivingVehicleInRealTime : public LivingVehicle {
     EXPECT_NE(status.output.find("\nkl1 in domain " + std::to_string(lock_.domain()) + ": holding"),
               std::string::npos)
         << status.output;
-    EXPECT_NE(status.output.find("pose      MISSING"), std::string::npos) << status.output;
+    EXPECT_NE(status.output.find("pose       MISSING"), std::string::npos) << status.output;
     EXPECT_NE(status.output.find("\n  controller "), std::string::npos) << status.output;
 
     ProgramResult list;
@@ -244,7 +244,7 @@ TEST_F(LivingVehicleInRealTime, IsReportedSilentWhenItDiesAndMayBeStartedAgainAt
   EXPECT_NE(stopped.output.find(": stopped (emergency stop is active, but the vehicle is silent"),
             std::string::npos)
       << stopped.output;
-  EXPECT_NE(stopped.output.find("  request   stop: accepted"), std::string::npos) << stopped.output;
+  EXPECT_NE(stopped.output.find("  request    stop: accepted"), std::string::npos) << stopped.output;
 }
 
 TEST_F(LivingVehicle, ADeadMotionCaptureAndADeadControlServiceAreReportedSilentFirst) {

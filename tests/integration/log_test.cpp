@@ -17,6 +17,7 @@
 #include "tests/support/eventually.hpp"
 #include "tests/support/hop_mission.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/shifted_clock.hpp"
 
 namespace swiftlet::tests {
 namespace {
@@ -234,6 +235,26 @@ TEST_F(Log, OfAKilledRecorderIsReadableUpToTheLastSecond) {
 }
 
 // A limit of the file's size, and a small file system.
+// The recorder's clock is set back by two hours while it records. By the wall clock: it is that of the file.
+TEST_F(Log, GoesOnEvenlyWhenTheSystemClockIsSet) {
+  start_vehicle();
+  const std::string file = path("flight.mcap");
+  std::unique_ptr<Program> recorder;
+  {
+    const ShiftedClock clock(folder_.path() / "shift", {0, 0.0, -7200.0, 1.0});
+    recorder = start("swiftlet", {"record", "--output", file});
+  }
+  const auto recorded_s = [&] {
+    if (!fs::exists(file)) return 0.0;
+    const mcap::Statistics statistics = mcap::Reader(file, mcap::Access::kScanned).statistics();
+    return 1e-9 * static_cast<double>(statistics.end_ns - statistics.start_ns);
+  };
+  ASSERT_TRUE(eventually([&] { return recorded_s() > 2.0; }));
+  recorder->signal(SIGINT);
+  ASSERT_EQ(recorder->wait(kStuck), 0) << recorder->errors();
+  EXPECT_LT(recorded_s(), 600.0);
+}
+
 TEST_F(Log, OnAFullDiskEndsWithAnErrorAndIsReadable) {
   start_vehicle();
   const std::string file = path("full.mcap");

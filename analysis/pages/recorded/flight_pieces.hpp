@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "swiftlet/analysis/pages/flight_log.hpp"
+#include "swiftlet/record/evaluation.hpp"
 #include "swiftlet/record/flight.hpp"
 #include "swiftlet/record/mcap/reader.hpp"
 
@@ -26,6 +27,7 @@ bool is_flying(int mode);
 void add_signals(const record::Flight& recorded, const RecordedClock& clock, const PoseDeviation& deviation,
                  FlightLog& flight);
 void add_events(const record::Flight& recorded, const RecordedClock& clock, FlightLog& flight);
-void add_summary(const mcap::Reader& file, const record::Flight& recorded, FlightLog& flight);
+void add_summary(const mcap::Reader& file, const record::Flight& recorded,
+                 const record::TrackingErrors& errors, FlightLog& flight);
 
 }  // namespace swiftlet::pages

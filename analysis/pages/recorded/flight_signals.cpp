@@ -242,6 +242,24 @@ void add_supply(const record::Flight& recorded, std::int64_t zero_ns, FlightLog&
   }
 }
 
+// In charts, yaw is continuous: without a jump at a full turn, from within half a turn of north on; the reference is on the turn
+// that is nearest to the flown yaw. A heading that is printed is from 0 to 360 degrees.
+void make_yaw_continuous(FlightLog& flight) {
+  const auto near = [](double yaw_deg, double other_deg) {
+    return yaw_deg + 360.0 * std::round((other_deg - yaw_deg) / 360.0);
+  };
+  SignalTable& path = flight.tables["path"];
+  SignalTable& reference = flight.tables["reference"];
+  std::vector<double>& flown = path.signals["yaw"];
+  for (std::size_t i = 1; i < flown.size(); ++i) flown[i] = near(flown[i], flown[i - 1]);
+  std::size_t k = 0;
+  std::vector<double>& wanted = reference.signals["yaw"];
+  for (std::size_t i = 0; i < wanted.size() && !flown.empty(); ++i) {
+    while (k + 1 < flown.size() && path.time_s[k + 1] <= reference.time_s[i]) ++k;
+    wanted[i] = near(wanted[i], flown[k]);
+  }
+}
+
 double not_negative(double value) { return value < 0.0 ? kNoValue : value; }
 
 void add_status(const record::Flight& recorded, std::int64_t zero_ns, FlightLog& flight) {
@@ -299,6 +317,7 @@ void add_signals(const record::Flight& recorded, const RecordedClock& clock, con
     add_path(recorded.estimate, zero_ns, flight);
     add_reference(recorded, recorded.estimate, zero_ns, flight);
   }
+  make_yaw_continuous(flight);
   add_estimate(recorded, zero_ns, flight);
   add_innovations(recorded, deviation, zero_ns, flight);
   add_imu(recorded, zero_ns, flight);

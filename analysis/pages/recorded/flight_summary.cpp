@@ -147,9 +147,9 @@ std::string sense_to_actuate(const record::Flight& recorded) {
 
 }  // namespace
 
-void add_summary(const mcap::Reader& file, const record::Flight& recorded, FlightLog& flight) {
+void add_summary(const mcap::Reader& file, const record::Flight& recorded,
+                 const record::TrackingErrors& errors, FlightLog& flight) {
   auto& rows = flight.summary;
-  const record::TrackingErrors errors = record::evaluate(recorded).errors;
   rows.emplace_back("vehicle",
                     flight.vehicle + (recorded.vehicle.empty() ? "" : ", " + recorded.vehicle.back().name));
   const auto metadata = record::metadata_of(file, "swiftlet/flight");

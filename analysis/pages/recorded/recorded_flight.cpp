@@ -27,7 +27,9 @@ void set_range(FlightLog& flight) {
   }
 }
 
-std::int64_t zero_of(const record::Flight& recorded) {
+// The start of the first mission; without one the take-off, or what was recorded first.
+std::int64_t zero_of(const record::Flight& recorded, const record::Evaluation& flown) {
+  if (flown.mission_id != 0 && flown.window) return flown.window->from_ns;
   const auto flying = std::find_if(recorded.status.begin(), recorded.status.end(),
                                    [](const record::StatusRow& row) { return is_flying(row.mode); });
   if (flying != recorded.status.end()) return flying->stamp_ns;
@@ -55,7 +57,8 @@ FlightLog flight_log(const mcap::Reader& file, const std::string& vehicle, const
     throw io::ConfigError(file.name(), 0, vehicle, "holds no flight: has neither estimate nor ground_truth");
   const auto recorder = record::metadata_of(file, "swiftlet/recorder");
   const auto time = recorder.find("time");
-  const RecordedClock clock{zero_of(recorded), time != recorder.end() && time->second == "vehicle"};
+  const record::Evaluation flown = record::evaluate(recorded);
+  const RecordedClock clock{zero_of(recorded, flown), time != recorder.end() && time->second == "vehicle"};
   FlightLog flight;
   flight.name = name;
   flight.vehicle = vehicle;
@@ -65,7 +68,7 @@ FlightLog flight_log(const mcap::Reader& file, const std::string& vehicle, const
   add_signals(recorded, clock, pose_deviation(file, vehicle), flight);
   add_events(recorded, clock, flight);
   set_range(flight);
-  add_summary(file, recorded, flight);
+  add_summary(file, recorded, flown.errors, flight);
   return flight;
 }
 

@@ -12,6 +12,7 @@
 #include "swiftlet/ground/batch/batch_plot.hpp"
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/command_line/command.hpp"
+#include "swiftlet/io/json_text.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -44,7 +45,7 @@ std::uintmax_t batch_bytes(std::size_t runs) { return kPictureBytes + kRunBytes 
 
 void print_batch(const BatchReport& report, bool json, io::ProgressLine& progress) {
   progress.close();
-  std::printf("%s", json ? (to_json(report).dump() + "\n").c_str() : to_text(report).c_str());
+  std::printf("%s", json ? (io::json_text(to_json(report)) + "\n").c_str() : to_text(report).c_str());
   if (report.interrupted())
     progress.say(fmt::format("swiftlet: batch cancelled after {} of {} runs", report.batch.runs.size(),
                              report.batch.requested));

@@ -9,6 +9,7 @@
 #include "swiftlet/control/design/flown_delay.hpp"
 #include "swiftlet/control/design/margins.hpp"
 #include "swiftlet/ground/batch/gains_report.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/plant/simulation/firmware/gains.hpp"
 
 namespace swiftlet::ground {
@@ -114,7 +115,7 @@ std::string level_gains_json(const LevelGains& of) {
                                           {"tolerated_delay_s", finite(of.tolerated_delay_s[i])}};
   }
   out["loops"] = loops;
-  return out.dump(2);
+  return io::json_text(out, 2);
 }
 
 std::string level_gains_table(const LevelGains& of) {

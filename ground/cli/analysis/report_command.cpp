@@ -19,6 +19,7 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/command_line/programs.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
 
 namespace swiftlet::ground {
@@ -47,7 +48,8 @@ void write_page(const std::vector<analysis::RecordedFlight>& recorded, const std
   }
   std::string title = flights.size() == 1 ? "Flight" : "Flights";
   for (std::size_t i = 0; i < flights.size(); ++i) title += (i == 0 ? " " : ", ") + flights[i].name;
-  const std::string note = "Time is 0 at take-off. Errors count from take-off to landing.";
+  const std::string note =
+      "Time counts from the start of the mission, without one from take-off. Errors count until it lands.";
   const std::string text = pages::flight_page(title, note, flights);
   io::write_atomically(page, text);
   std::printf("report: wrote %s, %zu %s, %.1f MB\n", page.c_str(), flights.size(),
@@ -79,8 +81,8 @@ int report(const ReportOptions& options) {
     write_page(flights, options.page);
     return io::kDone;
   }
-  std::string text =
-      options.json ? analysis::comparison_json(flights).dump(2) + "\n" : analysis::comparison_table(flights);
+  std::string text = options.json ? io::json_text(analysis::comparison_json(flights), 2) + "\n"
+                                  : analysis::comparison_table(flights);
   if (options.settings) text += "\n" + analysis::settings_table(flights);
   std::fputs(text.c_str(), stdout);
   if (options.json || records.size() > 1 || !fs::is_directory(records.front())) return io::kDone;

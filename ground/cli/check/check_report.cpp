@@ -7,6 +7,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/io/json_text.hpp"
+
 namespace swiftlet::ground {
 namespace {
 
@@ -54,7 +56,7 @@ void print_json(const std::string& vehicle, int domain, const CheckResults& resu
                               {"limit", result.limit},
                               {"finding", result.finding}});
   }
-  fmt::print("{}\n", json.dump(2));
+  fmt::print("{}\n", io::json_text(json, 2));
 }
 
 }  // namespace swiftlet::ground

@@ -21,6 +21,7 @@
 #include "swiftlet/ground/client/network_options.hpp"
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/configuration.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::ground {
@@ -123,7 +124,7 @@ void print(const CalibrateOptions& options, const Misalignment& misalignment, co
                                          {"lever_arm_frd_m", list(arm.frd)},
                                          {"lever_arm_deviation_m", list(arm.deviation)},
                                          {"residual_m", arm.residual_m}};
-    std::printf("%s\n", json.dump(2).c_str());
+    std::printf("%s\n", io::json_text(json, 2).c_str());
     return;
   }
   constexpr std::array<bool, 3> kAll = {true, true, true};
@@ -160,7 +161,7 @@ void print(const CalibrateOptions& options, const FlightCalibration& calibration
         {"poses", found.poses},
         {"refused_poses", found.refused},
         {"advice", calibration.advice}};
-    std::printf("%s\n", json.dump(2).c_str());
+    std::printf("%s\n", io::json_text(json, 2).c_str());
     return;
   }
   std::printf("%s, from %.1f s with %zu poses, each with two standard deviations:\n", options.vehicle.c_str(),

@@ -15,6 +15,7 @@
 #include "swiftlet/ground/cli/mocap/body_statistics.hpp"
 #include "swiftlet/ground/cli/mocap/mocap_commands.hpp"
 #include "swiftlet/io/command_line/programs.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/mocap/sources/source.hpp"
 #include "swiftlet/services/mocap/sources/source_options.hpp"
@@ -104,7 +105,7 @@ std::string line_of(const mocap::Body& body, const BodyStatistics& seen, double 
 
 void print(const mocap::Source& source, const BodyStatisticsList& statistics, double time_s, bool as_json) {
   if (as_json) {
-    std::printf("%s\n", json_of(source, statistics, time_s).dump().c_str());
+    std::printf("%s\n", io::json_text(json_of(source, statistics, time_s)).c_str());
     std::fflush(stdout);
     return;
   }

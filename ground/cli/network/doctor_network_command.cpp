@@ -10,6 +10,7 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/network/network_findings.hpp"
 #include "swiftlet/ground/client/network_options.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/io/network/host_address.hpp"
 
 namespace swiftlet::ground {
@@ -149,7 +150,7 @@ ordered_json to_json(const NetworkFacts& facts) {
 int diagnose(const DoctorNetworkOptions& options) {
   const NetworkFacts facts = examine(options);
   if (options.json) {
-    std::printf("%s\n", to_json(facts).dump(2).c_str());
+    std::printf("%s\n", io::json_text(to_json(facts), 2).c_str());
   } else {
     print(facts);
   }

@@ -22,6 +22,7 @@
 #include "swiftlet/ground/terminal/terminal_screen.hpp"
 #include "swiftlet/io/command_line/programs.hpp"
 #include "swiftlet/io/command_line/progress_line.hpp"
+#include "swiftlet/io/json_text.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -226,7 +227,7 @@ void print(const Session& session, const VehicleState& end, const std::string& f
                                    {"refused", tally.refused},
                                    {"mode", control::to_string(end.mode)}};
     if (!fault.empty()) text["reason"] = fault;
-    std::printf("%s\n", text.dump().c_str());
+    std::printf("%s\n", io::json_text(text).c_str());
   } else {
     std::printf("teleop: %llu setpoints, %llu accepted and %llu refused; now %s at (%.2f, %.2f, %.2f) m\n",
                 static_cast<unsigned long long>(session.sent()),

@@ -10,7 +10,7 @@ namespace swiftlet::tests {
 ScriptedPx4::ScriptedPx4(const plant::Vehicle& vehicle, const dds::NodeSettings& network,
                          const ScriptedPx4Settings& settings)
     : settings_(settings),
-      topics_(settings.instance),
+      topics_(settings.instance, ""),
       status_topic_(topics_.folder, settings.status_topic),
       simulation_(vehicle, 1.0, settings.east_m),
       node_(network),

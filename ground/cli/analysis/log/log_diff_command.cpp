@@ -8,6 +8,7 @@
 
 #include "swiftlet/analysis/logs/log_diff.hpp"
 #include "swiftlet/ground/cli/analysis/log/log_commands.hpp"
+#include "swiftlet/io/json_text.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -69,7 +70,7 @@ int diff(const LogDiffOptions& options) {
   const std::vector<analysis::TopicDifference> differences =
       analysis::difference(a, b, {options.topics.begin(), options.topics.end()});
   if (options.json) {
-    std::printf("%s\n", to_json(options, differences).dump(2).c_str());
+    std::printf("%s\n", io::json_text(to_json(options, differences), 2).c_str());
   } else {
     print(differences);
   }

@@ -9,6 +9,7 @@
 
 #include "swiftlet/analysis/logs/log_table.hpp"
 #include "swiftlet/ground/cli/analysis/log/log_commands.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/record/mcap/reader.hpp"
 
 namespace swiftlet::ground {
@@ -121,7 +122,7 @@ void print(const mcap::Reader& file) {
 int info(const LogInfoOptions& options) {
   const mcap::Reader file(options.file, options.check ? mcap::Access::kScanned : mcap::Access::kIndexed);
   if (options.json) {
-    std::printf("%s\n", to_json(file).dump(2).c_str());
+    std::printf("%s\n", io::json_text(to_json(file), 2).c_str());
   } else {
     print(file);
   }
@@ -133,7 +134,7 @@ int list_signals(const mcap::Reader& file, const LogInfoOptions& options) {
   if (options.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const mcap::Column& column : columns) json.push_back(column.name);
-    std::printf("%s\n", json.dump(2).c_str());
+    std::printf("%s\n", io::json_text(json, 2).c_str());
     return io::kDone;
   }
   for (const mcap::Column& column : columns) std::printf("%s\n", column.name.c_str());
@@ -145,7 +146,7 @@ int ls(const LogInfoOptions& options) {
   if (!options.topic.empty()) return list_signals(file, options);
   const auto rows = topics_of(file);
   if (options.json) {
-    std::printf("%s\n", to_json(file).at("topics").dump(2).c_str());
+    std::printf("%s\n", io::json_text(to_json(file).at("topics"), 2).c_str());
     return io::kDone;
   }
   std::size_t width = 5;

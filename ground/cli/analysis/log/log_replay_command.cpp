@@ -14,6 +14,7 @@
 #include "swiftlet/ground/replay/log_replay.hpp"
 #include "swiftlet/io/command_line/progress_line.hpp"
 #include "swiftlet/io/configuration.hpp"
+#include "swiftlet/io/json_text.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
 #include "swiftlet/services/dds/discovery/sole_source.hpp"
 #include "swiftlet/services/messages/vehicle_names.hpp"
@@ -80,14 +81,13 @@ int publish(const LogReplayOptions& options, const mcap::Reader& file) {
   if (totals.published == 0) incomplete = "no message was published";
   if (interrupts.count() > 0) incomplete = "interrupted";
   if (options.json) {
-    std::printf("%s\n", nlohmann::ordered_json({{"file", options.file},
-                                                {"complete", incomplete.empty()},
-                                                {"reason", incomplete},
-                                                {"published", totals.published},
-                                                {"refused", totals.refused},
-                                                {"time_s", totals.time_s},
-                                                {"largest_delay_s", totals.largest_delay_s}})
-                            .dump()
+    std::printf("%s\n", io::json_text(nlohmann::ordered_json({{"file", options.file},
+                                                              {"complete", incomplete.empty()},
+                                                              {"reason", incomplete},
+                                                              {"published", totals.published},
+                                                              {"refused", totals.refused},
+                                                              {"time_s", totals.time_s},
+                                                              {"largest_delay_s", totals.largest_delay_s}}))
                             .c_str());
   } else {
     fmt::print("replay: {}: {} messages of {:.1f} s published, {} refused; the latest was {:.1f} ms late\n",
@@ -146,7 +146,7 @@ int into_control(const LogReplayOptions& options, const mcap::Reader& file) {
   progress.close();
   const std::string difference = difference_of(replay, options.tolerance);
   if (options.json) {
-    std::printf("%s\n", to_json(options, replay, difference).dump(2).c_str());
+    std::printf("%s\n", io::json_text(to_json(options, replay, difference), 2).c_str());
   } else {
     print(options, replay, difference);
   }

@@ -32,6 +32,7 @@ TEST(Px4Versions, OthersAreRefusedByName) {
 TEST(Px4Versions, InstancesHaveFoldersOfTheirOwn) {
   EXPECT_EQ(topic_folder(0), "/fmu");
   EXPECT_EQ(topic_folder(3), "/px4_3/fmu");
+  EXPECT_EQ(topic_folder(0, "uav_"), "/uav_0/fmu");
 }
 
 }  // namespace swiftlet::px4::versions_test

@@ -5,8 +5,11 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/analysis/pages/flight_page.hpp"
+#include "swiftlet/analysis/pages/recorded/flight_pieces.hpp"
+#include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/text_file.hpp"
+#include "swiftlet/math/angles.hpp"
 #include "swiftlet/record/file/cdr_writer.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
 #include "swiftlet/record/mcap/writer.hpp"
@@ -39,7 +42,7 @@ class FlightFile {
     file_.write(mcap::Message{channel->second, 0, log_ns, log_ns, {bytes.data(), bytes.size()}});
   }
 
-  void add_climb(const std::string& vehicle, int samples) {
+  void add_climb(const std::string& vehicle, int samples, control::Mode mode = control::Mode::kTakingOff) {
     for (int i = 0; i < samples; ++i) {
       const std::int64_t stamp_ns = kFirstNs + 10 * kMs * i;
       const double height = 0.01 * i;
@@ -50,7 +53,7 @@ class FlightFile {
       add(vehicle + "/reference",
           "int64 stamp_ns\nuint8 mode\nfloat64[3] position_ned\nfloat64[3] velocity_ned\n"
           "float64[4] attitude_setpoint\n",
-          stamp_ns, reference(stamp_ns, height + 0.01));
+          stamp_ns, reference(stamp_ns, height + 0.01, mode));
     }
   }
 
@@ -70,6 +73,18 @@ class FlightFile {
 
   void describe(const mcap::Metadata& metadata) { file_.write(metadata); }
 
+  void add_mission(const std::string& vehicle, std::int64_t stamp_ns) {
+    record::CdrWriter payload;
+    payload.put(stamp_ns)
+        .put(std::uint64_t{7})
+        .put(static_cast<std::uint8_t>(control::MissionState::kRunning));
+    payload.put(std::uint32_t{0}).put(std::uint32_t{3}).text("");
+    add(vehicle + "/mission_status",
+        "int64 stamp_ns\nuint64 mission_id\nuint8 state\nuint32 item_index\nuint32 item_count\nstring "
+        "reason\n",
+        stamp_ns, std::move(payload));
+  }
+
   void add_mode(const std::string& vehicle, std::int64_t stamp_ns, std::uint8_t mode,
                 const std::string& reason) {
     record::CdrWriter payload;
@@ -87,9 +102,9 @@ class FlightFile {
     for (int i = 0; i < 15; ++i) payload.put(1e-3);
     return payload;
   }
-  static record::CdrWriter reference(std::int64_t stamp_ns, double height) {
+  static record::CdrWriter reference(std::int64_t stamp_ns, double height, control::Mode mode) {
     record::CdrWriter payload;
-    payload.put(stamp_ns).put(std::uint8_t{2});
+    payload.put(stamp_ns).put(static_cast<std::uint8_t>(mode));
     for (const double value : {0.0, 0.0, -height, 0.0, 0.0, -1.0, 1.0, 0.0, 0.0, 0.0}) payload.put(value);
     return payload;
   }
@@ -144,6 +159,46 @@ TEST_F(FlightPage, HasErrorsAgainstTheReferenceOverTheTimeSinceTakeOff) {
   EXPECT_EQ(flight.events[1].text, "taking off: requested");
 }
 
+TEST_F(FlightPage, CountsTimeFromTheStartOfTheMission) {
+  {
+    FlightFile file(path_);
+    file.add_mode("/kl1", kFirstNs, 2, "requested");
+    file.add_climb("/kl1", 50);
+    file.add_mission("/kl1", kFirstNs + 500 * kMs);
+    file.add_climb("/kl1", 200, control::Mode::kMission);
+  }
+  const FlightLog flight = flights().at(0);
+  EXPECT_NEAR(flight.start_s, -0.5, 1e-9);
+}
+
+// A turn over south, held to the end; the setpoint is on the other side of it.
+TEST(FlightSignals, YawIsContinuousAndTheReferenceNearIt) {
+  record::Flight recorded;
+  const auto turned = [](double yaw_deg) {
+    return std::array<double, 4>{std::cos(yaw_deg / 2 / math::kDegPerRad), 0.0, 0.0,
+                                 std::sin(yaw_deg / 2 / math::kDegPerRad)};
+  };
+  const std::vector<double> flown_deg = {-1.0, 90.0, 170.0, 179.0, 181.0, 270.0, 365.0};
+  for (std::size_t i = 0; i < flown_deg.size(); ++i) {
+    record::TruthRow truth;
+    truth.stamp_ns = static_cast<std::int64_t>(i) * 10 * kMs;
+    truth.q_ned_from_frd = turned(flown_deg[i]);
+    recorded.truth.push_back(truth);
+    record::ReferenceRow reference;
+    reference.stamp_ns = truth.stamp_ns;
+    reference.mode = static_cast<int>(control::Mode::kMission);
+    reference.q_ned_from_frd = turned(flown_deg[i] + 2.0);
+    recorded.reference.push_back(reference);
+  }
+  FlightLog flight;
+  flight.has_truth = true;
+  add_signals(recorded, {}, {}, flight);
+  for (std::size_t i = 0; i < flown_deg.size(); ++i) {
+    EXPECT_NEAR(flight.tables.at("path").signals.at("yaw").at(i), flown_deg[i], 1e-9);
+    EXPECT_NEAR(flight.tables.at("reference").signals.at("yaw").at(i), flown_deg[i] + 2.0, 1e-9);
+  }
+}
+
 TEST_F(FlightPage, HoldsEachVehicleAndEscapesTexts) {
   {
     FlightFile file(path_);
@@ -181,7 +236,7 @@ TEST_F(FlightPage, KnowsMotionCaptureFromTheAttachedSettingsOfTheVehicle) {
   EXPECT_NEAR(bound_mm(1), 3.0 * std::hypot(1.0, 4.0), 1e-9);
 }
 
-// At their times on the axis of the page, which begins at the take-off, and only those that began before its end.
+// At their times on the axis of the page, which here begins at the take-off, and only those that began before its end.
 TEST_F(FlightPage, MarksTheFaultsOfTheAttachedSimulation) {
   {
     FlightFile file(path_);
