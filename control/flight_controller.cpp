@@ -44,7 +44,8 @@ FlightController::FlightController(const plant::Vehicle& vehicle, const ControlS
     : failsafe_(settings.failsafe),
       observers_(vehicle, settings),
       supervisor_({settings.limits, settings.arming, settings.failsafe}),
-      laws_(vehicle, settings, design) {}
+      laws_(vehicle, settings, design),
+      hover_test_(vehicle) {}
 
 const plant::VehicleCommand& FlightController::on_imu(const plant::ImuSample& sample) {
   return on_imu(sample, no_clients_);
@@ -108,6 +109,7 @@ const plant::VehicleCommand& FlightController::step(const plant::ImuSample& samp
   observers_.observe(setpoint, dt_s, situation);
   laws_.step(setpoint, observers_, situation, dt_s);
   if (laws_.saturated()) saturated_ns_ = sample.stamp_ns;
+  test_hover(dt_s);
   report(now);
   return answer_sample(sample);
 }
@@ -127,6 +129,7 @@ SupervisorInputs FlightController::inputs() const {
   const std::int64_t now_ns = observers_.stamp_ns();
   inputs.pose_jumped = inputs.estimate->resets != resets_seen_;
   inputs.level = level_;
+  inputs.hover_test_defect = hover_test_.defect().data();
   inputs.accepted_levels = accepted_levels_;
   inputs.vehicle_restarted = vehicle_restarted_;
   if (!obeyed_) inputs.not_obeyed_s = math::seconds(now_ns - obeyed_ns_);
@@ -142,6 +145,16 @@ SupervisorInputs FlightController::inputs() const {
   inputs.gains_changing_s = change.remaining_s(now_ns);
   if (saturated_ns_ >= 0) inputs.unsaturated_s = math::seconds(now_ns - saturated_ns_);
   return inputs;
+}
+
+void FlightController::test_hover(double dt_s) {
+  if (!in_hover_test(supervisor_.state())) {
+    // What it found stays until the vehicle is armed again.
+    if (!rotors_off(supervisor_.mode())) hover_test_.reset();
+    return;
+  }
+  if (!(dt_s > 0.0)) return;
+  hover_test_.step(observers_.hover_test_step(situation(), dt_s, supervisor_.airborne()));
 }
 
 // The supervisor has accepted the request: the gains change from those of this step on.
@@ -170,6 +183,7 @@ void FlightController::report(const SupervisorInputs& inputs) {
     status_.odometry = {odometry->is_vehicles(), odometry->distance_m(), odometry->angle_rad(),
                         odometry->resets_followed()};
   }
+  status_.hover_test_defect = hover_test_.defect();
   status_.mission = supervisor_.mission();
   status_.settings = laws_.gain_change().name;
   status_.gains_progress = laws_.gain_change().progress(observers_.stamp_ns());
