@@ -149,7 +149,7 @@ SupervisorInputs FlightController::inputs() const {
 
 void FlightController::test_hover(double dt_s) {
   if (!in_hover_test(supervisor_.state())) {
-    // What it found stays until the vehicle is armed again.
+    // The defect stays in the status until the vehicle is armed again.
     if (!rotors_off(supervisor_.mode())) hover_test_.reset();
     return;
   }

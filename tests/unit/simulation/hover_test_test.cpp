@@ -170,23 +170,11 @@ Defect without_thrust(const char* name, const char* found, std::size_t rotor) {
   return defect;
 }
 
-std::vector<Defect> defects() {
-  const Vector3d x = Vector3d::UnitX();
-  const Vector3d y = Vector3d::UnitY();
-  const Vector3d z = Vector3d::UnitZ();
-  const Eigen::Quaterniond none = Eigen::Quaterniond::Identity();
-  Defect flipped{"attitude of motion capture in FLU",
-                 "attitude of motion capture: pitch is reversed, yaw is reversed"};
-  flipped.pose = [](plant::PoseSample& pose) {
-    auto& q = pose.q_ned_from_frd;
-    q = Eigen::Quaterniond(q.w(), q.x(), -q.y(), -q.z());
-  };
-  Defect frozen{"motion capture tracks another body", "it tracks another body"};
-  frozen.pose = [](plant::PoseSample& pose) {
-    pose.position_ned = 1e-5 * Vector3d(std::sin(1e-7 * static_cast<double>(pose.stamp_ns)),
-                                        std::cos(1e-7 * static_cast<double>(pose.stamp_ns)), 0.0);
-    pose.q_ned_from_frd = Eigen::Quaterniond::Identity();
-  };
+const Vector3d x = Vector3d::UnitX();
+const Vector3d y = Vector3d::UnitY();
+const Vector3d z = Vector3d::UnitZ();
+
+std::vector<Defect> defects_of_rotors() {
   return {
       of_build("rotors 1 and 2 exchanged", "rotors 1 and 2 are exchanged", exchanged(1, 2)),
       of_build("rotors 1 and 3 exchanged", "rotors 1 and 3 are exchanged", exchanged(1, 3)),
@@ -207,6 +195,11 @@ std::vector<Defect> defects() {
                [](plant::Vehicle& v) { v.rotor.thrust *= 0.5; }),
       without_thrust("rotor 1 without thrust", "rotor 1 gives too little thrust", 1),
       without_thrust("rotor 4 without thrust", "rotor 4 gives too little thrust", 4),
+  };
+}
+
+std::vector<Defect> defects_of_the_imu() {
+  return {
       of_gyro("gyro: roll reversed", "gyro: roll is reversed", diagonal(-1, 1, 1)),
       of_gyro("gyro: pitch reversed", "gyro: pitch is reversed", diagonal(1, -1, 1)),
       of_gyro("gyro: yaw reversed", "gyro: yaw is reversed", diagonal(1, 1, -1)),
@@ -219,6 +212,24 @@ std::vector<Defect> defects() {
       of_imu("IMU turned by 180 degrees", "gyro: roll is reversed, pitch is reversed", diagonal(-1, -1, 1)),
       of_imu("IMU upside down", "the accelerometer is 19.", diagonal(1, -1, -1)),
       of_gyro("gyro in degrees/s", "turning at", 57.3 * diagonal(1, 1, 1)),
+  };
+}
+
+std::vector<Defect> defects_of_motion_capture() {
+  const Eigen::Quaterniond none = Eigen::Quaterniond::Identity();
+  Defect flipped{"attitude of motion capture in FLU",
+                 "attitude of motion capture: pitch is reversed, yaw is reversed"};
+  flipped.pose = [](plant::PoseSample& pose) {
+    auto& q = pose.q_ned_from_frd;
+    q = Eigen::Quaterniond(q.w(), q.x(), -q.y(), -q.z());
+  };
+  Defect frozen{"motion capture tracks another body", "it tracks another body"};
+  frozen.pose = [](plant::PoseSample& pose) {
+    pose.position_ned = 1e-5 * Vector3d(std::sin(1e-7 * static_cast<double>(pose.stamp_ns)),
+                                        std::cos(1e-7 * static_cast<double>(pose.stamp_ns)), 0.0);
+    pose.q_ned_from_frd = Eigen::Quaterniond::Identity();
+  };
+  return {
       of_position("position: north and east exchanged",
                   "position of motion capture: north shows east, east shows north", rows(y, x, z)),
       of_position("position: north reversed", "position of motion capture: north is reversed",
@@ -329,6 +340,8 @@ std::vector<Healthy> sound_vehicles() {
 }
 
 INSTANTIATE_TEST_SUITE_P(HoverTest, SoundVehicle, testing::ValuesIn(sound_vehicles()));
-INSTANTIATE_TEST_SUITE_P(HoverTest, SeededDefect, testing::ValuesIn(defects()));
+INSTANTIATE_TEST_SUITE_P(Rotors, SeededDefect, testing::ValuesIn(defects_of_rotors()));
+INSTANTIATE_TEST_SUITE_P(Imu, SeededDefect, testing::ValuesIn(defects_of_the_imu()));
+INSTANTIATE_TEST_SUITE_P(MotionCapture, SeededDefect, testing::ValuesIn(defects_of_motion_capture()));
 
 }  // namespace swiftlet::simulation::hover_test_test

@@ -139,7 +139,7 @@ const Row kGrid[] = {
     {Event::kNotObeyed, kLand,     " DD  D        ", Reason::kNotObeyed, lasting(1.1, [](Placed& f) { f.inputs_.not_obeyed_s = 2.0; })},
     {Event::kNoLiftOff, kLand,     "  D  D        ", Reason::kNoLiftOff, lasting(6.0, [](Placed& f) { f.follows_ = false; })},
     {Event::kHoverTestFailed, kLand, "..............", Reason::kHoverTestFailed, condition([](Placed& f) { f.inputs_.hover_test_defect = "not in a hover test"; })},
-    {Event::kHoverTestPassed, kLand, "....  .... ...", Reason::kHoverTestPassed, lasting(3.0, [](Placed&) {})},
+    {Event::kHoverTestPassed, kLand, "    .         ", Reason::kHoverTestPassed, lasting(3.0, [](Placed&) {})},
     {Event::kImpact, kLand,        "..OOOOO OO  .O", Reason::kImpact, condition([](Placed& f) { f.inputs_.specific_force_frd.z() = -120.0; })},
     {Event::kImpact, kLand,        "       D  D   ", Reason::kLanded, condition([](Placed& f) { f.inputs_.specific_force_frd.z() = -120.0; })},
     {Event::kImpact, kLand,        "           D  ", Reason::kLandedWithoutPosition, condition([](Placed& f) { f.inputs_.specific_force_frd.z() = -120.0; })},
