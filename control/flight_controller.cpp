@@ -149,8 +149,8 @@ SupervisorInputs FlightController::inputs() const {
 
 void FlightController::test_hover(double dt_s) {
   if (!in_hover_test(supervisor_.state())) {
-    // The defect stays in the status until the vehicle is armed again.
-    if (!rotors_off(supervisor_.mode())) hover_test_.reset();
+    // The status tells the defect while the vehicle is stopped.
+    if (supervisor_.mode() != Mode::kStopped) hover_test_.reset();
     return;
   }
   if (!(dt_s > 0.0)) return;

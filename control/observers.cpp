@@ -195,6 +195,7 @@ HoverTestStep Observers::hover_test_step(const Situation& situation, double dt_s
   HoverTestStep step;
   step.stamp_ns = last_stamp_ns_;
   step.dt_s = dt_s;
+  step.ground_z_ned = situation.ground_z_ned;
   step.position_ned = now.position_ned;
   step.velocity_ned = now.velocity_ned;
   step.q_ned_from_frd = now.q_ned_from_frd;

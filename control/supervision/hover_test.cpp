@@ -49,6 +49,7 @@ constexpr double kMostHeight_m = 0.18;
 constexpr double kMostSpeed = 0.5;    // m/s
 constexpr double kLeastThrust = 0.7;  // of that of the vehicle file
 constexpr double kMostThrust = 1.4;
+constexpr double kLeastUnexplained = 0.5;  // rad/s
 constexpr double kAlong = 0.9;  // cosine between the turn and that of a rotor without thrust
 
 const char* const kBodyAxes[3] = {"roll", "pitch", "yaw"};
@@ -70,7 +71,6 @@ struct Axes {
     for (std::size_t i = 0; i < 3; ++i) count += (order[i] != static_cast<int>(i)) + (sign[i] < 0);
     return count;
   }
-  bool reversed_only() const { return order == std::array<int, 3>{0, 1, 2}; }
 };
 
 // The assignment with the least misfit.
@@ -295,8 +295,7 @@ void HoverTest::name_rotors(bool last) {
     const double misfit = rotor_response_.misfit(rotor_gain(order, spin)).sum() + penalty;
     if (misfit >= least) return;
     least = misfit;
-    const int used =
-        std::snprintf(text, sizeof text, format, a, b);  // NOLINT(cppcoreguidelines-pro-type-vararg)
+    const int used = std::snprintf(text, sizeof text, format, a, b);
     if (spin < 0.0)
       std::snprintf(text + used, sizeof text - static_cast<std::size_t>(used),
                     "all rotors turn the other way than in the vehicle file");
@@ -361,7 +360,7 @@ void HoverTest::judge_limits(const HoverTestStep& now) {
   if (tilt(now) > kMostTilt_rad) fault = "it tilts too far";
   if (now.body_rates_frd.norm() > kMostRate) fault = "it turns too fast";
   if (from_start.head<2>().norm() > kMostDrift_m) fault = "it drifts away";
-  if (-from_start.z() > kMostHeight_m || -now.velocity_ned.z() > kMostSpeed) fault = "it climbs too far";
+  if (now.ground_z_ned - now.position_ned.z() > kMostHeight_m || -now.velocity_ned.z() > kMostSpeed) fault = "it climbs too far";
   if (fault == nullptr || defect_[0] != '\0') return;
   if (clear_s_ > kShown_s && !tips_) judge(true);
   if (defect_[0] != '\0') return;
@@ -371,13 +370,14 @@ void HoverTest::judge_limits(const HoverTestStep& now) {
 
 // A rotor that gives too little leaves an angular acceleration that is opposite to its own.
 void HoverTest::name_weak_rotor() {
-  if (!commands_rotors_) return;
+  if (!commands_rotors_ || unexplained_.head<2>().norm() < kLeastUnexplained) return;
   for (int i = 0; i < rotors_; ++i) {
     const Vector3d missing = -acceleration_per_thrust_.col(i);
     const double along = unexplained_.head<2>().dot(missing.head<2>().normalized());
     if (along < kAlong * unexplained_.head<2>().norm()) continue;
     std::snprintf(defect_.data(), defect_.size(),
                   "rotor %d gives too little thrust, or the vehicle is too heavy on its side", i + 1);
+    return;
   }
 }
 

@@ -26,6 +26,7 @@ namespace swiftlet::control {
 struct HoverTestStep {
   std::int64_t stamp_ns = 0;
   double dt_s = 0.0;
+  double ground_z_ned = 0.0;  // m
   Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity_ned = Eigen::Vector3d::Zero();
   Eigen::Quaterniond q_ned_from_frd = Eigen::Quaterniond::Identity();

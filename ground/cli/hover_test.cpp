@@ -24,6 +24,7 @@ namespace {
 using namespace std::chrono_literals;
 using control::Mode;
 
+constexpr auto kDiscoveryTimeout = 5s;  // vehicle_info comes once a second, if at all
 constexpr auto kReportTimeout = 2s;
 constexpr auto kStep = 100ms;
 constexpr auto kTimeout = 60s;  // of a vehicle that starts its rotors late
@@ -143,7 +144,8 @@ void require_hover_tests(const dds::NodeSettings& network, const std::vector<std
     dds::NodeSettings settings = network;
     settings.vehicle = vehicle;
     const auto client = std::make_shared<Client>(settings);
-    client->wait(kReportTimeout, [](const View& view) { return view.vehicle.seen() && view.control.seen(); });
+    client->wait(kDiscoveryTimeout,
+                 [](const View& view) { return view.vehicle.seen() && view.control.seen(); });
     const View view = client->view();
     if (view.vehicle.message.simulated() || has_passed(vehicle, tested_configuration(view))) continue;
     std::fprintf(stderr, "%s: first flight: hover test of 2 s at 0.15 m\n", vehicle.c_str());
