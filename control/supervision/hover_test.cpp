@@ -50,7 +50,7 @@ constexpr double kMostSpeed = 0.5;    // m/s
 constexpr double kLeastThrust = 0.7;  // of that of the vehicle file
 constexpr double kMostThrust = 1.4;
 constexpr double kLeastUnexplained = 0.5;  // rad/s
-constexpr double kAlong = 0.9;  // cosine between the turn and that of a rotor without thrust
+constexpr double kAlong = 0.9;             // cosine between the turn and that of a rotor without thrust
 
 const char* const kBodyAxes[3] = {"roll", "pitch", "yaw"};
 const char* const kWorldAxes[3] = {"north", "east", "down"};
@@ -360,7 +360,8 @@ void HoverTest::judge_limits(const HoverTestStep& now) {
   if (tilt(now) > kMostTilt_rad) fault = "it tilts too far";
   if (now.body_rates_frd.norm() > kMostRate) fault = "it turns too fast";
   if (from_start.head<2>().norm() > kMostDrift_m) fault = "it drifts away";
-  if (now.ground_z_ned - now.position_ned.z() > kMostHeight_m || -now.velocity_ned.z() > kMostSpeed) fault = "it climbs too far";
+  if (now.ground_z_ned - now.position_ned.z() > kMostHeight_m || -now.velocity_ned.z() > kMostSpeed)
+    fault = "it climbs too far";
   if (fault == nullptr || defect_[0] != '\0') return;
   if (clear_s_ > kShown_s && !tips_) judge(true);
   if (defect_[0] != '\0') return;
