@@ -46,7 +46,8 @@ FlightController::FlightController(const plant::Vehicle& vehicle, const ControlS
     : failsafe_(with_battery_limits(settings.failsafe, vehicle)),
       observers_(vehicle, settings),
       supervisor_({settings.limits, settings.arming, failsafe_}),
-      laws_(vehicle, settings, design) {}
+      laws_(vehicle, settings, design),
+      hover_test_(vehicle) {}
 
 const plant::VehicleCommand& FlightController::on_imu(const plant::ImuSample& sample) {
   return on_imu(sample, no_clients_);
@@ -110,6 +111,7 @@ const plant::VehicleCommand& FlightController::step(const plant::ImuSample& samp
   observers_.observe(setpoint, dt_s, situation);
   laws_.step(setpoint, observers_, situation, dt_s);
   if (laws_.saturated()) saturated_ns_ = sample.stamp_ns;
+  test_hover(dt_s);
   report(now);
   return answer_sample(sample);
 }
@@ -129,6 +131,7 @@ SupervisorInputs FlightController::inputs() const {
   const std::int64_t now_ns = observers_.stamp_ns();
   inputs.pose_jumped = inputs.estimate->resets != resets_seen_;
   inputs.level = level_;
+  inputs.hover_test_defect = hover_test_.defect().data();
   inputs.accepted_levels = accepted_levels_;
   inputs.vehicle_restarted = vehicle_restarted_;
   if (!obeyed_) inputs.not_obeyed_s = math::seconds(now_ns - obeyed_ns_);
@@ -144,6 +147,16 @@ SupervisorInputs FlightController::inputs() const {
   inputs.gains_changing_s = change.remaining_s(now_ns);
   if (saturated_ns_ >= 0) inputs.unsaturated_s = math::seconds(now_ns - saturated_ns_);
   return inputs;
+}
+
+void FlightController::test_hover(double dt_s) {
+  if (!in_hover_test(supervisor_.state())) {
+    // The status tells the defect while the vehicle is stopped.
+    if (supervisor_.mode() != Mode::kStopped) hover_test_.reset();
+    return;
+  }
+  if (!(dt_s > 0.0)) return;
+  hover_test_.step(observers_.hover_test_step(situation(), dt_s, supervisor_.airborne()));
 }
 
 // The supervisor has accepted the request: the gains change from those of this step on.
@@ -172,6 +185,7 @@ void FlightController::report(const SupervisorInputs& inputs) {
     status_.odometry = {odometry->is_vehicles(), odometry->distance_m(), odometry->angle_rad(),
                         odometry->resets_followed()};
   }
+  status_.hover_test_defect = hover_test_.defect();
   status_.mission = supervisor_.mission();
   status_.settings = laws_.gain_change().name;
   status_.gains_progress = laws_.gain_change().progress(observers_.stamp_ns());

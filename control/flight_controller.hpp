@@ -12,6 +12,7 @@
 #include "swiftlet/control/estimation/estimator.hpp"
 #include "swiftlet/control/flight_state.hpp"
 #include "swiftlet/control/observers.hpp"
+#include "swiftlet/control/supervision/hover_test.hpp"
 #include "swiftlet/control/supervision/request_status.hpp"
 #include "swiftlet/control/supervision/supervisor.hpp"
 #include "swiftlet/control/types/gains.hpp"
@@ -79,7 +80,10 @@ class FlightController {
     obeyed_ = of_this;
   }
 
-  void on_pose(const plant::PoseSample& sample) { observers_.on_pose(sample, laws_.rotor_state()); }
+  void on_pose(const plant::PoseSample& sample) {
+    observers_.on_pose(sample, laws_.rotor_state());
+    hover_test_.on_pose(sample);
+  }
   void on_battery(const plant::BatterySample& sample) { observers_.on_battery(sample); }
   void on_rotor_speeds(const plant::RotorSpeedSample& sample) { observers_.on_rotor_speeds(sample); }
   // Returns false if the link-loss failsafe is on for too many other clients already.
@@ -121,6 +125,7 @@ class FlightController {
   const plant::VehicleCommand& answer_sample(const plant::ImuSample& sample);
   Situation situation() const;
   SupervisorInputs inputs() const;
+  void test_hover(double dt_s);
   void begin_gain_change(const Request& request, const Outcome& outcome);
   void begin_gain_changes(const ClientInputs& clients);
   void report(const SupervisorInputs& inputs);
@@ -129,6 +134,7 @@ class FlightController {
   Observers observers_;
   Supervisor supervisor_;
   ControlLaws laws_;
+  HoverTest hover_test_;
   ClientInputs no_clients_;  // stays empty
 
   plant::ControlLevel level_ = plant::ControlLevel::kActuators;

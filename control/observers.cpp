@@ -189,6 +189,25 @@ void Observers::adopt(double lift_ratio, std::int64_t now_ns) {
   lift_off_ns_ = now_ns;
 }
 
+// airborne: by height, where lift-off is not observed.
+HoverTestStep Observers::hover_test_step(const Situation& situation, double dt_s, bool airborne) const {
+  const Estimate& now = estimate();
+  HoverTestStep step;
+  step.stamp_ns = last_stamp_ns_;
+  step.dt_s = dt_s;
+  step.ground_z_ned = situation.ground_z_ned;
+  step.position_ned = now.position_ned;
+  step.velocity_ned = now.velocity_ned;
+  step.q_ned_from_frd = now.q_ned_from_frd;
+  step.body_rates_frd = now.body_rates_frd;
+  step.specific_force_frd = unbiased_force_frd();
+  step.rotor_speeds = rotors_.speeds();
+  step.commands_rotors = situation.level == plant::ControlLevel::kActuators;
+  step.lifted_off = observes_lift_off(situation) ? lift_.lifted_off() : airborne;
+  step.lift_ratio = lift_.ratio();
+  return step;
+}
+
 SupervisorInputs Observers::supervisor_inputs(const Situation& situation) const {
   SupervisorInputs inputs;
   const Estimate& estimate = this->estimate();

@@ -22,6 +22,7 @@
 #include "swiftlet/control/estimation/sent_commands.hpp"
 #include "swiftlet/control/estimation/supply_observer.hpp"
 #include "swiftlet/control/estimation/takeoff_consistency.hpp"
+#include "swiftlet/control/supervision/hover_test.hpp"
 #include "swiftlet/control/supervision/supervisor_inputs.hpp"
 #include "swiftlet/control/types/gains.hpp"
 #include "swiftlet/control/types/settings.hpp"
@@ -73,6 +74,8 @@ class Observers {
   void set_gains(const ControlGains& gains);
   // Takes over the lift that another controller learnt; 0: it has not lifted off.
   void adopt(double lift_ratio, std::int64_t now_ns);
+
+  HoverTestStep hover_test_step(const Situation& situation, double dt_s, bool airborne) const;
 
   // All that supervision has to know of these; the rest keeps its default.
   SupervisorInputs supervisor_inputs(const Situation& situation) const;

@@ -35,6 +35,7 @@ struct GuidanceContext {
   double command_delay_s =
       0.0;  // from a sample to the vehicle that obeys the command that answers it; 0: not known
   bool rotors_running = true;  // false: the vehicle has not yet obeyed the command to start them
+  bool hover_test = false;
 };
 
 inline double elapsed_s(std::int64_t from_ns, std::int64_t to_ns) {

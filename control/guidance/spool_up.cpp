@@ -1,6 +1,7 @@
 #include "swiftlet/control/guidance/spool_up.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "swiftlet/control/guidance/manoeuvres.hpp"
 #include "swiftlet/math/time.hpp"
@@ -21,6 +22,10 @@ constexpr double kSettle_s = 0.09;  // after the vehicle has answered its lift-o
 constexpr double kRiseSpeed = 0.05;        // m/s, from lift-off until it is clear of the ground
 constexpr double kMostRiseSpeed = 0.2;     // m/s
 constexpr double kClearHeight_m = 0.003;   // above the ground
+constexpr double kTest_s = 0.25;           // of the motion of a hover test
+constexpr double kTestAcceleration = 1.0;  // m/s^2
+constexpr double kTestClimb = 2.0;         // m/s^2
+constexpr double kTestYaw_rad = -0.4;
 constexpr double kLongestSample_s = 0.01;  // between two steps
 
 // The lift rises at this rate, in weights per second. Lift-off is seen and answered later by the delay of the commands:
@@ -31,6 +36,23 @@ double lift_rate(const GuidanceContext& context) {
 
 double longest_spool_up_s(const GuidanceContext& context) {
   return kFastLift_s + (kMostLift - kFastLift) / lift_rate(context) + kAwaitLiftOff_s;
+}
+
+// After the lift-off of a hover test: moves a little to all sides and turns, at rest again at its end, so that what the vehicle
+// does can be compared with what was commanded.
+void rise_in_test(const GuidanceContext& context, const Eigen::Vector3d& place_ned) {
+  const double t = kTest_s;
+  PolynomialSegment motion;
+  motion.duration_s = kTest_s;
+  // North by an acceleration of a (1 - 2 s), west by one of 12 a s (s - 1/2) (s - 1), with s from 0 to 1.
+  const double a = kTestAcceleration * t * t;
+  motion.x = {place_ned.x(), 0.0, a / 2.0 / (t * t), -a / 3.0 / (t * t * t)};
+  motion.y = {
+      place_ned.y(), 0.0, 0.0, -a / std::pow(t, 3), 1.5 * a / std::pow(t, 4), -0.6 * a / std::pow(t, 5)};
+  // Up by one of b (1 - s): the feet must be clear before they tilt.
+  motion.z = {place_ned.z(), -kRiseSpeed, -kTestClimb / 2.0, kTestClimb / (6.0 * t)};
+  motion.yaw = {context.state.path.at(context.now_ns).yaw_rad + kTestYaw_rad};
+  context.state.path.follow(motion, context.now_ns);
 }
 
 // A reference that moves up from a place since start_ns.
@@ -74,11 +96,13 @@ void advance_spool_up(const GuidanceContext& context) {
     return;
   }
   const bool lifted_off = context.lift_off_ns <= context.now_ns;
+  if (lifted_off && !state.path.moving && context.hover_test)
+    rise_in_test(context, state.path.at(context.now_ns).position_ned);
   if (lifted_off && !state.path.moving)
     rise_from(context, state.path.at(context.now_ns).position_ned, kRiseSpeed, context.now_ns);
   const double clear_z_ned = state.ground_z_ned - kClearHeight_m;
-  const bool settled =
-      lifted_off && elapsed_s(context.lift_off_ns, context.now_ns) >= context.command_delay_s + kSettle_s;
+  const bool settled = lifted_off && elapsed_s(context.lift_off_ns, context.now_ns) >=
+                                         context.command_delay_s + (context.hover_test ? kTest_s : kSettle_s);
   if (settled && on_time && place_ned.z() < clear_z_ned) {
     const double speed = std::clamp(-context.estimate.velocity_ned.z(), 0.0, kMostRiseSpeed);
     const double late_s = elapsed - kSpoolUp_s;

@@ -10,11 +10,16 @@
 namespace swiftlet::control::actions {
 namespace {
 
-constexpr double kApproachSpeed = 0.5;  // m/s, from rest to the start of a trajectory
+constexpr double kHoverTestSpeed = 0.2;  // m/s
+constexpr double kApproachSpeed = 0.5;   // m/s, from rest to the start of a trajectory
 
 void take_off(SupervisorContext& context) {
   start_takeoff(context.guidance(), context.request->position_ned.z(), context.request->speed,
                 context.state.now_ns);
+}
+
+void take_off_to_test(SupervisorContext& context) {
+  start_takeoff(context.guidance(), hover_test_top_ned(context).z(), kHoverTestSpeed, context.state.now_ns);
 }
 
 void keep_mission(SupervisorContext& context) {
@@ -104,6 +109,7 @@ const Action kNoteGround{"store the ground height", [](SupervisorContext& contex
                            context.state.guidance.ground_z_ned = context.estimate().position_ned.z();
                          }};
 const Action kTakeOff{"spool up, climb", take_off};
+const Action kTakeOffToTest{"spool up, move a little, climb", take_off_to_test};
 const Action kKeepMission{"store the mission", keep_mission};
 const Action kStartMission{"start the first item", start_mission};
 const Action kPause{"brake along the path",

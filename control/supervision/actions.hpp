@@ -15,6 +15,7 @@ namespace actions {
 extern const Action kNothing;
 extern const Action kNoteGround;  // the ground is at the estimated height
 extern const Action kTakeOff;
+extern const Action kTakeOffToTest;
 extern const Action kKeepMission;
 extern const Action kStartMission;
 extern const Action kPause;

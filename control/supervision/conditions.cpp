@@ -21,6 +21,7 @@ constexpr double kObeyTime_s = 1.0;  // from arming, or a takeover, until the ve
 constexpr double kStandsBelow_m = 0.3;
 constexpr double kStandsTime_s = 3.0;
 constexpr double kMostOfClimb = 0.9;
+constexpr double kHoverTest_s = 2.0;
 constexpr double kRotorsStartTime_s =
     10.0;  // PX4 disarms after this time without a take-off (COM_DISARM_PRFLT)
 
@@ -131,6 +132,9 @@ EventSet observe(SupervisorContext& context, double tip_over_cosine) {
   events.add(Event::kNotObeyed,
              inputs.not_obeyed_s > kObeyTime_s && elapsed_s(state.mode_since_ns, state.now_ns) > kObeyTime_s);
   events.add(Event::kNoLiftOff, no_lift_off(context));
+  events.add(Event::kHoverTestFailed, inputs.hover_test_defect[0] != '\0');
+  events.add(Event::kHoverTestPassed, state.reason == Reason::kHoverTest && state.mode == Mode::kHolding &&
+                                          elapsed_s(state.mode_since_ns, state.now_ns) > kHoverTest_s);
   events.add(Event::kImpact, state.guidance.phase != Phase::kGround &&
                                  inputs.specific_force_frd.norm() > failsafe.impact_acceleration);
   events.add(Event::kTakeoffInconsistent,

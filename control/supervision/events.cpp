@@ -16,6 +16,7 @@ constexpr std::array kConditionNames = {
     "rotors not running",
     "not obeyed",
     "no lift-off",
+    "hover test failed",
     "impact",
     "take-off inconsistent",
     "pose jumped",
@@ -30,6 +31,7 @@ constexpr std::array kConditionNames = {
     "ground link lost",
     "setpoints violate the fence",
     "setpoints stopped",
+    "hover test passed",
     "plan finished",
 };
 static_assert(kConditionNames.size() == static_cast<std::size_t>(kFirstRequest));
@@ -42,6 +44,7 @@ constexpr std::array kRequestEvents = {
     OfRequest{RequestKind::kArm, Event::kArm},
     OfRequest{RequestKind::kDisarm, Event::kDisarm},
     OfRequest{RequestKind::kTakeoff, Event::kTakeoff},
+    OfRequest{RequestKind::kHoverTest, Event::kHoverTest},
     OfRequest{RequestKind::kGoTo, Event::kGoTo},
     OfRequest{RequestKind::kHold, Event::kHold},
     OfRequest{RequestKind::kLand, Event::kLand},

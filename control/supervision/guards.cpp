@@ -68,6 +68,12 @@ Outcome check_takeoff(const SupervisorContext& context) {
   return outcome.accepted ? check_position("takeoff", top, limits) : outcome;
 }
 
+Outcome check_hover_test(const SupervisorContext& context) {
+  const Outcome battery = battery_sufficient(context);
+  if (!battery.accepted) return battery;
+  return check_position("hover test", hover_test_top_ned(context), context.limits);
+}
+
 Outcome check_upload(const SupervisorContext& context) {
   const Mission* const mission = context.request->mission;
   if (mission == nullptr || mission->items.empty()) return refuse("the mission has no items");
@@ -327,6 +333,11 @@ namespace guards {
 const Guard kAlways{"", [](const SupervisorContext&) { return true; }};
 const Guard kAirborne{"off the ground",
                       [](const SupervisorContext& context) { return context.state.guidance.airborne; }};
+const Guard kInHoverTest{"in a hover test",
+                         [](const SupervisorContext& context) { return in_hover_test(context.state); }};
+const Guard kAirborneInHoverTest{"off the ground, in a hover test", [](const SupervisorContext& context) {
+                                   return context.state.guidance.airborne && in_hover_test(context.state);
+                                 }};
 const Guard kSpoolingUp{"on the ground",
                         [](const SupervisorContext& context) { return spooling_up(context); }};
 const Guard kLiftedOff{"lifted off", [](const SupervisorContext& context) { return !spooling_up(context); }};
@@ -375,6 +386,7 @@ const Precondition kNone{"", [](const SupervisorContext&) { return accept(); }};
 const Precondition kArming{"all arming checks pass", check_arming};
 const Precondition kTakeoff{"battery voltage, speed, target above the ground and inside the fence",
                             check_takeoff};
+const Precondition kHoverTest{"battery voltage, a fence that is high enough", check_hover_test};
 const Precondition kUpload{"the mission has items", check_upload};
 const Precondition kStartFromGround{
     "a mission is uploaded, start time, battery voltage, inside its fence, first item a takeoff to above the "

@@ -20,6 +20,8 @@ namespace guards {
 
 extern const Guard kAlways;
 extern const Guard kAirborne;
+extern const Guard kInHoverTest;
+extern const Guard kAirborneInHoverTest;
 extern const Guard kSpoolingUp;  // in take-off, still on the ground: ends at lift-off where that is observed
 extern const Guard kLiftedOff;   // the opposite
 extern const Guard kOnLandingItem;
@@ -42,6 +44,7 @@ namespace preconditions {
 extern const Precondition kNone;
 extern const Precondition kArming;
 extern const Precondition kTakeoff;
+extern const Precondition kHoverTest;
 extern const Precondition kUpload;
 extern const Precondition kStartFromGround;
 extern const Precondition kStart;

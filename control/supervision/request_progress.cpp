@@ -63,6 +63,10 @@ void end_with_path(RequestStatus& request, Mode mode, const Transition& row) {
     case RequestKind::kTakeoff:
       if (row.event == Event::kPlanFinished) return;  // the reference is at the end
       break;
+    case RequestKind::kHoverTest:
+      if (row.reason == Reason::kHoverTest || row.reason == Reason::kHoverTestPassed) return;
+      if (row.reason == Reason::kLanded) return succeed(request);
+      break;
     case RequestKind::kLand:
       if (mode == Mode::kLanding || mode == Mode::kDescent) return;
       if (mode == Mode::kDisarmed) return succeed(request);

@@ -36,6 +36,12 @@ struct SupervisorState {
   std::array<GroundLink, kMaxGroundLinks> ground_links{};
   RequestStatuses requests{};
 };
+
+// The reason says so, of which a standby knows too: it flies a hover test on.
+inline bool in_hover_test(const SupervisorState& state) {
+  return !rotors_off(state.mode) &&
+         (state.reason == Reason::kHoverTest || state.reason == Reason::kHoverTestPassed);
+}
 static_assert(std::is_trivially_copyable_v<SupervisorState>);
 
 }  // namespace swiftlet::control

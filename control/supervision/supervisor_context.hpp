@@ -41,8 +41,17 @@ struct SupervisorContext {
             state.guidance,
             inputs.lift_off_ns,
             inputs.command_delay_s,
-            inputs.rotors_running && inputs.not_obeyed_s == 0.0};
+            inputs.rotors_running && inputs.not_obeyed_s == 0.0,
+            in_hover_test(state)};
   }
 };
+
+// Where a hover test climbs to.
+inline Eigen::Vector3d hover_test_top_ned(const SupervisorContext& context) {
+  constexpr double kHeight_m = 0.15;
+  Eigen::Vector3d top_ned = context.estimate().position_ned;
+  top_ned.z() = context.state.guidance.ground_z_ned - kHeight_m;
+  return top_ned;
+}
 
 }  // namespace swiftlet::control

@@ -25,7 +25,8 @@ struct SupervisorInputs {
       0.0;  // from a sample to the vehicle that obeys the command that answers it; 0: not known
   bool takeoff_inconsistent =
       false;  // after lift-off the poses do not follow the motion (estimation/takeoff_consistency.hpp)
-  bool has_battery = false;  // the supply voltage was measured
+  const char* hover_test_defect = "";  // what the hover test has found; empty: nothing
+  bool has_battery = false;            // the supply voltage was measured
   double supply_voltage_v = 0.0;
   double implausible_supply_v = 0.0;  // measured instead, and not used; 0: none
   double least_supply_v = 0.0;        // of the plausible ones of this vehicle

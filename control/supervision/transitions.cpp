@@ -32,6 +32,7 @@ const Transition kTransitions[] = {
   {kRotorsOn, E::kImuGap, guards::kAlways, preconditions::kNone, M::kStopped, R::kImuGap, actions::kNothing},
   {kRotorsOn, E::kTippedOver, guards::kAlways, preconditions::kNone, M::kStopped, R::kTippedOver, actions::kNothing},
   {kRotorsOn, E::kVehicleFault, guards::kAlways, preconditions::kNone, M::kStopped, R::kVehicleFault, actions::kNothing},
+  {{M::kTakingOff, M::kHolding, M::kLanding}, E::kHoverTestFailed, guards::kInHoverTest, preconditions::kNone, M::kStopped, R::kHoverTestFailed, actions::kNothing},
   {kWithPosition, E::kTakeoffInconsistent, guards::kAlways, preconditions::kNone, M::kStopped, R::kTakeoffInconsistent, actions::kNothing},
 
   // A hard touchdown ends a descent or landing. In any other mode an impact is a collision.
@@ -82,6 +83,8 @@ const Transition kTransitions[] = {
 
   // Normal end of a manoeuvre.
   {{M::kLanding, M::kMission}, E::kTouchdown, guards::kAlways, preconditions::kNone, M::kDisarmed, R::kLanded, actions::kNothing},
+  {{M::kTakingOff}, E::kPlanFinished, guards::kAirborneInHoverTest, preconditions::kNone, M::kHolding, R::kHoverTest, actions::kNothing},
+  {{M::kHolding}, E::kHoverTestPassed, guards::kInHoverTest, preconditions::kNone, M::kLanding, R::kHoverTestPassed, actions::kLand},
   {{M::kTakingOff}, E::kPlanFinished, guards::kAirborne, preconditions::kNone, M::kHolding, R::kTakeOffCompleted, actions::kNothing},
   {{M::kMission}, E::kPlanFinished, guards::kAlways, preconditions::kNone, M::kHolding, R::kMissionCompleted, actions::kNothing},
   {{M::kTrajectory}, E::kPlanFinished, guards::kAlways, preconditions::kNone, M::kHolding, R::kTrajectoryCompleted, actions::kNothing},
@@ -93,6 +96,7 @@ const Transition kTransitions[] = {
   {{M::kDisarmed, M::kArmed, M::kStopped}, E::kDisarm, guards::kAlways, preconditions::kNone, M::kDisarmed, R::kRequested, actions::kNothing},
   {kLeavingGround, E::kDisarm, guards::kSpoolingUp, preconditions::kNone, M::kDisarmed, R::kRequested, actions::kNothing},
   {{M::kArmed}, E::kTakeoff, guards::kAlways, preconditions::kTakeoff, M::kTakingOff, R::kRequested, actions::kTakeOff},
+  {{M::kArmed}, E::kHoverTest, guards::kAlways, preconditions::kHoverTest, M::kTakingOff, R::kHoverTest, actions::kTakeOffToTest},
   {kAny, E::kMissionUpload, guards::kNoneUnderWay, preconditions::kUpload, kStay, R::kRequested, actions::kKeepMission},
   {{M::kArmed}, E::kMissionStart, guards::kAlways, preconditions::kStartFromGround, M::kMission, R::kRequested, actions::kStartMission},
   {{M::kHolding}, E::kMissionStart, guards::kNotPaused, preconditions::kStart, M::kMission, R::kRequested, actions::kStartMission},
@@ -184,6 +188,7 @@ Outcome refusal(Event request, const SupervisorContext& context) {
     case Event::kDisarm:
       return refuse("cannot disarm while %s; land first, or run `swiftlet stop`", now);
     case Event::kTakeoff:
+    case Event::kHoverTest:
       if (mode == Mode::kDisarmed) return refuse("not armed; run `swiftlet arm` first");
       if (mode == Mode::kLanding || mode == Mode::kDescent) return refuse("cannot take off while %s", now);
       if (mode == Mode::kTakingOff || context.state.guidance.phase == Phase::kSpoolUp)

@@ -37,6 +37,9 @@ constexpr std::array kReasonNames = {
     "the vehicle was restarted",
     "the vehicle does not obey control's commands",
     "the vehicle did not leave the ground",
+    "hover test",
+    "hover test passed",
+    "hover test failed",
 };
 static_assert(kReasonNames.size() == kReasonCount);
 

@@ -58,8 +58,11 @@ enum class Reason : std::uint8_t {
   kVehicleRestarted = 29,
   kNotObeyed = 30,  // the vehicle reported that it obeys no command of this controller
   kNoLiftOff = 31,
+  kHoverTest = 32,        // takes off and holds for the hover test
+  kHoverTestPassed = 33,  // and lands
+  kHoverTestFailed = 34,  // Status::hover_test_defect says why
 };
-constexpr int kReasonCount = static_cast<int>(Reason::kNoLiftOff) + 1;
+constexpr int kReasonCount = static_cast<int>(Reason::kHoverTestFailed) + 1;
 const char* to_string(Reason reason);
 
 // What the vehicle reports as fault: a sentence with its terminating 0; empty: none.
@@ -104,8 +107,9 @@ struct Status {
   plant::ControlLevel level = plant::ControlLevel::kActuators;  // of the commands
   OdometryStatus odometry;
   MissionProgress mission;
-  SettingsName settings{};      // name of the control settings in force, or that the gains change to
-  double gains_progress = 1.0;  // 0 .. 1, of the change of gains
+  VehicleFault hover_test_defect{};  // of the last hover test; empty: none
+  SettingsName settings{};           // name of the control settings in force, or that the gains change to
+  double gains_progress = 1.0;       // 0 .. 1, of the change of gains
 };
 
 }  // namespace swiftlet::control

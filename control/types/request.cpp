@@ -24,6 +24,7 @@ constexpr std::array kNames = {
     Named{RequestKind::kMissionResume, "mission resume"},
     Named{RequestKind::kMissionSkip, "mission skip"},
     Named{RequestKind::kMissionClear, "mission clear"},
+    Named{RequestKind::kHoverTest, "hover test"},
     Named{RequestKind::kMissionUpload, "mission upload"},
     Named{RequestKind::kTrajectory, "trajectory"},
     Named{RequestKind::kSettings, "set control"},

@@ -26,6 +26,7 @@ enum class RequestKind : std::uint8_t {
   kMissionResume = 9,  // return to the point of the pause, then continue
   kMissionSkip = 10,   // continue with the next item
   kMissionClear = 11,  // delete the mission
+  kHoverTest = 12,     // take off to 0.15 m, hover for 2 s and land, under tight limits
   // Sent by topics of their own, not by a command.
   kMissionUpload = 64,  // store the mission
   kTrajectory = 65,

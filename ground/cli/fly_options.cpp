@@ -174,6 +174,10 @@ runtime::Option add_launch_options(runtime::CommandLine app, FlyOptions& options
   app.add_flag("--skip-check", options.skip_check,
                "with --attach: arm the vehicle although it was not checked, see `swiftlet check vehicle`")
       .needs(attach);
+  app.add_flag("--skip-hover-test", options.skip_hover_test,
+               "with --attach: leave out the hover test before the first flight of a vehicle, see `swiftlet "
+               "check vehicle --hover`")
+      .needs(attach);
   runtime::add_clock_option(app, options.clock);
   app.add_option(
          "--speed", options.speed,

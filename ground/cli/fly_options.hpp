@@ -16,7 +16,7 @@ void add_mission_options(runtime::CommandLine app, FlyOptions& options);
 void add_fly_options(runtime::CommandLine app, FlyOptions& options);
 // Adds --record, --replace and --json.
 void add_record_options(runtime::CommandLine app, FlyOptions& options);
-// Adds --attach, --skip-check, --clock, --speed, --view and --trace, and changes the network options of `app`. Returns
+// Adds --attach, --skip-check, --skip-hover-test, --clock, --speed, --view and --trace, and changes the network options of `app`. Returns
 // --attach.
 runtime::Option add_launch_options(runtime::CommandLine app, FlyOptions& options);
 // Adds --level: at which the vehicle is commanded.

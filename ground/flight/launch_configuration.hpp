@@ -63,6 +63,7 @@ struct FlyOptions {
   bool view = false;                 // serve the live page beside the flight
   std::string program = "swiftlet";  // with its version, for the record
   bool skip_check = false;           // kAttached: do not check the vehicle before it is armed
+  bool skip_hover_test = false;      // kAttached: do not let it hover before its first flight
   bool json = false;
 };
 

@@ -124,9 +124,9 @@ void Telemetry::take(const Snapshot& snapshot) {
   const bool mission_changed = differ(now.mission, before.mission);
   if (mission_changed) {
     mission_end_code_ = is_over(now.mission.state) ? static_cast<std::uint8_t>(now.reason) : std::uint8_t{0};
-    mission_end_ = is_over(now.mission.state) ? reason_text(now.reason) : "";
+    mission_end_ = is_over(now.mission.state) ? reason_text(now) : "";
   }
-  if (mode_changed) runtime::log_info("{}: {}", control::to_string(now.mode), reason_text(now.reason));
+  if (mode_changed) runtime::log_info("{}: {}", control::to_string(now.mode), reason_text(now));
   if (now.has_pose != before.has_pose) {
     if (now.has_pose) {
       runtime::log_info("mocap available");
@@ -159,8 +159,10 @@ void Telemetry::set_vehicle_fault(const std::string& fault) {
   if (!fault.empty()) vehicle_fault_ = fault;
 }
 
-std::string Telemetry::reason_text(control::Reason reason) const {
-  if (reason != control::Reason::kVehicleFault) return control::to_string(reason);
+std::string Telemetry::reason_text(const control::Status& status) const {
+  if (status.reason == control::Reason::kHoverTestFailed && status.hover_test_defect[0] != '\0')
+    return status.hover_test_defect.data();
+  if (status.reason != control::Reason::kVehicleFault) return control::to_string(status.reason);
   const std::lock_guard<std::mutex> lock(vehicle_fault_mutex_);
   return vehicle_fault_;
 }
@@ -193,7 +195,7 @@ void Telemetry::publish_status() {
   messages::msg::ControlStatus message = messages::to_message(status, last_.gains, thresholds_);
   message.stamp_ns(last_.stamp_ns);
   message.sequence_number(++status_count_);
-  message.reason() = reason_text(status.reason);
+  message.reason() = reason_text(status);
   // The controller's own age of the pose stands still while no IMU sample arrives.
   const double pose_age_s = status.pose_age_s + (ages_.imu_s > kImuSilence_s ? ages_.imu_s : 0.0);
   message.has_pose(status.has_pose && pose_age_s <= thresholds_.mocap_timeout_s);

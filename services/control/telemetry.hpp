@@ -45,7 +45,7 @@ class Telemetry {
   void take(const Snapshot& snapshot);
   void change_role();
   void publish_plan();
-  std::string reason_text(control::Reason reason) const;
+  std::string reason_text(const control::Status& status) const;
   void log_imu_silence();
   const DelayMonitor::Report& update_delay();
   void publish_sampled(const Snapshot& snapshot);

@@ -116,7 +116,7 @@ Fault from_message(const msg::GroundLink& in, control::GroundHeartbeat& out) {
 
 Fault from_message(const msg::Command& in, control::Request& out) {
   Check check;
-  check.at_most("kind", in.kind(), msg::Command_Constants::MISSION_CLEAR);
+  check.at_most("kind", in.kind(), msg::Command_Constants::HOVER_TEST);
   const bool placed =
       in.kind() == msg::Command_Constants::GOTO || in.kind() == msg::Command_Constants::TAKEOFF;
   const bool moves = placed || in.kind() == msg::Command_Constants::LAND;

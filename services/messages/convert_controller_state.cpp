@@ -99,7 +99,13 @@ static_assert(static_cast<std::uint8_t>(control::Reason::kNotObeyed) ==
               msg::ControlStatus_Constants::REASON_NOT_OBEYED);
 static_assert(static_cast<std::uint8_t>(control::Reason::kNoLiftOff) ==
               msg::ControlStatus_Constants::REASON_NO_LIFT_OFF);
-static_assert(control::kReasonCount == 32);
+static_assert(static_cast<std::uint8_t>(control::Reason::kHoverTest) ==
+              msg::ControlStatus_Constants::REASON_HOVER_TEST);
+static_assert(static_cast<std::uint8_t>(control::Reason::kHoverTestPassed) ==
+              msg::ControlStatus_Constants::REASON_HOVER_TEST_PASSED);
+static_assert(static_cast<std::uint8_t>(control::Reason::kHoverTestFailed) ==
+              msg::ControlStatus_Constants::REASON_HOVER_TEST_FAILED);
+static_assert(control::kReasonCount == 35);
 static_assert(static_cast<std::uint8_t>(control::Phase::kGround) ==
               msg::ControllerState_Constants::PHASE_ON_GROUND);
 static_assert(static_cast<std::uint8_t>(control::Phase::kSpoolUp) ==

@@ -4,6 +4,8 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -102,6 +104,35 @@ TEST_F(CheckVehicle, ThePlantPassesAndItsRotorsEndOff) {
   EXPECT_EQ(finding_of(result, "rotor_1.spin").find("skipped: nobody at a terminal"), 0);
   // It has timed out once, in the step without commands, and stands still at the end.
   EXPECT_TRUE(plant_says("rotors stopped on command")) << plant_->errors();
+}
+
+// GIVEN a vehicle whose rotors are connected as its file says, or two exchanged, WHEN it flies a hover test THEN it lands and is
+// remembered, or its rotors are off and the two are named.
+TEST_F(CheckVehicle, AHoverTestNamesTwoExchangedRotors) {
+  const std::string first = "[0.04914392129246505, 0.04914392129246505, 0]";
+  const std::string third = "[-0.04914392129246505, -0.04914392129246505, 0]";
+  std::ifstream file(in_source("config/vehicles/kaylion.yaml"));
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  text.replace(text.find(third), third.size(), first);
+  text.replace(text.find(first), first.size(), third);
+  const std::filesystem::path state = folder_.path() / "state";
+  ASSERT_EQ(setenv("XDG_STATE_HOME", state.c_str(), 1), 0);
+  const std::string kaylion = in_source("config/vehicles/kaylion.yaml");
+  const std::string exchanged = folder_.write("exchanged.yaml", text);
+  for (const std::string& vehicle : {exchanged, kaylion}) {
+    start_plant({"--vehicle", vehicle});
+    start_mocap();
+    const auto control = start("swiftlet-control");
+    const ProgramResult result = check({"--hover", "--yes"});
+    EXPECT_EQ(finding_of(result, "hover.test"),
+              vehicle == kaylion ? "pass: " : "fail: rotors 1 and 3 are exchanged")
+        << result.output << result.errors;
+    EXPECT_EQ(std::filesystem::exists(state / "swiftlet" / "hover_tests" / "kl1"), vehicle == kaylion);
+    EXPECT_TRUE(plant_says("rotors stopped on command")) << plant_->errors();
+    plant_.reset();
+    mocap_.reset();
+  }
+  unsetenv("XDG_STATE_HOME");
 }
 
 TEST_F(CheckVehicle, SendsNoThrottlesToAVehicleThatDoesNotAcceptThem) {
@@ -256,7 +287,9 @@ TEST_F(CheckVehicle, WrongUsageIsRefused) {
             "swiftlet: check vehicle: --props-off: confirm with --yes that all propellers are off; the "
             "rotors will turn\n");
   EXPECT_EQ(swiftlet({"check", "vehicle", "--props-off", "--tethered"}).exit_code, 2);
+  EXPECT_EQ(swiftlet({"check", "vehicle", "--props-off", "--hover"}).exit_code, 2);
   EXPECT_EQ(swiftlet({"fly", "square", "--skip-check"}).exit_code, 2) << "without --attach";
+  EXPECT_EQ(swiftlet({"fly", "square", "--skip-hover-test"}).exit_code, 2) << "without --attach";
   EXPECT_EQ(swiftlet({"check", "vehicle", "--hand", "--tethered", "--yes"}).exit_code, 2);
   const ProgramResult nobody = swiftlet({"check", "vehicle", "--timeout", "0.1", "--time", "1"});
   EXPECT_EQ(nobody.exit_code, 1);

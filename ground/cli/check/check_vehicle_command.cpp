@@ -14,6 +14,7 @@
 #include "swiftlet/ground/cli/check/sample_recorder.hpp"
 #include "swiftlet/ground/cli/check/steps.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/hover_test.hpp"
 #include "swiftlet/ground/client/network_options.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/vehicle_check/commands.hpp"
@@ -35,6 +36,7 @@ struct CheckVehicleOptions {
   bool hand = false;
   bool props_off = false;
   bool tethered = false;
+  bool hover = false;
   bool yes = false;
   bool json = false;
 };
@@ -45,10 +47,11 @@ std::chrono::milliseconds milliseconds(double seconds) {
 
 // Throws InputError unless a person confirms what the rotors may do.
 void confirm(const CheckVehicleOptions& options, const OperatorDialog& dialog) {
-  if ((!options.props_off && !options.tethered) || options.yes) return;
-  const std::string option = options.props_off ? "--props-off" : "--tethered";
-  const std::string state =
-      options.props_off ? "all propellers are off" : "the vehicle is tethered and nobody is near";
+  if ((!options.props_off && !options.tethered && !options.hover) || options.yes) return;
+  const std::string option = options.props_off ? "--props-off" : options.hover ? "--hover" : "--tethered";
+  const std::string state = options.props_off ? "all propellers are off"
+                            : options.hover   ? "the vehicle may take off and nobody is near"
+                                              : "the vehicle is tethered and nobody is near";
   if (!dialog.has_terminal())
     throw io::InputError("check vehicle: " + option + ": confirm with --yes that " + state +
                          "; the rotors will turn");
@@ -136,6 +139,17 @@ std::string fault_of_hand(const CheckResults& results) {
   return fault_of_imu(results);
 }
 
+// Only a vehicle that is sound at rest takes off.
+CheckResult check_hover(const CheckVehicleOptions& options, const CheckResults& at_rest,
+                        const OperatorDialog& dialog) {
+  const std::string name = "hover.test";
+  if (any_failed(at_rest)) return skipped(name, "a check above fails");
+  dialog.say("the vehicle takes off to 0.15 m, hovers for 2 s and lands");
+  const std::string defect = fly_hover_test(options.network, [&] { return dialog.interrupted(); });
+  const Verdict verdict = defect.empty() ? Verdict::kPass : Verdict::kFail;
+  return {name, verdict, {0.15, "m", "0.15 m for 2 s"}, "nothing is wrong", defect};
+}
+
 CheckResults examine(const CheckVehicleOptions& options, const plant::Vehicle& vehicle,
                      const OperatorDialog& dialog) {
   SampleRecorder recorder(options.network);
@@ -147,6 +161,7 @@ CheckResults examine(const CheckVehicleOptions& options, const plant::Vehicle& v
     append(results, fault.empty() ? check_by_commands(recorder, standing.recording, options, vehicle, dialog)
                                   : CheckResults{skipped("commands.steps", fault)});
   }
+  if (options.hover) results.push_back(check_hover(options, results, dialog));
   if (options.hand) {
     const std::string fault = fault_of_hand(results);
     append(results, fault.empty() ? check_in_hand(recorder, standing.recording, dialog)
@@ -202,8 +217,14 @@ io::Command add_check_vehicle_command(runtime::CommandLine check_line) {
                    "leave: order and spin by the turn of the vehicle. No controller may be alive");
   tethered.excludes(props_off);
   tethered.excludes(hand);
-  app.add_flag("--yes", options->yes,
-               "confirm that the propellers are off, or the vehicle tethered; do not ask");
+  runtime::Option hover = app.add_flag(
+      "--hover", options->hover,
+      "let the controller fly a hover test of 2 s at 0.15 m under tight limits: rotors, gyro and "
+      "motion capture that do not fit each other are named, and the rotors turned off");
+  for (const char* const other : {"--hand", "--props-off", "--tethered"}) hover.excludes(app.option(other));
+  app.add_flag(
+      "--yes", options->yes,
+      "confirm that the propellers are off, the vehicle tethered, or that it may take off; do not ask");
   app.add_flag("--json", options->json, "print the results as JSON");
   app.footer(
       "The vehicle must stand level and still. Exit code 1 if a check fails.\nThe rotors are turned off at "
