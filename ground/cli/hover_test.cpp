@@ -1,21 +1,17 @@
 #include "swiftlet/ground/cli/hover_test.hpp"
 
 #include <chrono>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
-#include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/client/vehicle.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/io/atomic_write.hpp"
-#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::ground {
@@ -29,28 +25,12 @@ constexpr auto kReportTimeout = 2s;
 constexpr auto kStep = 100ms;
 constexpr auto kTimeout = 60s;  // of a vehicle that starts its rotors late
 
-// FNV-1a, which is the same on every computer.
-std::uint64_t hash(const std::string& text) {
-  std::uint64_t value = 14695981039346656037U;
-  for (const char c : text) value = (value ^ static_cast<unsigned char>(c)) * 1099511628211U;
-  return value;
-}
-
-// The file of the vehicle's model, if there is one here.
-std::string vehicle_file(const std::string& model) {
-  for (const io::ConfigurationFile& file : io::configuration_files(io::kinds::kVehicle))
-    if (file.name == model) return io::read_text_file(file.path);
-  return "";
-}
-
-std::string gains_text(const msg::ControlGains& gains) {
-  std::string text;
-  for (const auto* const axes :
-       {&gains.attitude_angle(), &gains.attitude_rate(), &gains.attitude_acceleration(), &gains.position_p(),
-        &gains.position_v(), &gains.position_i()})
-    text += fmt::format("{} ", fmt::join(*axes, " "));
-  return text + fmt::format("{} {} {}", gains.integral_limit(), gains.disturbance_bandwidth(),
-                            gains.disturbance_limit());
+// Waits until vehicle and control have said what tested_configuration() needs.
+void await_reports(Client& client, std::chrono::milliseconds timeout) {
+  client.hear_files();
+  client.wait(timeout, [](const View& view) {
+    return view.vehicle.seen() && view.control.seen() && view.files != nullptr;
+  });
 }
 
 bool has_passed(const std::string& vehicle, const std::string& configuration) {
@@ -94,7 +74,6 @@ std::string fly_hover_test(const std::shared_ptr<Client>& client, const std::fun
   vehicle.cancel_when(interrupted);
   const Result found = vehicle.connect();
   if (!found.accepted()) return found.reason;
-  client->wait(kReportTimeout, [](const View& view) { return view.vehicle.seen(); });
   const std::string configuration = tested_configuration(client->view());
   const ActionResult armed = vehicle.arm().wait(kTimeout);
   if (!armed.done()) return armed.reason;
@@ -115,13 +94,13 @@ std::string fly_hover_test(const std::shared_ptr<Client>& client, const std::fun
 
 std::string tested_configuration(const View& view) {
   const msg::VehicleInfo& vehicle = view.vehicle.message;
-  const msg::ControlStatus& control = view.control.message;
+  const auto hash = [&](const msg::SettingsFile& (msg::FlownFiles::*file)() const) {
+    return view.files == nullptr ? "" : ((*view.files).*file)().sha256().c_str();
+  };
   return fmt::format(
-      "model {}\nmass_kg {}\nrotors {}\nautopilot {}\nvehicle_file {:016x}\nsettings {}\nlevel {}\ngains "
-      "{:016x}\n",
+      "model {}\nmass_kg {}\nrotors {}\nautopilot {}\nlevel {}\nvehicle_file {}\ncontrol_settings {}\n",
       vehicle.name().c_str(), vehicle.mass_kg(), vehicle.rotor_count(), vehicle.autopilot().c_str(),
-      hash(vehicle_file(vehicle.name().c_str())), control.settings().c_str(), control.control_level(),
-      hash(gains_text(control.gains())));
+      view.control.message.control_level(), hash(&msg::FlownFiles::vehicle), hash(&msg::FlownFiles::control));
 }
 
 std::filesystem::path hover_test_memory(const std::string& vehicle) {
@@ -135,7 +114,9 @@ std::filesystem::path hover_test_memory(const std::string& vehicle) {
 }
 
 std::string fly_hover_test(const dds::NodeSettings& network, const std::function<bool()>& interrupted) {
-  return fly_hover_test(std::make_shared<Client>(network), interrupted);
+  const auto client = std::make_shared<Client>(network);
+  await_reports(*client, kReportTimeout);
+  return fly_hover_test(client, interrupted);
 }
 
 void require_hover_tests(const dds::NodeSettings& network, const std::vector<std::string>& vehicles) {
@@ -144,8 +125,7 @@ void require_hover_tests(const dds::NodeSettings& network, const std::vector<std
     dds::NodeSettings settings = network;
     settings.vehicle = vehicle;
     const auto client = std::make_shared<Client>(settings);
-    client->wait(kDiscoveryTimeout,
-                 [](const View& view) { return view.vehicle.seen() && view.control.seen(); });
+    await_reports(*client, kDiscoveryTimeout);
     const View view = client->view();
     if (view.vehicle.message.simulated() || has_passed(vehicle, tested_configuration(view))) continue;
     std::fprintf(stderr, "%s: first flight: hover test of 2 s at 0.15 m\n", vehicle.c_str());

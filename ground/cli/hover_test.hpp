@@ -19,7 +19,7 @@ std::string fly_hover_test(const dds::NodeSettings& network, const std::function
 // std::runtime_error with a sentence if one does not pass.
 void require_hover_tests(const dds::NodeSettings& network, const std::vector<std::string>& vehicles);
 
-// What a hover test is about: the vehicle as it reports itself, its vehicle file here, and gains, settings and level of control.
+// What a hover test is about: the vehicle as it reports itself, the level, and the files that control flies with.
 // One that differs needs another test.
 std::string tested_configuration(const View& view);
 // $XDG_STATE_HOME/swiftlet/hover_tests/NAME, or in ~/.local/state: the configuration of the last test that NAME has passed.

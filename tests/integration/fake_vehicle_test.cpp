@@ -254,6 +254,29 @@ TEST_F(FakeVehicleFlight, OneWithoutGroundTruthIsJudgedByMotionCapture) {
   EXPECT_LT(report["peak_3d_m"], 0.2);
 }
 
+// GIVEN a vehicle that is not simulated WHEN it is flown with `fly --attach` for the first time THEN a hover test comes first, and is
+// remembered.
+TEST_F(FakeVehicleFlight, TheFirstFlightIsAHoverTest) {
+  start_vehicle();
+  const std::string mission = folder_.write("hop.yaml",
+                                            "name: hop\nframe: ned\ntolerance_m: 0.2\nitems:\n"
+                                            "  - {kind: takeoff, height_m: 0.6, speed_m_s: 0.5}\n"
+                                            "  - {kind: land, speed_m_s: 0.5}\n");
+  const auto fly = [&](const std::string& record) {
+    return run_program("/usr/bin/env",
+                       {"XDG_STATE_HOME=" + (folder_.path() / "state").string(), program_file("swiftlet"), "fly", mission,
+                        "--attach", "--localhost-only", "--domain", std::to_string(lock_.domain()), "--record",
+                        folder_.path() / record},
+                       folder_.path());
+  };
+  const ProgramResult first = fly("first");
+  EXPECT_EQ(first.exit_code, 0) << first.errors;
+  EXPECT_NE(first.errors.find("kl1: first flight: hover test of 2 s at 0.15 m\n"), std::string::npos) << first.errors;
+  const ProgramResult second = fly("second");
+  EXPECT_EQ(second.exit_code, 0) << second.errors;
+  EXPECT_EQ(second.errors.find("hover test"), std::string::npos) << second.errors;
+}
+
 // `./dev bench --only missions` measures the target of 1 s; the bound here allows for a busy machine.
 TEST_F(FakeVehicleFlight, UploadsTheLongestMissionAndStartsOneOf1000WaypointsQuickly) {
   hover();

@@ -1,6 +1,7 @@
 // What the memory of a hover test distinguishes.
 #include <cstdlib>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,13 @@
 
 namespace swiftlet::ground::hover_test_memory_test {
 
+std::shared_ptr<const msg::FlownFiles> with_hashes(const char* vehicle, const char* control) {
+  auto files = std::make_shared<msg::FlownFiles>();
+  files->vehicle().sha256() = vehicle;
+  files->control().sha256() = control;
+  return files;
+}
+
 TEST(HoverTestMemory, AVehicleThatChangesIsAnotherOne) {
   const std::string before = tested_configuration(View());
   EXPECT_EQ(tested_configuration(View()), before);
@@ -18,10 +26,9 @@ TEST(HoverTestMemory, AVehicleThatChangesIsAnotherOne) {
       [](View& view) { view.vehicle.message.mass_kg(0.05); },
       [](View& view) { view.vehicle.message.rotor_count(6); },
       [](View& view) { view.vehicle.message.autopilot() = "px4"; },
-      [](View& view) { view.control.message.settings() = "paper"; },
       [](View& view) { view.control.message.control_level(4); },
-      [](View& view) { view.control.message.gains().attitude_rate()[2] = 1.0; },
-      [](View& view) { view.control.message.gains().disturbance_limit(1.0); },
+      [](View& view) { view.files = with_hashes("a", ""); },
+      [](View& view) { view.files = with_hashes("", "a"); },
   };
   for (const auto& change : changes) {
     View view;
