@@ -43,6 +43,7 @@ std::vector<std::string> config_directories() {
   const fs::path programs = program_directory();
   if (!programs.empty()) {
     const fs::path prefix = programs.parent_path();
+    if (prefix == "/usr") directories.emplace_back("/etc/swiftlet");
     directories.push_back((prefix / "share" / "swiftlet" / "config").string());
     directories.push_back((prefix.parent_path() / "config").string());
   }

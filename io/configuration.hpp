@@ -8,8 +8,8 @@
 namespace swiftlet::io {
 
 // The folders that are searched for vehicles/, control/, missions/, in order: $SWIFTLET_CONFIG_DIR if it is
-// set, then, relative to the folder of the running executable, ../share/swiftlet/config (installed) and
-// ../../config (build tree).
+// set, then /etc/swiftlet for programs in /usr/bin (packages), then, relative to the folder of the running executable,
+// ../share/swiftlet/config (installed) and ../../config (build tree).
 std::vector<std::string> config_directories();
 
 // Returns the first file that exists: path as given, then, if it is relative ("vehicles/kaylion.yaml"), path

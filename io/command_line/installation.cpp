@@ -37,6 +37,9 @@ std::string shell_quoted(const std::string& word) {
 fs::path program_beside(const std::string& name) {
   fs::path program = io::program_directory() / name;
   if (!is_program(program)) build_in_source_tree(program);
+  if (!is_program(program) && program.parent_path() == "/usr/bin")
+    throw std::runtime_error(
+        name + " not found: the package swiftlet-analysis has it, apt install swiftlet-analysis");
   if (!is_program(program)) {
     throw std::runtime_error(name + " not found, must be in the folder of this program, " +
                              program.parent_path().string());

@@ -127,11 +127,14 @@ void ControlService::subscribe_motion(dds::Node& node, const messages::Topic<Mes
                                       const char* samples, AnsweredSamples::Kind kind) {
   const auto take = [this, kind](const Message& message) {
     const bool of_another_process = std::exchange(of_another_process_, false);
-    if (!answered_samples_.admit(kind, runtime::monotonic_ns())) return;
+    const std::int64_t now_ns = runtime::monotonic_ns();
+    if (!answered_samples_.admit(kind, now_ns)) return;
     note(imu_arrivals_, message);
     VehicleSample sample = vehicle_sample(message);
     sample.of_another_process = of_another_process;
+    step_began_ns_.store(now_ns, std::memory_order_relaxed);
     driver_->on_sample(sample);
+    step_began_ns_.store(kNoStep, std::memory_order_relaxed);
   };
   const Delivery delivery = clock_ == runtime::Clock::kLockstep ? Delivery::kShared : Delivery::kSamples;
   const dds::OneSource source{dds::kSourceSilence, [this] { of_another_process_ = true; }};
@@ -183,7 +186,9 @@ void ControlService::run(const std::atomic<bool>& stop) {
     const StreamAges ages = stream_ages();
     publish_pending_stop(ages);
     telemetry_.set_ages(ages);
-    if (const std::int64_t now_ns = runtime::monotonic_ns(); now_ns >= conditions_due_ns) {
+    const std::int64_t now_ns = runtime::monotonic_ns();
+    if (now_ns - step_began_ns_.load(std::memory_order_relaxed) < runtime::Pulse::kStillNs) pulse_.beat();
+    if (now_ns >= conditions_due_ns) {
       telemetry_.set_conditions(driver_->is_realtime(), source_conflict());
       conditions_due_ns = now_ns + kConditionsPeriodNs;
     }

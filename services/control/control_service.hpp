@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,6 +24,7 @@
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/runtime/clock.hpp"
 #include "swiftlet/services/runtime/realtime.hpp"
+#include "swiftlet/services/runtime/service_manager.hpp"
 
 namespace swiftlet::services {
 
@@ -53,6 +55,8 @@ class ControlService {
 
   void run(const std::atomic<bool>& stop);
   void wake() { wake_.post(); }
+  // Whether run() goes on, and no step lasts for a second. Call from any thread.
+  bool goes_on() const { return pulse_.beats(); }
 
   // Lockstep: true if another controller commands the vehicle too.
   bool has_rival() const { return driver_->has_rival(); }
@@ -86,6 +90,8 @@ class ControlService {
   void deliver(const Message& message, StepDriver::Stream stream, runtime::LatestValue<Sample>& latest,
                dds::ThrottledWarning& faults);
 
+  static constexpr std::int64_t kNoStep = std::numeric_limits<std::int64_t>::max();
+
   const std::uint64_t controller_;
   const runtime::Clock clock_;
   Semaphore wake_;
@@ -101,6 +107,8 @@ class ControlService {
   const plant::Vehicle expected_vehicle_;
   const double max_vehicle_difference_;
   std::string vehicle_refusal_;  // used by the thread of vehicle_info only
+  std::atomic<std::int64_t> step_began_ns_{kNoStep};
+  runtime::Pulse pulse_;  // of run()
   SampleAnswers answers_;
   std::unique_ptr<StepDriver> driver_;  // by the clock
   AnsweredSamples answered_samples_;

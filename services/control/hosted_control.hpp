@@ -34,6 +34,7 @@ class HostedControl final : public runtime::HostedVehicle {
 
   void run(const std::atomic<bool>& stop) override { service_.run(stop); }
   void attend() override;
+  bool goes_on() const override { return service_.goes_on(); }
   void log_end() override;
 
  private:

@@ -25,6 +25,7 @@ class CapturedVehicle final : public runtime::HostedVehicle, public FrameTaker {
   ~CapturedVehicle() override;
 
   void run(const std::atomic<bool>&) override {}
+  bool goes_on() const override { return frames_.goes_on(); }
   void log_end() override;
 
   void take(const mocap::SourceFrame& frame, const mocap::Source& source) override;

@@ -41,7 +41,10 @@ void FrameThread::run() {
   runtime::RealtimeThread realtime;
   realtime.enter(realtime_);
   try {
-    while (!stop_ && !source_->has_ended()) receive();
+    while (!stop_ && !source_->has_ended()) {
+      receive();
+      pulse_.beat();
+    }
   } catch (const std::exception& error) {
     const std::lock_guard<std::mutex> lock(mutex_);
     for (FrameTaker* const taker : takers_) taker->end(error.what());

@@ -11,6 +11,7 @@
 
 #include "swiftlet/services/mocap/sources/source.hpp"
 #include "swiftlet/services/runtime/realtime.hpp"
+#include "swiftlet/services/runtime/service_manager.hpp"
 
 namespace swiftlet::services {
 
@@ -42,6 +43,7 @@ class FrameThread {
   // Call both when every taker has been added, and after the last has been removed.
   void start();
   void stop();
+  bool goes_on() const { return pulse_.beats(); }  // Call from any thread.
   // Call only before start() and after stop().
   const mocap::Source& source() const { return *source_; }
 
@@ -56,6 +58,7 @@ class FrameThread {
   std::vector<FrameTaker*> takers_;
   mocap::SourceFrame frame_;
   std::atomic<bool> stop_{false};
+  runtime::Pulse pulse_;
   std::thread thread_;
 };
 

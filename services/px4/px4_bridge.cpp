@@ -191,6 +191,7 @@ void Px4Bridge::run(const std::atomic<bool>& stop) {
       command = vehicle_.update(runtime::monotonic_ns());
     }
     if (command) commands_.publish(*command);
+    pulse_.beat();
   }
 }
 

@@ -22,6 +22,7 @@
 #include "swiftlet/services/px4/px4_vehicle.hpp"
 #include "swiftlet/services/runtime/hosting.hpp"
 #include "swiftlet/services/runtime/realtime.hpp"
+#include "swiftlet/services/runtime/service_manager.hpp"
 
 namespace swiftlet::px4 {
 
@@ -39,6 +40,7 @@ class Px4Bridge final : public runtime::HostedVehicle {
   void run(const std::atomic<bool>& stop) override;
   // The main thread: looks for PX4, logs, and publishes vehicle_info.
   void attend() override;
+  bool goes_on() const override { return pulse_.beats(); }
   void log_end() override;
 
  private:
@@ -65,6 +67,7 @@ class Px4Bridge final : public runtime::HostedVehicle {
   dds::ThrottledWarning battery_faults_{"battery_status"};
   dds::ThrottledWarning status_faults_{"vehicle_status_v1"};
   dds::ThrottledWarning odometry_faults_{"vehicle_odometry"};
+  runtime::Pulse pulse_;  // of run(), which waits for what the callbacks hold
   runtime::RealtimeThread sensor_thread_, odometry_thread_, command_thread_, pose_thread_;
 
   // Only the main thread uses these.

@@ -9,6 +9,7 @@
 #include "swiftlet/io/text.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/log_label.hpp"
+#include "swiftlet/services/runtime/service_manager.hpp"
 
 namespace swiftlet::runtime {
 namespace {
@@ -32,6 +33,8 @@ class Running {
     const LogLabel label(label_);
     guarded([this] { vehicle_->attend(); });
   }
+
+  bool goes_on() const { return vehicle_->goes_on(); }
 
   void request_stop() { stop_ = true; }
 
@@ -97,13 +100,18 @@ void host(std::vector<std::unique_ptr<HostedVehicle>> vehicles, StopSignal& stop
   fleet.reserve(count);
   for (auto& vehicle : vehicles) fleet.push_back(std::make_unique<Running>(std::move(vehicle), count));
   std::vector<std::string> failures;
+  Watchdog watchdog;
+  notify_service_manager("READY=1");
   do {
     for (const auto& one : fleet) one->attend();
     for (const auto& one : take_failed(fleet)) {
       failures.push_back(one->failure());
       if (count > 1) runtime::log_error("{}; this vehicle ends, {} go on", failures.back(), fleet.size());
     }
+    if (std::all_of(fleet.begin(), fleet.end(), [](const auto& one) { return one->goes_on(); }))
+      watchdog.feed();
   } while (!fleet.empty() && !stop.wait_for(period));
+  notify_service_manager("STOPPING=1");
   for (const auto& one : fleet) one->request_stop();
   for (const auto& one : fleet) one->end();
   for (const auto& one : take_failed(fleet)) failures.push_back(one->failure());

@@ -26,6 +26,8 @@ class HostedVehicle {
   // Work of the main thread, which has normal priority: each period, and once when run() has returned. An exception
   // is a failure.
   virtual void attend() {}
+  // Whether what serves the vehicle goes on; if it hangs, so that no exception comes, the service manager is to end the process.
+  virtual bool goes_on() const { return true; }
   // Logs what was done, once run() has returned without a failure.
   virtual void log_end() {}
 
@@ -42,7 +44,8 @@ class HostedVehicle {
 };
 
 // Runs the vehicles, each in a thread of its own, until a stop is requested or all have failed. One that fails is logged
-// and destroyed, the others go on. Throws std::runtime_error at the end if any failed, with the sentences.
+// and destroyed, the others go on. Tells the service manager that the process is ready, and that it stops; feeds its watchdog while
+// all vehicles go on. Throws std::runtime_error at the end if any failed, with the sentences.
 void host(std::vector<std::unique_ptr<HostedVehicle>> vehicles, StopSignal& stop,
           std::chrono::milliseconds period);
 

@@ -62,6 +62,15 @@ TEST_F(FindConfig, SearchesBesideTheProgramsOfALibraryThatAnotherProgramLoads) {
   EXPECT_EQ(program_directory(), fs::read_symlink("/proc/self/exe").parent_path());
 }
 
+TEST_F(FindConfig, OfAPackageIsInEtc) {
+  ::unsetenv("SWIFTLET_CONFIG_DIR");
+  set_program_directory("/usr/bin");
+  const std::vector<std::string> directories = config_directories();
+  set_program_directory({});
+  EXPECT_EQ(directories,
+            (std::vector<std::string>{"/etc/swiftlet", "/usr/share/swiftlet/config", "/config"}));
+}
+
 TEST_F(FindConfig, ErrorListsTheSearchedPaths) {
   const std::string sentence = refusal([] { find_config("vehicles/none.yaml"); });
   EXPECT_EQ(sentence.rfind("vehicles/none.yaml: is not found, looked for vehicles/none.yaml, " +

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/io/command_line/installation.hpp"
+#include "swiftlet/io/program_directory.hpp"
 
 namespace swiftlet::io::programs_test {
 
@@ -49,6 +50,21 @@ TEST(Programs, CommandTextSurvivesJson) {
   EXPECT_EQ(bash_completion(command_text_of_json(json_of(text))), bash_completion(text));
   EXPECT_THROW(command_text_of_json("{\"words\": 1}"), std::runtime_error);
   EXPECT_THROW(command_text_of_json("no JSON"), std::runtime_error);
+}
+
+// GIVEN a package whose other one is not installed WHEN a program of that is asked for THEN the package is named.
+TEST(Programs, OfAnotherPackageAreNamedWithIt) {
+  set_program_directory("/usr/bin");
+  std::string sentence;
+  try {
+    program_beside("swiftlet-analysis-not-here");
+  } catch (const std::runtime_error& error) {
+    sentence = error.what();
+  }
+  set_program_directory({});
+  EXPECT_EQ(sentence,
+            "swiftlet-analysis-not-here not found: the package swiftlet-analysis has it, "
+            "apt install swiftlet-analysis");
 }
 
 TEST(Programs, QuotesWordsOfTheShell) { EXPECT_EQ(shell_quoted("it's a b"), "'it'\\''s a b'"); }
