@@ -136,10 +136,8 @@ int fly_vehicles(const FlyOptions& options, const std::vector<std::string>& vehi
   const bool is_alone = !attached && !options.px4_instance;  // all processes are started here
   network.localhost_only = network.localhost_only || is_alone;
   if (attached) take_running(running, options.reading, plans);
-  if (attached && !options.skip_check) {
-    require_sound_vehicles(network, vehicles);
-    if (!options.skip_hover_test) require_hover_tests(network, vehicles);
-  }
+  if (attached && !options.skip_check) require_sound_vehicles(network, vehicles);
+  if (attached && !options.skip_hover_test) require_hover_tests(network, vehicles);
   // In a domain that others may use, the vehicles must not live already.
   std::optional<dds::FlightReservation> reservation;
   if (!domain_lock && !attached) reservation.emplace(network, vehicles);

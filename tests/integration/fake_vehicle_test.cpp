@@ -239,8 +239,8 @@ TEST_F(FakeVehicleFlight, OneWithoutGroundTruthIsJudgedByMotionCapture) {
                                             "  - {kind: land, speed_m_s: 0.5}\n");
   const ProgramResult fly =
       run_program("swiftlet",
-                  {"fly", mission, "--attach", "--skip-check", "--localhost-only", "--domain",
-                   std::to_string(lock_.domain()), "--record", folder_.path() / "record"},
+                  {"fly", mission, "--attach", "--skip-check", "--skip-hover-test", "--localhost-only",
+                   "--domain", std::to_string(lock_.domain()), "--record", folder_.path() / "record"},
                   folder_.path());
   ASSERT_EQ(fly.exit_code, 0) << fly.output << fly.errors;
   EXPECT_NE(fly.output.find("samples, takeoff to landing, against motion capture\n"), std::string::npos)
@@ -257,21 +257,22 @@ TEST_F(FakeVehicleFlight, OneWithoutGroundTruthIsJudgedByMotionCapture) {
 // GIVEN a vehicle that is not simulated WHEN it is flown with `fly --attach` for the first time THEN a hover test comes first, and is
 // remembered.
 TEST_F(FakeVehicleFlight, TheFirstFlightIsAHoverTest) {
-  start_vehicle();
+  start_vehicle(plant::ControlLevel::kAttitude);
   const std::string mission = folder_.write("hop.yaml",
                                             "name: hop\nframe: ned\ntolerance_m: 0.2\nitems:\n"
                                             "  - {kind: takeoff, height_m: 0.6, speed_m_s: 0.5}\n"
                                             "  - {kind: land, speed_m_s: 0.5}\n");
   const auto fly = [&](const std::string& record) {
     return run_program("/usr/bin/env",
-                       {"XDG_STATE_HOME=" + (folder_.path() / "state").string(), program_file("swiftlet"), "fly", mission,
-                        "--attach", "--localhost-only", "--domain", std::to_string(lock_.domain()), "--record",
-                        folder_.path() / record},
+                       {"XDG_STATE_HOME=" + (folder_.path() / "state").string(), program_file("swiftlet"),
+                        "fly", mission, "--attach", "--skip-check", "--localhost-only", "--domain",
+                        std::to_string(lock_.domain()), "--record", folder_.path() / record},
                        folder_.path());
   };
   const ProgramResult first = fly("first");
   EXPECT_EQ(first.exit_code, 0) << first.errors;
-  EXPECT_NE(first.errors.find("kl1: first flight: hover test of 2 s at 0.15 m\n"), std::string::npos) << first.errors;
+  EXPECT_NE(first.errors.find("kl1: first flight: hover test of 2 s at 0.15 m\n"), std::string::npos)
+      << first.errors;
   const ProgramResult second = fly("second");
   EXPECT_EQ(second.exit_code, 0) << second.errors;
   EXPECT_EQ(second.errors.find("hover test"), std::string::npos) << second.errors;
