@@ -13,11 +13,9 @@
 #include "swiftlet/io/flat_yaml.hpp"
 #include "swiftlet/io/text.hpp"
 #include "swiftlet/io/text_file.hpp"
-#include "swiftlet/plant/model/control_level.hpp"
 #include "swiftlet/record/evaluation.hpp"
 #include "swiftlet/record/file/flight_reader.hpp"
 #include "swiftlet/record/mcap/attached_file.hpp"
-#include "swiftlet/services/messages/topics.hpp"
 
 namespace swiftlet::analysis {
 namespace {
@@ -43,18 +41,16 @@ std::string element_of(const std::map<std::string, std::string>& metadata, const
 
 // At which the vehicle was commanded: by the topics of the commands. Several are joined by commas.
 std::string levels_of(const mcap::Reader& file, const std::string& vehicle) {
-  namespace topics = messages::topics;
-  using plant::ControlLevel;
-  const std::array<std::pair<const char*, ControlLevel>, 4> commands = {
-      {{topics::kActuatorCommand.name, ControlLevel::kActuators},
-       {topics::kRatesSetpoint.name, ControlLevel::kRates},
-       {topics::kAttitudeSetpoint.name, ControlLevel::kAttitude},
-       {topics::kTrajectorySetpoint.name, ControlLevel::kTrajectory}}};
+  constexpr std::array<std::pair<const char*, const char*>, 4> kCommands = {
+      {{"actuator_command", "actuators"},
+       {"rates_setpoint", "rates"},
+       {"attitude_setpoint", "attitude"},
+       {"trajectory_setpoint", "trajectory"}}};
   std::vector<std::string> levels;
   for (const auto& [id, count] : file.statistics().messages_by_channel) {
-    for (const auto& [topic, level] : commands) {
+    for (const auto& [topic, level] : kCommands) {
       if (count > 0 && file.channels().at(id).topic == "/" + vehicle + "/" + topic)
-        levels.emplace_back(plant::to_string(level));
+        levels.emplace_back(level);
     }
   }
   return fmt::format("{}", fmt::join(levels, ","));

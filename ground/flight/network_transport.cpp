@@ -12,6 +12,7 @@
 
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/client/action.hpp"
+#include "swiftlet/ground/flight/missing.hpp"
 #include "swiftlet/ground/flight/vehicle_motion.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
@@ -41,31 +42,6 @@ constexpr double kSilenceAfterExitS = 1.0;  // of a vehicle that is to land afte
 constexpr int kBeforeFlight = -1;           // progress stage; the later stages are the mission's items
 
 ControlMode mode_of(const View& view) { return static_cast<ControlMode>(view.control.message.mode()); }
-
-// The topics that are still missing; empty if all have arrived.
-std::string missing(const View& view, bool has_truth) {
-  std::string list;
-  const auto need = [&list](bool there, const char* what) {
-    if (!there) list += (list.empty() ? "" : ", ") + std::string(what);
-  };
-  need(view.vehicle.seen(), "vehicle_info");
-  need(view.battery.seen(), "battery");
-  need(view.truth.seen() || !has_truth, "ground_truth");
-  need(view.estimate.seen(), "estimate");
-  need(view.control.seen(), "control_status");
-  need(view.reference.seen(), "reference");
-  need(view.control.message.has_pose(), "a mocap_pose accepted by control");
-  return list;
-}
-
-// The first missing process; empty if all are discovered. In lockstep samples arrive only when time advances.
-std::string missing_peer(const View& view) {
-  for (const char* name : {"plant", "mocap", "control"}) {
-    const auto peer = view.peers.find(name);
-    if (peer == view.peers.end() || !peer->second) return name;
-  }
-  return {};
-}
 
 // By what control says, or while control is silent, by what the vehicle says.
 bool is_down(const View& view) {

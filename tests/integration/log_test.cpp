@@ -33,6 +33,13 @@ std::size_t gaps_in(const std::vector<mcap::Message>& messages) {
   return gaps;
 }
 
+void expect_holds_what_control_flies_with(const mcap::Reader& file) {
+  const auto vehicle = mcap::attached_file(file, "kl1", "vehicle.yaml");
+  ASSERT_TRUE(vehicle) << "control tells its files";
+  EXPECT_NE(vehicle->find("name: kaylion"), std::string::npos);
+  EXPECT_TRUE(mcap::attached_file(file, "kl1", "control.yaml"));
+}
+
 // What the recorder says that it has lost of a topic on the way to it, on a busy computer.
 std::size_t lost_of(const mcap::Reader& file, const std::string& topic) {
   for (const mcap::Metadata& one : file.metadata()) {
@@ -93,13 +100,9 @@ TEST_F(Log, HoldsEveryMessageOfAFlight) {
   EXPECT_TRUE(of_flight.finished());
   EXPECT_EQ(gaps_in(heads_of(of_flight).at("/kl1/imu")), lost_of(of_flight, "/kl1/imu"));
   EXPECT_TRUE(mcap::attached_file(of_flight, "kl1", "mission.yaml"));
-  for (const mcap::Reader* const one : {&recorded, &of_flight}) {
-    const auto vehicle = mcap::attached_file(*one, "kl1", "vehicle.yaml");
-    ASSERT_TRUE(vehicle) << "control tells the files that it flies with";
-    EXPECT_NE(vehicle->find("name: kaylion"), std::string::npos);
-    EXPECT_TRUE(mcap::attached_file(*one, "kl1", "control.yaml"));
-  }
   EXPECT_EQ(of_flight.attachments().size(), 3U) << "each once";
+  expect_holds_what_control_flies_with(of_flight);
+  expect_holds_what_control_flies_with(recorded);
   const auto& imu = heads.at("/kl1/imu");
   EXPECT_EQ(gaps_in(imu), lost_of(recorded, "/kl1/imu")) << recorder->output();
   EXPECT_GT(imu.size(), 2000U);
