@@ -266,8 +266,8 @@ TEST(Convert, SetpointKindSelectsTheFieldsThatAreRead) {
 }
 
 TEST(Convert, RefusesInvalidRequests) {
-  expect_refused<control::Request>(example<msg::Command>(), "kind is 12, must be at most 11",
-                                   [](msg::Command& m) { m.kind(12); });
+  expect_refused<control::Request>(example<msg::Command>(), "kind is 13, must be at most 12",
+                                   [](msg::Command& m) { m.kind(13); });
   expect_refused<control::Request>(example<msg::Command>(), "position_ned[1] is nan, must be finite",
                                    [](msg::Command& m) { m.position_ned()[1] = kNan; });
   expect_refused<control::Mission>(example<msg::Mission>(), "item 5: speed is nan, must be finite",
