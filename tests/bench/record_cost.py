@@ -51,7 +51,8 @@ def measure(options, folder):
                     recorder = subprocess.Popen([options.bin / "swiftlet", "record", "-o", folder / f"{number}.mcap", *domain],
                                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
                 swiftlet(options, "arm", *domain)
-                swiftlet(options, "mission", "fly", mission, *domain)
+                swiftlet(options, "mission", "upload", mission, *domain)
+                swiftlet(options, "mission", "start", *domain)
                 flown = counts(options, domain)
                 if recorder is not None:
                     recorder.send_signal(signal.SIGINT)

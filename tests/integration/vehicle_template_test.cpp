@@ -119,7 +119,8 @@ TEST_F(VehicleTemplateInRealTime, FliesTheSquareThroughAPseudoTerminal) {
   ASSERT_TRUE(eventually([&] { return (armed = ask(control::RequestKind::kArm)).accepted(); }, kTimeout))
       << armed.reason;
   const ProgramResult fly = run_program("swiftlet",
-                                        {"mission", "fly", folder_.write("square.yaml", kSmallSquareMission),
+                                        {"fly", folder_.write("square.yaml", kSmallSquareMission), "--attach",
+                                         "--skip-check", "--record", folder_.path() / "record",
                                          "--localhost-only", "--domain", std::to_string(lock_.domain())},
                                         folder_.path(), kTimeout);
   ASSERT_EQ(fly.exit_code, 0) << fly.errors << plant_->errors() << microcontroller_->errors();
