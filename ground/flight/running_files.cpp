@@ -20,10 +20,10 @@ RunningFiles::RunningFiles(Client& client, std::chrono::milliseconds timeout)
         fmt::format("the control service of {} does not tell which vehicle and control files it flies with",
                     client.vehicle()));
   const auto write = [&](const std::string& path, const msg::SettingsFile& file, const char* what) {
-    if (file.content().empty())
+    if (file.text().size() == 0)
       throw std::runtime_error(
           fmt::format("the {} file of {} is too long to be told: give --{}", what, client.vehicle(), what));
-    io::write_atomically(path, std::string(file.content().begin(), file.content().end()));
+    io::write_atomically(path, file.text().c_str());
   };
   write(vehicle(), files->vehicle(), "vehicle");
   write(control(), files->control(), "control");

@@ -127,7 +127,7 @@ void FlightRecorder::attach_files() {
 
 void FlightRecorder::attach(const std::string& vehicle, const std::string& name,
                             const messages::msg::SettingsFile& told) {
-  const std::string content(told.content().begin(), told.content().end());
+  const std::string content = told.text().c_str();
   const std::string own_name = vehicle + "/" + name;
   use_file([&](MessageFile& file) {
     const std::string& known = attached_.count(own_name) > 0 ? attached_[own_name] : attached_[name];

@@ -14,7 +14,7 @@ messages::msg::SettingsFile settings_file(const std::string& path) {
   messages::msg::SettingsFile file;
   file.sha256() = io::sha256(text);
   if (text.size() <= kLongest) {
-    file.content().assign(text.begin(), text.end());
+    file.text() = text;
   } else {
     runtime::log_warning("{} has {} bytes: above {}, other processes are told its hash only", path,
                          text.size(), kLongest);

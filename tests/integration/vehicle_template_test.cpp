@@ -118,11 +118,11 @@ TEST_F(VehicleTemplateInRealTime, FliesTheSquareThroughAPseudoTerminal) {
   ground::Result armed;
   ASSERT_TRUE(eventually([&] { return (armed = ask(control::RequestKind::kArm)).accepted(); }, kTimeout))
       << armed.reason;
-  const ProgramResult fly = run_program("swiftlet",
-                                        {"fly", folder_.write("square.yaml", kSmallSquareMission), "--attach",
-                                         "--skip-check", "--record", folder_.path() / "record",
-                                         "--localhost-only", "--domain", std::to_string(lock_.domain())},
-                                        folder_.path(), kTimeout);
+  const ProgramResult fly = run_program(
+      "swiftlet",
+      {"fly", folder_.write("square.yaml", kSmallSquareMission), "--attach", "--skip-check", "--record",
+       folder_.path() / "record", "--localhost-only", "--domain", std::to_string(lock_.domain())},
+      folder_.path(), kTimeout);
   ASSERT_EQ(fly.exit_code, 0) << fly.errors << plant_->errors() << microcontroller_->errors();
   const record::Flight flight = telemetry_->flight();
   const auto errors = record::tracking_errors(flight.truth, flight.reference, at_height(flight));

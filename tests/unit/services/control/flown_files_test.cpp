@@ -9,9 +9,7 @@
 
 namespace swiftlet::services::flown_files_test {
 
-std::string text_of(const messages::msg::SettingsFile& file) {
-  return {file.content().begin(), file.content().end()};
-}
+std::string text_of(const messages::msg::SettingsFile& file) { return file.text().c_str(); }
 
 TEST(FlownFiles, AreTheFilesAsTheyWereRead) {
   const tests::TemporaryFolder folder;

@@ -420,9 +420,9 @@ inline msg::FlownFiles example() {
   msg::FlownFiles message;
   message.program() = "swiftlet-control 0.1.0";
   message.vehicle().sha256() = std::string(64, 'a');
-  message.vehicle().content().assign(65536, 'v');  // maximum length
+  message.vehicle().text() = std::string(65536, 'v');  // maximum length
   message.control().sha256() = std::string(64, 'b');
-  message.control().content() = {'n', ':', ' ', '1'};
+  message.control().text() = "n: 1";
   return message;
 }
 
