@@ -140,7 +140,7 @@ io::Command add_fly_command(runtime::CommandLine root, const std::string& versio
                             .excludes(attach);
   for (const char* launch_option :
        {"--vehicle", "--control", "--simulation", "--seed", "--imu-rate", "--level", "--odometry",
-        "--radio-delay", "--radio-jitter", "--radio-loss", "--clock", "--speed", "--as-fast-as-possible"}) {
+        "--radio-delay", "--radio-jitter", "--radio-loss", "--clock", "--speed"}) {
     attach.excludes(app.option(launch_option));
   }
   for (const char* of_simulation : {"--imu-rate", "--odometry", "--clock", "--speed", "--spacing"})
