@@ -52,11 +52,13 @@ std::string end_of_test(const Vehicle& vehicle, const ActionResult& result) {
   return state.mode == Mode::kStopped ? state.mode_reason : result.reason;
 }
 
+// An interrupt ends all waits for answers, but not for those to what ends the test.
 ActionResult await(Vehicle& vehicle, const ActionHandle& test, const std::function<bool()>& interrupted) {
   const auto deadline = std::chrono::steady_clock::now() + kTimeout;
   ActionResult result = test.wait(kStep);
   while (result.kind == ActionResult::Kind::kTimedOut) {
     if (interrupted()) {
+      vehicle.cancel_when({});
       vehicle.land();
       return {ActionResult::Kind::kCanceled, "interrupted"};
     }
@@ -76,11 +78,16 @@ std::string fly_hover_test(const std::shared_ptr<Client>& client, const std::fun
   if (!found.accepted()) return found.reason;
   const std::string configuration = tested_configuration(client->view());
   const ActionResult armed = vehicle.arm().wait(kTimeout);
-  if (!armed.done()) return armed.reason;
+  if (!armed.done()) {  // interrupted: the request may have armed it all the same
+    vehicle.cancel_when({});
+    if (interrupted()) vehicle.disarm();
+    return armed.reason;
+  }
   control::Request request;
   request.kind = control::RequestKind::kHoverTest;
   const ActionHandle test = vehicle.request(request);
   if (!test.accepted()) {
+    vehicle.cancel_when({});
     vehicle.disarm();
     return test.answer().reason;
   }

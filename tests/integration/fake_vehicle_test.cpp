@@ -101,6 +101,10 @@ class FakeVehicleFlight : public testing::Test {
 
   dds::DomainLock lock_;
   TemporaryFolder folder_;
+  const std::string hop_ = folder_.write("hop.yaml",
+                                         "name: hop\nframe: ned\ntolerance_m: 0.2\nitems:\n"
+                                         "  - {kind: takeoff, height_m: 0.6, speed_m_s: 0.5, hold_s: 1}\n"
+                                         "  - {kind: land, speed_m_s: 0.5}\n");
   Program control_;
   ground::Client client_;
   std::unique_ptr<FakeVehicle> vehicle_;
@@ -233,13 +237,9 @@ TEST_F(FakeVehicleFlight, ARestartedVehicleOfLevelAttitudeStandsUntilItIsArmedAg
 // capture, and says so.
 TEST_F(FakeVehicleFlight, OneWithoutGroundTruthIsJudgedByMotionCapture) {
   start_vehicle(plant::ControlLevel::kAttitude);
-  const std::string mission = folder_.write("hop.yaml",
-                                            "name: hop\nframe: ned\ntolerance_m: 0.2\nitems:\n"
-                                            "  - {kind: takeoff, height_m: 0.6, speed_m_s: 0.5, hold_s: 1}\n"
-                                            "  - {kind: land, speed_m_s: 0.5}\n");
   const ProgramResult fly =
       run_program("swiftlet",
-                  {"fly", mission, "--attach", "--skip-check", "--skip-hover-test", "--localhost-only",
+                  {"fly", hop_, "--attach", "--skip-check", "--skip-hover-test", "--localhost-only",
                    "--domain", std::to_string(lock_.domain()), "--record", folder_.path() / "record"},
                   folder_.path());
   ASSERT_EQ(fly.exit_code, 0) << fly.output << fly.errors;
@@ -258,14 +258,10 @@ TEST_F(FakeVehicleFlight, OneWithoutGroundTruthIsJudgedByMotionCapture) {
 // remembered.
 TEST_F(FakeVehicleFlight, TheFirstFlightIsAHoverTest) {
   start_vehicle(plant::ControlLevel::kAttitude);
-  const std::string mission = folder_.write("hop.yaml",
-                                            "name: hop\nframe: ned\ntolerance_m: 0.2\nitems:\n"
-                                            "  - {kind: takeoff, height_m: 0.6, speed_m_s: 0.5}\n"
-                                            "  - {kind: land, speed_m_s: 0.5}\n");
   const auto fly = [&](const std::string& record) {
     return run_program("/usr/bin/env",
                        {"XDG_STATE_HOME=" + (folder_.path() / "state").string(), program_file("swiftlet"),
-                        "fly", mission, "--attach", "--skip-check", "--localhost-only", "--domain",
+                        "fly", hop_, "--attach", "--skip-check", "--localhost-only", "--domain",
                         std::to_string(lock_.domain()), "--record", folder_.path() / record},
                        folder_.path());
   };
